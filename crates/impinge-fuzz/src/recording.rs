@@ -2,13 +2,16 @@
 
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::world::CollisionGroups;
-use impinge_record::{ReadError, Recordable, Recorder, Registry, Replay, reseal, validate};
+use impinge_record::{
+    ReadError, Recordable, Recorder, Registry, Replay, pack, reseal, unpack, validate,
+};
 
 use crate::Bytes;
 use crate::place::{Dimension, Plane, Room};
 use crate::shapes::shape;
 
-/// Records a few objects, changes bytes of the recording, and reads and plays what it has become.
+/// Records a few objects, changes bytes of the recording, and reads and plays what it has become: as a whole, in pieces,
+/// salvaged, and packed.
 pub fn recording(data: &[u8]) {
     let bytes = &mut Bytes::new(data);
     let choice = bytes.choice(8);
@@ -42,8 +45,11 @@ fn record<N: Recordable<D>, M: Dimension<N, D>, const D: usize>(bytes: &mut Byte
         changed[place] = bytes.byte();
     }
     reseal(&mut changed);
+    let piece = 1 + usize::from(bytes.byte());
     let error = play::<N, D>(&changed, &registry, bytes.choice(6));
     assert!(error.is_none_or(|error| error.offset <= changed.len()));
+    grow::<N, D>(&changed, &registry, piece);
+    repack(&changed, bytes);
 }
 
 /// Plays a recording forwards and backwards; the error, if there is one.
@@ -58,4 +64,40 @@ fn play<N: Recordable<D>, const D: usize>(
     };
     let back = replay.seek(usize::MAX).and_then(|()| replay.seek(step));
     back.err()
+}
+
+/// In pieces a recording is what it is as a whole, and salvaging keeps what came before the first error.
+fn grow<N: Recordable<D>, const D: usize>(
+    changed: &[u8],
+    registry: &Registry<N, D, u32>,
+    piece: usize,
+) {
+    let mut growing = Replay::growing(registry);
+    let error = changed.chunks(piece).find_map(|piece| growing.push(piece).err());
+    assert_eq!(
+        error.is_none() && growing.is_complete(),
+        Replay::open(changed, registry).is_ok(),
+        "as a whole: {error:?}"
+    );
+    let Ok(salvaged) = Replay::salvage(changed, registry) else {
+        assert!(growing.is_empty(), "without a header there is no update");
+        return;
+    };
+    assert_eq!(salvaged.marks(), growing.marks(), "the same records");
+    assert_eq!(salvaged.loss().is_none(), growing.is_complete() && error.is_none());
+}
+
+/// What can be packed comes back but for hashes, and packed bytes may be changed.
+fn repack(changed: &[u8], bytes: &mut Bytes<'_>) {
+    let Ok(mut packed) = pack(changed) else { return };
+    let unpacked = unpack(&packed).expect("it was just packed");
+    let again = pack(&unpacked).map(|packed| unpack(&packed));
+    assert_eq!(again, Ok(Ok(unpacked)), "nothing more is left out");
+    for _ in 0..1 + bytes.choice(3) {
+        let place = usize::from(bytes.byte()) * 256 + usize::from(bytes.byte());
+        let place = place % packed.len();
+        packed[place] = bytes.byte();
+    }
+    let error = unpack(&packed).err();
+    assert!(error.is_none_or(|error| error.offset <= packed.len()));
 }

@@ -27,6 +27,15 @@ impl Sink {
         self.bytes.extend(value.to_le_bytes());
     }
 
+    /// Seven bits a byte, the lowest first; all bytes but the last have the highest bit.
+    pub(crate) fn varint(&mut self, mut value: u64) {
+        while value >= 0x80 {
+            self.bytes.push(value.to_le_bytes()[0] | 0x80);
+            value >>= 7;
+        }
+        self.bytes.push(value.to_le_bytes()[0]);
+    }
+
     /// Eight bytes: hashes.
     pub(crate) fn long(&mut self, value: u64) {
         self.bytes.extend(value.to_le_bytes());
@@ -78,6 +87,11 @@ impl<'a> Source<'a> {
         self.end - self.at
     }
 
+    /// What was read since an offset.
+    pub(crate) fn since(&self, offset: usize) -> &'a [u8] {
+        &self.bytes[offset..self.at]
+    }
+
     /// An error at the next field.
     pub(crate) const fn error(&self, problem: Problem) -> ReadError {
         ReadError { offset: self.at, problem }
@@ -121,6 +135,20 @@ impl<'a> Source<'a> {
 
     pub(crate) fn long(&mut self) -> Result<u64, ReadError> {
         self.array().map(u64::from_le_bytes)
+    }
+
+    /// What [`Sink::varint`] has written.
+    pub(crate) fn varint(&mut self) -> Result<u64, ReadError> {
+        let error = self.error(Problem::BadValue { what: "a number of several bytes" });
+        let mut value = 0;
+        for shift in (0..u64::BITS).step_by(7) {
+            let byte = self.byte()?;
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                return Ok(value);
+            }
+        }
+        Err(error)
     }
 
     pub(crate) fn number<N: Scalar>(&mut self) -> Result<N, ReadError> {

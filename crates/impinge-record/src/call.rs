@@ -8,9 +8,18 @@ use impinge::world::CollisionGroups;
 
 use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError};
+use crate::marks::EventCounts;
 use crate::shape_data::ShapeData;
 use crate::space::{Recordable, Scalar};
 use crate::state::{ObjectHashes, Observation};
+
+/// The kinds of records that are packed by their fields.
+pub(crate) mod kinds {
+    pub(crate) const ADD: u8 = 2;
+    pub(crate) const SET_POSITIONS: u8 = 3;
+    pub(crate) const KEY_FRAME: u8 = 12;
+    pub(crate) const UPDATE: u8 = 15;
+}
 
 /// An object as the call that adds it.
 #[derive(Clone, Debug)]
@@ -135,8 +144,8 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
     pub(crate) const fn kind(&self) -> u8 {
         match self {
             Self::Shape(_) => 1,
-            Self::Add(_) => 2,
-            Self::SetPositions(_) => 3,
+            Self::Add(_) => kinds::ADD,
+            Self::SetPositions(_) => kinds::SET_POSITIONS,
             Self::SetShape { .. } => 4,
             Self::SetGroups { .. } => 5,
             Self::SetQueryType { .. } => 6,
@@ -145,9 +154,9 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
             Self::RegisterFilter(_) => 9,
             Self::UnregisterFilter(_) => 10,
             Self::Query(_) => 11,
-            Self::KeyFrame(_) => 12,
-            Self::Update(_) => 13,
+            Self::KeyFrame(_) => kinds::KEY_FRAME,
             Self::End { .. } => 14,
+            Self::Update(_) => kinds::UPDATE,
         }
     }
 
@@ -199,8 +208,8 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
     fn fields(kind: u8, source: &mut Source<'_>) -> Result<Self, ReadError> {
         Ok(match kind {
             1 => Self::Shape(source.shape()?),
-            2 => Self::Add(source.object()?),
-            3 => Self::SetPositions(
+            kinds::ADD => Self::Add(source.object()?),
+            kinds::SET_POSITIONS => Self::SetPositions(
                 source.list(4, |source| Ok((source.word()?, source.isometry::<N, D>()?)))?,
             ),
             4 => Self::SetShape { index: source.word()?, shape: source.word()? },
@@ -211,9 +220,10 @@ impl<N: Recordable<D>, const D: usize> Call<N, D> {
             9 => Self::RegisterFilter(source.text()?),
             10 => Self::UnregisterFilter(source.text()?),
             11 => Self::Query(Box::new(source.query()?)),
-            12 => Self::KeyFrame(source.key_frame()?),
-            13 => Self::Update(source.observation()?),
+            kinds::KEY_FRAME => Self::KeyFrame(source.key_frame()?),
+            13 => Self::Update(source.first_observation()?),
             14 => Self::End { updates: source.long()? },
+            kinds::UPDATE => Self::Update(source.observation()?),
             _ => return Err(source.error(Problem::UnknownRecord(kind))),
         })
     }
@@ -265,12 +275,16 @@ impl Sink {
         frame.objects.iter().for_each(|object| self.object(object));
     }
 
-    /// Twelve bytes for each object that changed.
+    /// Hashes and counts, and twelve bytes for each object that changed.
     fn observation(&mut self, observation: &Observation) {
         self.long(observation.state);
         self.long(observation.events);
-        self.count(observation.changed.len());
-        for ObjectHashes { index, description, pairs } in &observation.changed {
+        let EventCounts { started, stopped, proximities } = observation.counts.unwrap_or_default();
+        self.words(&[started, stopped, proximities]);
+        self.flag(observation.changed.is_some());
+        let Some(changed) = &observation.changed else { return };
+        self.count(changed.len());
+        for ObjectHashes { index, description, pairs } in changed {
             self.words(&[*index, *description, *pairs]);
         }
     }
@@ -379,13 +393,25 @@ impl Source<'_> {
         })
     }
 
+    /// The record of version 1.
+    fn first_observation(&mut self) -> Result<Observation, ReadError> {
+        let (state, events) = (self.long()?, self.long()?);
+        Ok(Observation { state, events, counts: None, changed: Some(self.object_hashes()?) })
+    }
+
     fn observation(&mut self) -> Result<Observation, ReadError> {
         let (state, events) = (self.long()?, self.long()?);
-        let changed = self.list(12, |source| {
+        let [started, stopped, proximities] = [self.word()?, self.word()?, self.word()?];
+        let counts = Some(EventCounts { started, stopped, proximities });
+        let changed = if self.flag()? { Some(self.object_hashes()?) } else { None };
+        Ok(Observation { state, events, counts, changed })
+    }
+
+    fn object_hashes(&mut self) -> Result<Vec<ObjectHashes>, ReadError> {
+        self.list(12, |source| {
             let [index, description, pairs] = [source.word()?, source.word()?, source.word()?];
             Ok(ObjectHashes { index, description, pairs })
-        })?;
-        Ok(Observation { state, events, changed })
+        })
     }
 
     fn query<N: Recordable<D>, const D: usize>(&mut self) -> Result<QueryData<N, D>, ReadError> {

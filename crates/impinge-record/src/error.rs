@@ -85,6 +85,13 @@ pub enum Problem {
     Truncated,
     /// The checksum of a record differs from that of the bytes: something before it was changed.
     Checksum,
+    /// Compressed bytes of a packed recording are damaged.
+    Compression,
+    /// A recording, or a part of it, has or would have too many bytes to be packed or unpacked.
+    TooLarge {
+        /// So many bytes.
+        bytes: u64,
+    },
     /// A record has more bytes than its fields, or bytes follow the last record.
     TrailingBytes,
     /// There is no record of this kind.
@@ -128,6 +135,8 @@ impl fmt::Display for Problem {
             Self::Dimension { found } => write!(f, "the world has {found} dimensions"),
             Self::Truncated => write!(f, "the bytes end early"),
             Self::Checksum => write!(f, "the checksum is wrong"),
+            Self::Compression => write!(f, "the compressed bytes are damaged"),
+            Self::TooLarge { bytes } => write!(f, "{bytes} bytes are too many"),
             Self::TrailingBytes => write!(f, "bytes follow the last field"),
             Self::UnknownRecord(kind) => write!(f, "there is no record of kind {kind}"),
             Self::BadValue { what } => write!(f, "{what} has an impossible value"),

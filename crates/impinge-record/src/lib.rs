@@ -5,20 +5,30 @@
 //! library's memory layout. [`Replay`] gives the world at any step; [`validate`] plays it all and names the first
 //! step and object in which the replay differs from what was recorded, on this machine or with this version.
 //!
+//! A recording can be read while it grows ([`Replay::growing`]), and without its end ([`Replay::salvage`]). It has a
+//! time line ([`Replay::marks`]) and the queries that were asked ([`Replay::queries`]). [`pack`] makes it small, for files
+//! that are sent.
+//!
 //! Shapes and pair filters of the user's own are code: a recording has their names, and a [`Registry`] what these stand
 //! for. `FORMAT.md` describes the bytes.
 //!
 //! Recordings are read as untrusted input: errors have the offset, lengths are
 //! compared with the bytes that remain before memory is allocated, and shapes go through the constructors of the
-//! library. A recording may still describe a world that is expensive to update.
+//! library. Reading takes memory in proportion to the bytes, and unpacking at most [`MAX_UNPACKED`] bytes and twice as many
+//! for the streams. A recording may still describe a world that is expensive to update: where all of n objects overlap
+//! there are n (n - 1) / 2 pairs, of [`MAX_PARTS`] parts each at most.
 #![forbid(unsafe_code)]
 
+mod asking;
 mod bytes;
 mod call;
 mod data;
 mod digest;
+mod divergence;
 mod error;
 mod log;
+mod marks;
+mod pack;
 mod player;
 mod query;
 mod recorder;
@@ -30,12 +40,15 @@ mod space;
 mod state;
 
 pub use data::RecordData;
+pub use divergence::{Difference, Divergence, ObjectField};
 pub use error::{Problem, ReadError, RecordError};
 pub use log::{FORMAT_VERSION, Header, reseal};
-pub use query::{CastQuestion, Detail, Found, PlacedShape, Query, Question, RayQuestion};
+pub use marks::{EventCounts, Mark};
+pub use pack::{MAX_UNPACKED, is_packed, pack, unpack};
+pub use query::{Asked, CastQuestion, Detail, Found, PlacedShape, Query, Question, RayQuestion};
 pub use recorder::{Recorder, Recording, Refused};
 pub use registry::Registry;
-pub use replay::{Difference, Divergence, ObjectField, Replay, validate};
+pub use replay::{Loss, Replay, validate};
 pub use shape_data::{Field, Mesh, ShapeData};
 pub use shapes::{MAX_DEPTH, MAX_PARTS};
 pub use space::{Recordable, Scalar};

@@ -8,7 +8,7 @@ use crate::error::{Problem, ReadError};
 use crate::space::Recordable;
 
 /// The version of the format that this crate writes, and the latest that it reads.
-pub const FORMAT_VERSION: u32 = 1;
+pub const FORMAT_VERSION: u32 = 2;
 
 const MAGIC: [u8; 8] = *b"\x89IPREC\r\n";
 
@@ -32,7 +32,7 @@ impl Log {
         // Eight bytes and three dimensions at most.
         sink.bytes.extend([N::BYTES, D].map(|small| u8::try_from(small).unwrap_or(u8::MAX)));
         sink.number(margin);
-        let mut log = Self { bytes: Vec::new(), checksum: crc32fast::Hasher::new() };
+        let mut log = Self::empty();
         log.append(&sink.bytes);
         log
     }
@@ -46,10 +46,21 @@ impl Log {
         self.append(&sink.bytes);
     }
 
-    fn append(&mut self, bytes: &[u8]) {
+    /// A log without its header.
+    pub(crate) fn empty() -> Self {
+        Self { bytes: Vec::new(), checksum: crc32fast::Hasher::new() }
+    }
+
+    /// The last checksum.
+    pub(crate) fn checksum(&self) -> u32 {
+        self.checksum.clone().finalize()
+    }
+
+    /// Appends a header or a record, and its checksum.
+    pub(crate) fn append(&mut self, bytes: &[u8]) {
         self.checksum.update(bytes);
         self.bytes.extend(bytes);
-        self.bytes.extend(self.checksum.clone().finalize().to_le_bytes());
+        self.bytes.extend(self.checksum().to_le_bytes());
     }
 }
 
@@ -78,10 +89,18 @@ impl Header {
     ///
     /// let recorder = Recorder::<f32, 3, ()>::new(0.02, Registry::new()).expect("a usable margin");
     /// let header = Header::read(&recorder.finish().bytes).expect("it was just written");
-    /// assert_eq!((header.version, header.scalar_bytes, header.dimension), (1, 4, 3));
+    /// assert_eq!((header.version, header.scalar_bytes, header.dimension), (2, 4, 3));
     /// ```
     pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
         Self::fields(&mut Source::new(bytes, 0..bytes.len()))
+    }
+
+    /// Where the checksum of the header begins, if the bytes have it.
+    pub(crate) fn end(bytes: &[u8]) -> Result<usize, ReadError> {
+        let mut source = Source::new(bytes, 0..bytes.len());
+        let header = Self::fields(&mut source)?;
+        source.take(usize::from(header.scalar_bytes))?;
+        Ok(source.offset())
     }
 
     fn fields(source: &mut Source<'_>) -> Result<Self, ReadError> {
@@ -91,7 +110,7 @@ impl Header {
         }
         let offset = source.offset();
         let version = source.word()?;
-        if version != FORMAT_VERSION {
+        if !(1..=FORMAT_VERSION).contains(&version) {
             return Err(ReadError { offset, problem: Problem::Version { found: version } });
         }
         let writer = source.text()?;
@@ -128,23 +147,25 @@ impl Raw {
     }
 }
 
-/// Checksums along a recording.
-#[derive(Debug)]
-pub(crate) struct Checker<'a> {
-    bytes: &'a [u8],
+/// How far a recording has been read: it moves on record by record, and only past right checksums.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Cursor {
     checksum: crc32fast::Hasher,
+    offset: usize,
 }
 
-impl<'a> Checker<'a> {
-    pub(crate) fn new(bytes: &'a [u8]) -> Self {
-        Self { bytes, checksum: crc32fast::Hasher::new() }
+impl Cursor {
+    /// Where the next record begins; 0 before the header.
+    pub(crate) const fn offset(&self) -> usize {
+        self.offset
     }
 
-    /// Reads the header and its checksum: the margin, and where the first record begins.
+    /// Reads the header and its checksum: the margin.
     pub(crate) fn header<N: Recordable<D>, const D: usize>(
         &mut self,
-    ) -> Result<(N, usize), ReadError> {
-        let mut source = Source::new(self.bytes, 0..self.bytes.len());
+        bytes: &[u8],
+    ) -> Result<N, ReadError> {
+        let mut source = Source::new(bytes, 0..bytes.len());
         let header = Header::fields(&mut source)?;
         let offset = source.offset() - 2;
         if usize::from(header.scalar_bytes) != N::BYTES {
@@ -156,19 +177,30 @@ impl<'a> Checker<'a> {
             return Err(ReadError { offset: offset + 1, problem });
         }
         let margin = source.number()?;
-        let end = source.offset();
-        source.take(4)?;
-        self.check(0..end)?;
-        Ok((margin, source.offset()))
+        self.pass(bytes, source.offset())?;
+        Ok(margin)
     }
 
-    /// The checksum that follows a range is that of all bytes so far.
-    pub(crate) fn check(&mut self, range: Range<usize>) -> Result<(), ReadError> {
-        let offset = range.end;
-        self.checksum.update(&self.bytes[range]);
-        let expected = Source::new(self.bytes, offset..self.bytes.len()).word()?;
-        let is_right = self.checksum.clone().finalize() == expected;
-        if is_right { Ok(()) } else { Err(ReadError { offset, problem: Problem::Checksum }) }
+    /// The error of a header says only that more bytes are needed.
+    pub(crate) fn is_begun(bytes: &[u8], error: &ReadError) -> bool {
+        match error.problem {
+            Problem::Truncated => true,
+            Problem::NotARecording => MAGIC.starts_with(bytes),
+            _ => false,
+        }
+    }
+
+    /// Moves to the end of the checksum that follows the bytes up to `end`: it is that of all bytes so far.
+    pub(crate) fn pass(&mut self, bytes: &[u8], end: usize) -> Result<(), ReadError> {
+        let mut source = Source::new(bytes, end..bytes.len());
+        let expected = source.word()?;
+        let mut checksum = self.checksum.clone();
+        checksum.update(&bytes[self.offset..end]);
+        if checksum.clone().finalize() != expected {
+            return Err(ReadError { offset: end, problem: Problem::Checksum });
+        }
+        *self = Self { checksum, offset: source.offset() };
+        Ok(())
     }
 }
 
@@ -177,9 +209,7 @@ impl<'a> Checker<'a> {
 #[doc(hidden)]
 pub fn reseal(bytes: &mut [u8]) {
     let mut checksum = crc32fast::Hasher::new();
-    let mut source = Source::new(bytes, 0..bytes.len());
-    let Ok(header) = Header::fields(&mut source) else { return };
-    let mut end = source.offset() + usize::from(header.scalar_bytes);
+    let Ok(mut end) = Header::end(bytes) else { return };
     let mut start = 0;
     while let Some(sum) = bytes.get(end..end + 4).map(|_| {
         checksum.update(&bytes[start..end]);

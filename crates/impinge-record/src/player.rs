@@ -9,10 +9,10 @@ use impinge::world::{CollisionGroups, CollisionWorld};
 
 use crate::RecordData;
 use crate::call::{Call, KeyFrame, ObjectData, QueryData, QuestionData};
+use crate::divergence::Difference;
 use crate::error::Problem;
-use crate::query::{CastQuestion, PlacedShape, Query, Question, RayQuestion, answer_hash};
+use crate::query::{Asked, CastQuestion, PlacedShape, Query, Question, RayQuestion, answer_hash};
 use crate::registry::Registry;
-use crate::replay::Difference;
 use crate::shapes::ShapeTable;
 use crate::space::Recordable;
 use crate::state::{Observation, Observer};
@@ -31,6 +31,10 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     pub(crate) world: CollisionWorld<N, D, T>,
     handles: Vec<Option<CollisionObjectHandle>>,
     observer: Observer,
+    /// The queries since the last update.
+    asked: Vec<Asked<N, D>>,
+    /// The queries between the last two updates.
+    pub(crate) queries: Vec<Asked<N, D>>,
     /// No call was applied yet: a key frame makes the world.
     is_new: bool,
     /// A key frame made the world, and no update followed: the next one starts all pairs at once.
@@ -49,10 +53,16 @@ pub(crate) fn exchange_phases<N: Recordable<D>, const D: usize, T>(
 }
 
 impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
-    /// A world without objects.
+    /// A new world.
     pub(crate) fn new(margin: N) -> Result<Self, Problem> {
-        let (world, observer) = (CollisionWorld::try_new(margin)?, Observer::default());
-        Ok(Self { world, handles: Vec::new(), observer, is_new: true, is_remade: false })
+        Ok(Self::around(CollisionWorld::try_new(margin)?))
+    }
+
+    /// A world without objects.
+    pub(crate) fn around(world: CollisionWorld<N, D, T>) -> Self {
+        let (handles, asked, queries) = (Vec::new(), Vec::new(), Vec::new());
+        let observer = Observer::default();
+        Self { world, handles, observer, asked, queries, is_new: true, is_remade: false }
     }
 
     /// Applies a call; answers in what its outcome differs from the recorded one.
@@ -153,7 +163,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
 
     /// Asks a query again and compares the hash of the answer.
     fn ask(
-        &self,
+        &mut self,
         query: &QueryData<N, D>,
         resources: &Resources<N, D, T>,
     ) -> Result<Option<Difference>, Problem> {
@@ -161,7 +171,9 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         let excluded = handles.collect::<Result<_, _>>()?;
         let question = question_of(&query.question, &resources.shapes)?;
         let asked = Query { question, groups: query.groups, excluded };
-        let is_same = answer_hash(&asked.ask(&self.world)) == query.answer;
+        let answer = asked.ask(&self.world);
+        let is_same = answer_hash(&answer) == query.answer;
+        self.asked.push(Asked { query: asked, answer, is_same });
         Ok((!is_same).then_some(Difference::Answer))
     }
 
@@ -211,12 +223,14 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
     fn update(&mut self, recorded: &Observation) -> Option<Difference> {
         let before = self.observer.clone();
         self.world.update();
+        self.queries = std::mem::take(&mut self.asked);
         let replayed = self.observer.observe(&self.world);
         // The recorded world had its pairs before the key frame; in a world made anew all of them start.
         let is_remade = std::mem::replace(&mut self.is_remade, false);
         if replayed.state != recorded.state {
-            let known = before.after(&recorded.changed);
-            return Some(self.observer.difference(&known).unwrap_or(Difference::State));
+            let known = recorded.changed.as_ref().map(|changed| before.after(changed));
+            let object = known.and_then(|known| self.observer.difference(&known));
+            return Some(object.unwrap_or(Difference::State));
         }
         let are_same = is_remade || replayed.events == recorded.events;
         (!are_same).then_some(Difference::Events)

@@ -81,7 +81,8 @@ pub struct CastQuestion<N: Space<D>, const D: usize> {
 
 /// A question, and which objects it is about.
 ///
-/// Predicates are code, which no recording holds: a query has groups and excluded objects only.
+/// Predicates are code, which no recording holds: a query has groups and excluded objects only, and
+/// [`Recorder::ask_where`](crate::Recorder::ask_where) makes excluded objects of a predicate.
 #[derive(Clone, Debug)]
 pub struct Query<N: Space<D>, const D: usize> {
     /// The question.
@@ -98,6 +99,17 @@ impl<N: Space<D>, const D: usize> Query<N, D> {
     pub const fn new(question: Question<N, D>) -> Self {
         Self { question, groups: None, excluded: Vec::new() }
     }
+}
+
+/// A query of a recording, and what the replayed world answers to it.
+#[derive(Clone, Debug)]
+pub struct Asked<N: Space<D>, const D: usize> {
+    /// The query.
+    pub query: Query<N, D>,
+    /// The answer, computed by the replay.
+    pub answer: Vec<Found<N, D>>,
+    /// The answer has the bits of the recorded one.
+    pub is_same: bool,
 }
 
 /// An object that answers a query.

@@ -5,15 +5,14 @@ use core::num::NonZeroU64;
 use core::ops::Deref;
 
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-use impinge::shape::ShapeHandle;
+use impinge::shape::{Shape, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, WorldError};
 
 use crate::RecordData;
-use crate::call::{Call, CastData, KeyFrame, ObjectData, QueryData, QuestionData};
+use crate::call::{Call, KeyFrame, ObjectData};
 use crate::error::RecordError;
 use crate::log::Log;
 use crate::player::exchange_phases;
-use crate::query::{CastQuestion, Found, PlacedShape, Query, Question, answer_hash};
 use crate::registry::Registry;
 use crate::shapes::KnownShapes;
 use crate::space::Recordable;
@@ -29,8 +28,9 @@ use crate::state::Observer;
 /// contacts, proximities and events. That costs O(objects + contacts) time, and 12 bytes for each object whose
 /// hashes changed. A shape is written once, by value, and is kept alive while the recorder lives.
 ///
-/// The world has the phases of the library: those of the user's own, and algorithms of a narrow phase, are code,
-/// which no recording holds.
+/// What changes a world and has no method here cannot be recorded: other phases ([`CollisionWorld::set_broad_phase`],
+/// [`CollisionWorld::set_narrow_phase`]) and algorithms of a narrow phase are code, and the data of an object is set,
+/// not lent for changes.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -177,6 +177,11 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.record(&Call::Remove(leaving.into_iter().map(index_of).collect()));
     }
 
+    /// Removes all objects.
+    pub fn clear(&mut self) {
+        self.retain(|_| false);
+    }
+
     /// Moves an object.
     ///
     /// # Errors
@@ -216,6 +221,45 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.world.try_set_shape(handle, shape)?;
         self.record(&Call::SetShape { index: index_of(handle), shape: number });
         Ok(())
+    }
+
+    /// Changes the shape of an object, of which the type is given, and answers what `change` does; see
+    /// [`CollisionWorld::deform`].
+    ///
+    /// The recording gets the whole shape, as [`Self::set_shape`] does: a mesh of many vertices that changes at every
+    /// step makes a large recording, and all its shapes are kept alive while the recorder lives.
+    ///
+    /// # Errors
+    /// If the handle is stale or the shape of another type, then `change` is not called; if the changed shape cannot be
+    /// written.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point};
+    /// use impinge::dim2::shape::{Polyline, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, GeometricQueryType};
+    /// use impinge_record::{Recorder, Registry, validate};
+    ///
+    /// let registry = Registry::<f32, 2, ()>::new();
+    /// let mut recorder = Recorder::new(0.02, registry.clone())?;
+    /// let rope = |y| [-1.0, 0.0, 1.0].map(|x| Point::new(x, y)).to_vec();
+    /// let (shape, query) = (ShapeHandle::new(Polyline::open(rope(0.0))), GeometricQueryType::Proximity(0.0));
+    /// let handle = recorder.add(Isometry::identity(), shape, CollisionGroups::new(), query, ())?;
+    /// recorder.deform(handle, |line: &mut Polyline<f32>| line.set_vertices(&rope(2.0)))?;
+    /// recorder.update();
+    /// assert_eq!(validate(&recorder.finish().bytes, &registry), Ok(None));
+    /// # Ok::<(), impinge_record::RecordError>(())
+    /// ```
+    pub fn deform<S: Shape<N, D> + Clone, R>(
+        &mut self,
+        handle: CollisionObjectHandle,
+        change: impl FnOnce(&mut S) -> R,
+    ) -> Result<R, RecordError> {
+        let object = self.world.collision_object(handle).ok_or(WorldError::StaleHandle(handle))?;
+        let shape = object.shape().as_shape::<S>().ok_or(WorldError::ShapeType(handle))?;
+        let mut shape = shape.clone();
+        let result = change(&mut shape);
+        self.set_shape(handle, ShapeHandle::new(shape))?;
+        Ok(result)
     }
 
     /// Gives an object other groups.
@@ -275,21 +319,6 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
     pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
         self.world.unregister_broad_phase_pair_filter(name);
         self.record(&Call::UnregisterFilter(name.to_owned()));
-    }
-
-    /// Asks a query and records the hash of its answer.
-    ///
-    /// # Errors
-    /// If a shape of the query cannot be written.
-    pub fn ask(&mut self, query: &Query<N, D>) -> Result<Vec<Found<N, D>>, RecordError> {
-        let question = self.question(&query.question)?;
-        let living = query.excluded.iter().filter(|handle| self.world.contains(**handle));
-        let excluded = living.copied().map(index_of).collect();
-        let answer = query.ask(&self.world);
-        let (groups, hash) = (query.groups, answer_hash(&answer));
-        let data = QueryData { question, groups, excluded, answer: hash };
-        self.record(&Call::Query(Box::new(data)));
-        Ok(answer)
     }
 
     /// Updates the world and records the hashes of what it led to.
@@ -370,63 +399,17 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         Recording { bytes: self.log.bytes, world: self.world }
     }
 
-    fn number(&mut self, shape: &ShapeHandle<N, D>) -> Result<u32, RecordError> {
+    /// The number of a shape, which is written before the next record if it is new.
+    pub(crate) fn number(&mut self, shape: &ShapeHandle<N, D>) -> Result<u32, RecordError> {
         self.shapes.number(shape, &self.registry)
     }
 
     /// Writes a record, after the shapes that are new in it.
-    fn record(&mut self, call: &Call<N, D>) {
+    pub(crate) fn record(&mut self, call: &Call<N, D>) {
         for shape in self.shapes.unwritten.drain(..) {
             self.log.record(&Call::Shape(shape));
         }
         self.log.record(call);
-    }
-
-    fn question(&mut self, question: &Question<N, D>) -> Result<QuestionData<N, D>, RecordError> {
-        let is_about_all = matches!(question, Question::RayHits(_) | Question::CastShapeAll(_));
-        Ok(match question {
-            Question::FirstRayHit(asked) | Question::RayHits(asked) => QuestionData::Ray {
-                all: is_about_all,
-                ray: asked.ray,
-                max_time: asked.max_time,
-                solid: asked.solid,
-            },
-            Question::Containing(point) => {
-                QuestionData::Containing(point.coords.as_slice().to_vec())
-            }
-            Question::ProjectPoint { point, max_distance, solid } => QuestionData::Project {
-                point: point.coords.as_slice().to_vec(),
-                max_distance: *max_distance,
-                solid: *solid,
-            },
-            Question::InAabb(aabb) => QuestionData::InAabb(*aabb),
-            Question::Overlapping(PlacedShape { position, shape }) => {
-                QuestionData::Overlapping { position: *position, shape: self.number(shape)? }
-            }
-            Question::Nearest { from, count, max_distance } => QuestionData::Nearest {
-                position: from.position,
-                shape: self.number(&from.shape)?,
-                count: *count,
-                max_distance: *max_distance,
-            },
-            Question::CastShape(cast) | Question::CastShapeAll(cast) => {
-                QuestionData::Cast(self.cast(cast, is_about_all)?)
-            }
-        })
-    }
-
-    fn cast(
-        &mut self,
-        cast: &CastQuestion<N, D>,
-        all: bool,
-    ) -> Result<CastData<N, D>, RecordError> {
-        Ok(CastData {
-            all,
-            position: cast.start.position,
-            shape: self.number(&cast.start.shape)?,
-            velocity: cast.velocity.as_slice().to_vec(),
-            options: cast.options,
-        })
     }
 }
 
@@ -440,7 +423,7 @@ fn unknown_filter<N: Recordable<D>, const D: usize, T>(
 }
 
 /// The index of an object, by which the recording names it.
-fn index_of(handle: CollisionObjectHandle) -> u32 {
+pub(crate) fn index_of(handle: CollisionObjectHandle) -> u32 {
     u32::try_from(handle.uid()).expect("an index has 31 bits")
 }
 

@@ -4,65 +4,22 @@ use impinge::world::CollisionWorld;
 
 use crate::RecordData;
 use crate::call::Call;
+use crate::divergence::Divergence;
 use crate::error::{Problem, ReadError};
-use crate::log::{Checker, Raw};
+use crate::log::{Cursor, Raw};
+use crate::marks::{FrameMark, Mark, Timeline};
 use crate::player::{Player, Resources};
+use crate::query::Asked;
 use crate::registry::Registry;
 use crate::shapes::ShapeTable;
 use crate::space::Recordable;
-
-/// In what a replay first differs from its recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Divergence {
-    /// The number of updates before the call that differs.
-    pub step: usize,
-    /// The offset of its record in bytes.
-    pub offset: usize,
-    /// What differs.
-    pub difference: Difference,
-}
-
-/// What differs between a replay and its recording.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Difference {
-    /// An object after an update: the first in order of the handles.
-    Object {
-        /// The index of its handle.
-        index: usize,
-        /// What of it.
-        field: ObjectField,
-    },
-    /// The state after an update, though the hashes of all objects agree: these have 32 bits.
-    State,
-    /// The events of an update.
-    Events,
-    /// The answer of a query.
-    Answer,
-}
-
-/// What of an object differs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ObjectField {
-    /// Its position, groups or query type.
-    Description,
-    /// The pairs in which it is the first, their contacts and proximities.
-    Pairs,
-}
-
-/// A key frame by the number of updates before it.
-#[derive(Clone, Copy, Debug)]
-struct FrameMark {
-    step: usize,
-    offset: usize,
-}
 
 /// A recording and the world that it makes, at a step: after so many updates.
 ///
 /// Going forwards applies the calls of each step, or those from a key frame on, if one is nearer. Going backwards
 /// makes the world anew, from the last key frame at least two updates before the step, or from the start.
 ///
-/// Memory: the shapes of the recording, eight bytes for each update, and one world.
+/// Memory: the recording and its shapes, 40 bytes for each update, and one world.
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;
@@ -80,8 +37,8 @@ struct FrameMark {
 /// }
 /// let bytes = recorder.finish().bytes;
 ///
-/// let mut replay = Replay::open(&bytes, &registry).expect("it was just written");
-/// let x = |replay: &Replay<'_, f32, 2, ()>| {
+/// let mut replay = Replay::open(bytes, &registry).expect("it was just written");
+/// let x = |replay: &Replay<f32, 2, ()>| {
 ///     replay.world().collision_objects().next().map(|ball| ball.position().translation.x)
 /// };
 /// replay.seek(10).expect("its calls can be applied");
@@ -91,77 +48,254 @@ struct FrameMark {
 /// # Ok::<(), impinge_record::RecordError>(())
 /// ```
 #[derive(Debug)]
-pub struct Replay<'a, N: Recordable<D>, const D: usize, T> {
-    bytes: &'a [u8],
+pub struct Replay<N: Recordable<D>, const D: usize, T> {
+    bytes: Vec<u8>,
     resources: Resources<N, D, T>,
-    /// Where the first record begins.
-    start: usize,
-    /// Where the record after each update begins.
-    steps: Vec<usize>,
-    frames: Vec<FrameMark>,
+    /// How far the bytes have been read.
+    cursor: Cursor,
+    timeline: Timeline,
+    /// The last record has been read.
+    is_complete: bool,
+    /// Why no more bytes are taken.
+    damage: Option<ReadError>,
+    loss: Option<Loss>,
     player: Player<N, D, T>,
+    /// The world is not that of the recording.
+    is_changed: bool,
     step: usize,
-    /// Where the next record begins.
+    /// Where the next record to be played begins.
     offset: usize,
     divergence: Option<Divergence>,
 }
 
-impl<'a, N: Recordable<D>, const D: usize, T: RecordData> Replay<'a, N, D, T> {
+/// The end of a recording that could not be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loss {
+    /// Where it begins: the bytes before it are kept.
+    pub offset: usize,
+    /// How many bytes it has; 0 if the recording only lacks its last record.
+    pub bytes: usize,
+    /// Why it could not be read.
+    pub error: ReadError,
+}
+
+/// Why the reading of records has ended without damage.
+#[derive(Debug)]
+enum Reading {
+    /// The last record was read.
+    Ended,
+    /// The next record, or the header, is not whole; the error says what lacks.
+    Waits(ReadError),
+}
+
+impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     /// A recording at step 0: before the first call. All of it is read and its shapes are made.
     ///
     /// # Errors
     /// If the bytes are not a whole recording of this scalar and dimension, by this version of the format or an
     /// earlier one; if the registry lacks a name.
-    pub fn open(bytes: &'a [u8], registry: &Registry<N, D, T>) -> Result<Self, ReadError> {
-        let mut checker = Checker::new(bytes);
-        let (margin, start) = checker.header::<N, D>()?;
-        let resources = Resources { shapes: ShapeTable::new(), registry: registry.clone(), margin };
-        let made = Player::new(margin).map_err(|problem| ReadError { offset: 0, problem });
-        let (steps, frames, player) = (Vec::new(), Vec::new(), made?);
-        let (step, offset, divergence) = (0, start, None);
-        let mut replay =
-            Self { bytes, resources, start, steps, frames, player, step, offset, divergence };
-        replay.scan(&mut checker)?;
+    pub fn open(
+        bytes: impl Into<Vec<u8>>,
+        registry: &Registry<N, D, T>,
+    ) -> Result<Self, ReadError> {
+        let mut replay = Self::growing(registry);
+        replay.bytes = bytes.into();
+        match replay.scan()? {
+            Reading::Ended => Ok(replay),
+            Reading::Waits(error) => Err(error),
+        }
+    }
+
+    /// A recording without bytes, to which [`Self::push`] gives them as they come. Its world has no object.
+    ///
+    /// ```
+    /// use impinge_record::{Recorder, Registry, Replay};
+    ///
+    /// let registry = Registry::<f64, 3, ()>::new();
+    /// let mut recorder = Recorder::new(0.02, registry.clone())?;
+    /// let mut replay = Replay::growing(&registry);
+    /// for _ in 0..3 {
+    ///     recorder.update();
+    ///     assert_eq!(replay.push(&recorder.take_bytes()), Ok(1), "one update more");
+    /// }
+    /// assert!(replay.len() == 3 && !replay.is_complete());
+    /// replay.push(&recorder.finish().bytes).expect("it goes on");
+    /// assert!(replay.is_complete());
+    /// # Ok::<(), impinge_record::RecordError>(())
+    /// ```
+    #[must_use]
+    pub fn growing(registry: &Registry<N, D, T>) -> Self {
+        // The header brings the margin, and another world.
+        let (shapes, margin) = (ShapeTable::new(), N::ZERO);
+        Self {
+            bytes: Vec::new(),
+            resources: Resources { shapes, registry: registry.clone(), margin },
+            cursor: Cursor::default(),
+            timeline: Timeline::default(),
+            is_complete: false,
+            damage: None,
+            loss: None,
+            player: Player::around(CollisionWorld::default()),
+            is_changed: false,
+            step: 0,
+            offset: 0,
+            divergence: None,
+        }
+    }
+
+    /// What can be read of a recording that lacks its end, because the program crashed, or whose end is damaged: all
+    /// records up to the first that is not whole or has a wrong checksum. [`Self::loss`] says what is left out.
+    ///
+    /// Records after a damaged one cannot be read: each checksum is that of all bytes before it.
+    ///
+    /// # Errors
+    /// As [`Self::open`], if already the header cannot be read.
+    ///
+    /// ```
+    /// use impinge_record::{Problem, Recorder, Registry, Replay};
+    ///
+    /// let registry = Registry::<f32, 2, ()>::new();
+    /// let mut recorder = Recorder::new(0.02, registry.clone())?;
+    /// (0..5).for_each(|_| recorder.update());
+    /// let mut bytes = recorder.take_bytes();
+    /// bytes.truncate(bytes.len() - 1);
+    ///
+    /// assert!(Replay::open(bytes.clone(), &registry).is_err(), "the fifth update is not whole");
+    /// let replay = Replay::salvage(bytes, &registry).expect("it has a header");
+    /// let loss = replay.loss().expect("there is one");
+    /// assert_eq!((replay.len(), loss.error.problem.clone()), (4, Problem::Truncated));
+    /// # Ok::<(), impinge_record::RecordError>(())
+    /// ```
+    pub fn salvage(
+        bytes: impl Into<Vec<u8>>,
+        registry: &Registry<N, D, T>,
+    ) -> Result<Self, ReadError> {
+        let mut replay = Self::growing(registry);
+        replay.bytes = bytes.into();
+        let error = match replay.scan() {
+            Ok(Reading::Ended) => return Ok(replay),
+            Ok(Reading::Waits(error)) | Err(error) => error,
+        };
+        let offset = replay.cursor.offset();
+        if offset == 0 {
+            return Err(error);
+        }
+        let bytes = replay.bytes.len() - offset;
+        replay.bytes.truncate(offset);
+        replay.loss = Some(Loss { offset, bytes, error });
         Ok(replay)
     }
 
-    /// Reads all records: their checksums and fields, the shapes, and where updates and key frames are.
-    fn scan(&mut self, checker: &mut Checker<'_>) -> Result<(), ReadError> {
-        let mut offset = self.start;
-        loop {
-            let raw = Raw::at(self.bytes, offset)?;
-            checker.check(offset..raw.fields.end)?;
-            let call = raw.call::<N, D>(self.bytes)?;
-            let error = |problem| ReadError { offset, problem };
-            match call {
-                Call::Shape(shape) => {
-                    let Resources { shapes, registry, .. } = &mut self.resources;
-                    shapes.define(&shape, registry).map_err(error)?;
-                }
-                Call::KeyFrame(_) => self.frames.push(FrameMark { step: self.steps.len(), offset }),
-                Call::Update(_) => self.steps.push(raw.end),
-                Call::End { updates } => return self.check_end(updates, raw.end),
-                _ => {}
+    /// Appends bytes to a recording that grows, and reads the records that are whole by now, each once; answers how
+    /// many updates were among them. The step stays.
+    ///
+    /// # Errors
+    /// As [`Self::open`], but for records that are not whole: these wait for the rest. After an error the replay
+    /// keeps what came before, and every later call returns the error again.
+    pub fn push(&mut self, bytes: &[u8]) -> Result<usize, ReadError> {
+        if let Some(damage) = &self.damage {
+            return Err(damage.clone());
+        }
+        let before = self.len();
+        self.bytes.extend(bytes);
+        match self.scan() {
+            Ok(_) => Ok(self.len() - before),
+            Err(error) => {
+                self.damage = Some(error.clone());
+                Err(error)
             }
-            offset = raw.end;
         }
     }
 
-    /// The last record counts the updates, and nothing follows it.
-    fn check_end(&self, updates: u64, offset: usize) -> Result<(), ReadError> {
-        if updates != self.steps.len() as u64 {
-            let problem = Problem::BadValue { what: "the number of updates" };
-            return Err(ReadError { offset, problem });
+    /// Reads the records that are whole: their checksums and fields, the shapes, and the time line.
+    fn scan(&mut self) -> Result<Reading, ReadError> {
+        if self.cursor.offset() == 0 {
+            match self.scan_header() {
+                Err(error) if Cursor::is_begun(&self.bytes, &error) => {
+                    return Ok(Reading::Waits(error));
+                }
+                header => header?,
+            }
         }
+        while !self.is_complete {
+            match Raw::at(&self.bytes, self.cursor.offset()) {
+                Ok(raw) => self.scan_record(&raw)?,
+                Err(error) => return Ok(Reading::Waits(error)),
+            }
+        }
+        let offset = self.cursor.offset();
         let is_last = offset == self.bytes.len();
         let problem = Problem::TrailingBytes;
-        if is_last { Ok(()) } else { Err(ReadError { offset, problem }) }
+        if is_last { Ok(Reading::Ended) } else { Err(ReadError { offset, problem }) }
+    }
+
+    /// Reads the header, and makes the world with its margin.
+    fn scan_header(&mut self) -> Result<(), ReadError> {
+        let mut cursor = self.cursor.clone();
+        let margin = cursor.header(&self.bytes)?;
+        let made = Player::new(margin).map_err(|problem| ReadError { offset: 0, problem });
+        (self.player, self.resources.margin) = (made?, margin);
+        (self.timeline.start, self.offset) = (cursor.offset(), cursor.offset());
+        self.cursor = cursor;
+        Ok(())
+    }
+
+    fn scan_record(&mut self, raw: &Raw) -> Result<(), ReadError> {
+        let (mut cursor, offset) = (self.cursor.clone(), self.cursor.offset());
+        cursor.pass(&self.bytes, raw.fields.end)?;
+        let call = raw.call::<N, D>(&self.bytes)?;
+        match &call {
+            Call::Shape(shape) => {
+                let Resources { shapes, registry, .. } = &mut self.resources;
+                let defined = shapes.define(shape, registry);
+                defined.map_err(|problem| ReadError { offset, problem })?;
+            }
+            Call::End { updates } => {
+                self.check_end(*updates, raw.end)?;
+                self.is_complete = true;
+            }
+            _ => self.timeline.note(&call, offset),
+        }
+        self.cursor = cursor;
+        Ok(())
+    }
+
+    /// The last record counts the updates.
+    fn check_end(&self, updates: u64, offset: usize) -> Result<(), ReadError> {
+        let problem = Problem::BadValue { what: "the number of updates" };
+        let is_right = updates == self.len() as u64;
+        if is_right { Ok(()) } else { Err(ReadError { offset, problem }) }
+    }
+
+    /// The bytes of the recording, as far as they came; after [`Self::salvage`] without what is lost.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// The last record has come. Only a recording that grows, or was salvaged, may lack it.
+    #[must_use]
+    pub const fn is_complete(&self) -> bool {
+        self.is_complete
+    }
+
+    /// What [`Self::salvage`] has left out; `None` if the recording is whole.
+    #[must_use]
+    pub const fn loss(&self) -> Option<&Loss> {
+        self.loss.as_ref()
     }
 
     /// The world at the step.
     #[must_use]
     pub const fn world(&self) -> &CollisionWorld<N, D, T> {
         &self.player.world
+    }
+
+    /// The world, to try what would happen if. The next [`Self::seek`] undoes all changes, also to the same step:
+    /// it makes the world anew.
+    pub const fn world_mut(&mut self) -> &mut CollisionWorld<N, D, T> {
+        self.is_changed = true;
+        &mut self.player.world
     }
 
     /// How many updates the world has had.
@@ -173,13 +307,47 @@ impl<'a, N: Recordable<D>, const D: usize, T: RecordData> Replay<'a, N, D, T> {
     /// How many updates the recording has.
     #[must_use]
     pub const fn len(&self) -> usize {
-        self.steps.len()
+        self.timeline.marks.len()
     }
 
     /// The recording has no update.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
-        self.steps.is_empty()
+        self.timeline.marks.is_empty()
+    }
+
+    /// The time line: a mark for each update. It is known without playing.
+    #[must_use]
+    pub fn marks(&self) -> &[Mark] {
+        &self.timeline.marks
+    }
+
+    /// The queries asked between the update before the current one and the current one, in order, with answers
+    /// computed when they were played: before the current update. At step 0 there are none.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point};
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, GeometricQueryType};
+    /// use impinge_record::{Query, Question, Recorder, Registry, Replay};
+    ///
+    /// let registry = Registry::<f32, 2, ()>::new();
+    /// let mut recorder = Recorder::new(0.02, registry.clone())?;
+    /// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+    /// recorder.add(Isometry::identity(), ball, CollisionGroups::new(), query, ())?;
+    /// recorder.update();
+    /// recorder.ask(&Query::new(Question::Containing(Point::new(0.5, 0.0))))?;
+    /// recorder.update();
+    ///
+    /// let mut replay = Replay::open(recorder.finish().bytes, &registry).expect("just written");
+    /// replay.seek(2).expect("its calls can be applied");
+    /// let [asked] = replay.queries() else { panic!("there is one query") };
+    /// assert_eq!((asked.answer.len(), asked.is_same), (1, true));
+    /// # Ok::<(), impinge_record::RecordError>(())
+    /// ```
+    #[must_use]
+    pub fn queries(&self) -> &[Asked<N, D>] {
+        &self.player.queries
     }
 
     /// The first difference from the recording in what was played so far, in any direction.
@@ -195,11 +363,9 @@ impl<'a, N: Recordable<D>, const D: usize, T: RecordData> Replay<'a, N, D, T> {
     /// If a call cannot be applied: the bytes are of no recorder. The world is then after the calls before it.
     pub fn seek(&mut self, step: usize) -> Result<(), ReadError> {
         let step = step.min(self.len());
-        let frames = self.frames.partition_point(|frame| frame.step + 2 <= step);
-        let frame = frames.checked_sub(1).map(|last| self.frames[last]);
-        let is_nearer = frame.is_some_and(|frame| frame.step > self.step);
-        if step < self.step || is_nearer {
-            self.restart(frame.unwrap_or(FrameMark { step: 0, offset: self.start }))?;
+        let frame = self.timeline.frame_before(step);
+        if step < self.step || frame.step > self.step || self.is_changed {
+            self.restart(frame)?;
         }
         while self.step < step {
             self.apply_next()?;
@@ -209,7 +375,7 @@ impl<'a, N: Recordable<D>, const D: usize, T: RecordData> Replay<'a, N, D, T> {
 
     /// Applies the calls after the last update too, where queries may be.
     fn finish(&mut self) -> Result<(), ReadError> {
-        while self.offset < self.bytes.len() {
+        while self.offset < self.cursor.offset() {
             self.apply_next()?;
         }
         Ok(())
@@ -220,14 +386,14 @@ impl<'a, N: Recordable<D>, const D: usize, T: RecordData> Replay<'a, N, D, T> {
         let FrameMark { step, offset } = mark;
         let made = Player::new(self.resources.margin);
         self.player = made.map_err(|problem| ReadError { offset, problem })?;
-        (self.step, self.offset) = (step, offset);
+        (self.step, self.offset, self.is_changed) = (step, offset, false);
         Ok(())
     }
 
     fn apply_next(&mut self) -> Result<(), ReadError> {
         let offset = self.offset;
-        let raw = Raw::at(self.bytes, offset)?;
-        let call = raw.call::<N, D>(self.bytes)?;
+        let raw = Raw::at(&self.bytes, offset)?;
+        let call = raw.call::<N, D>(&self.bytes)?;
         let is_update = matches!(call, Call::Update(_));
         let applied = self.player.apply(call, &self.resources);
         let difference = applied.map_err(|problem| ReadError { offset, problem })?;
@@ -242,8 +408,8 @@ impl<'a, N: Recordable<D>, const D: usize, T: RecordData> Replay<'a, N, D, T> {
 
 /// Plays a whole recording and compares every hash: `None` if the replay is the recording, to the bit.
 ///
-/// Where the hash of the state differs, the hashes of its objects, which the recording has too, name the first
-/// object in order of the handles.
+/// Where the hash of the state differs, the hashes of its objects, which the recording has unless it was packed,
+/// name the first object in order of the handles.
 ///
 /// # Errors
 /// As [`Replay::open`] and [`Replay::seek`].

@@ -5,7 +5,8 @@ use impinge::query::{ContactPoint, Proximity};
 use impinge::world::{CollisionObject, CollisionWorld};
 
 use crate::digest::{Digest, id_parts};
-use crate::replay::{Difference, ObjectField};
+use crate::divergence::{Difference, ObjectField};
+use crate::marks::EventCounts;
 use crate::space::Recordable;
 
 /// The hashes of an object, as they are recorded.
@@ -26,8 +27,11 @@ pub(crate) struct Observation {
     pub(crate) state: u64,
     /// Of the events of the update.
     pub(crate) events: u64,
-    /// The objects whose hashes are others than after the update before, in order.
-    pub(crate) changed: Vec<ObjectHashes>,
+    /// How many events of each kind the update had; version 1 of the format does not say.
+    pub(crate) counts: Option<EventCounts>,
+    /// The objects whose hashes are others than after the update before, in order; packed recordings leave
+    /// them out.
+    pub(crate) changed: Option<Vec<ObjectHashes>>,
 }
 
 /// What is remembered from one update to the next.
@@ -67,7 +71,9 @@ impl Observer {
             }
         }
         self.known = known;
-        Observation { state: all.finish(), events: events_hash(world), changed }
+        let (state, events) = (all.finish(), events_hash(world));
+        let counts = Some(EventCounts::of(world));
+        Observation { state, events, counts, changed: Some(changed) }
     }
 
     /// The hashes by index after the recorded changes, of which those of indices that are used no more are

@@ -110,8 +110,8 @@ fn all_shapes_with_damage() {
 fn other_versions_scalars_and_dimensions() {
     let bytes = small();
     let mut later = bytes.clone();
-    later[8] = 2;
-    let version = ReadError { offset: 8, problem: Problem::Version { found: 2 } };
+    later[8] = 3;
+    let version = ReadError { offset: 8, problem: Problem::Version { found: 3 } };
     assert_eq!(outcome(&later), Err(version));
     let other = validate::<f64, 2, u32>(&bytes, &<f64 as Stage<2>>::registry());
     let other = other.expect_err("the numbers are of f32");
@@ -146,7 +146,7 @@ fn a_divergence_names_the_object() {
     let found = found.expect("the ball is elsewhere");
     let field = ObjectField::Description;
     assert_eq!((found.step, found.difference), (1, Difference::Object { index: 0, field }));
-    let replay = Replay::open(&other, &registry());
+    let replay = Replay::open(other, &registry());
     let mut replay = replay.expect("it is a recording");
     replay.seek(1).expect("its calls can be applied");
     assert_eq!(replay.divergence(), None, "not yet");

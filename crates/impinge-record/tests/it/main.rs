@@ -2,6 +2,8 @@
 
 mod damage;
 mod golden;
+mod growing;
+mod packing;
 mod refusals;
 mod roundtrip;
 mod scene;

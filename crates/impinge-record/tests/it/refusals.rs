@@ -45,7 +45,7 @@ fn own_shapes_need_a_name() {
     assert_eq!(recorder.contact_events().len(), 1, "they overlap");
     let bytes = recorder.finish().bytes;
     assert_eq!(validate(&bytes, &registry), Ok(None));
-    let error = Replay::<f64, 2, u32>::open(&bytes, &Registry::new()).map(|_| ());
+    let error = Replay::<f64, 2, u32>::open(bytes, &Registry::new()).map(|_| ());
     let problem = error.expect_err("the name is not known").problem;
     assert_eq!(problem, Problem::UnknownShape("coin".to_owned()));
 }

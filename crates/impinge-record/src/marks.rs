@@ -1,0 +1,144 @@
+//! The time line of a recording: what happened in each update, and where its records are.
+
+use impinge::narrow_phase::ContactEvent;
+use impinge::world::CollisionWorld;
+
+use crate::call::Call;
+use crate::space::Recordable;
+
+/// How many events an update had.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EventCounts {
+    /// Pairs that began to touch.
+    pub started: u32,
+    /// Pairs that ceased to touch.
+    pub stopped: u32,
+    /// Pairs whose proximity changed.
+    pub proximities: u32,
+}
+
+impl EventCounts {
+    /// The events of the last update.
+    pub(crate) fn of<N: Recordable<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Self {
+        let contacts = world.contact_events();
+        let is_start = |event: &&ContactEvent| matches!(event, ContactEvent::Started(..));
+        let started = contacts.iter().filter(is_start).count();
+        Self {
+            started: small(started),
+            stopped: small(contacts.len() - started),
+            proximities: small(world.proximity_events().len()),
+        }
+    }
+}
+
+/// What an update did, and the calls since the update before it.
+///
+/// ```
+/// use impinge::dim3::math::Isometry;
+/// use impinge::dim3::shape::{Ball, ShapeHandle};
+/// use impinge::dim3::world::{CollisionGroups, GeometricQueryType};
+/// use impinge_record::{EventCounts, Mark, Recorder, Registry, Replay};
+///
+/// let registry = Registry::<f32, 3, ()>::new();
+/// let mut recorder = Recorder::new(0.02, registry.clone())?;
+/// let (ball, contacts) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Contacts(0.0, 0.0));
+/// for x in [0.0, 1.5] {
+///     let position = Isometry::translation(x, 0.0, 0.0);
+///     recorder.add(position, ball.clone(), CollisionGroups::new(), contacts, ())?;
+/// }
+/// recorder.update();
+/// recorder.update();
+///
+/// let replay = Replay::open(recorder.finish().bytes, &registry).expect("it was just written");
+/// let events = EventCounts { started: 1, ..EventCounts::default() };
+/// let first = Mark { added: 2, events: Some(events), ..Mark::default() };
+/// let second = Mark { events: Some(EventCounts::default()), ..Mark::default() };
+/// assert_eq!(replay.marks(), [first, second], "nothing was played");
+/// # Ok::<(), impinge_record::RecordError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Mark {
+    /// Objects added. Those with which a recording begins, and those of key frames, do not count.
+    pub added: u32,
+    /// Objects removed.
+    pub removed: u32,
+    /// Positions set: an object that is set twice counts twice.
+    pub moved: u32,
+    /// Other changes: of shapes, groups, query types, data and filters.
+    pub changed: u32,
+    /// Queries asked.
+    pub queries: u32,
+    /// The events of the update; recordings of version 1 do not say how many they were.
+    pub events: Option<EventCounts>,
+}
+
+impl Mark {
+    /// Counts a call.
+    fn count<N: Recordable<D>, const D: usize>(&mut self, call: &Call<N, D>) {
+        match call {
+            Call::Add(_) => self.added += 1,
+            Call::Remove(indices) => self.removed += small(indices.len()),
+            Call::SetPositions(positions) => self.moved += small(positions.len()),
+            Call::SetShape { .. }
+            | Call::SetGroups { .. }
+            | Call::SetQueryType { .. }
+            | Call::SetData { .. }
+            | Call::RegisterFilter(_)
+            | Call::UnregisterFilter(_) => self.changed += 1,
+            Call::Query(_) => self.queries += 1,
+            Call::Update(observation) => self.events = observation.counts,
+            Call::Shape(_) | Call::KeyFrame(_) | Call::End { .. } => {}
+        }
+    }
+}
+
+/// A count of things each of which takes bytes of a recording, or is a pair of a world.
+fn small(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+/// A place before a step, from which a world can be made.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FrameMark {
+    /// The number of updates before it.
+    pub(crate) step: usize,
+    /// Where its record begins.
+    pub(crate) offset: usize,
+}
+
+/// Where the updates and key frames of a recording are, and what happened.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Timeline {
+    /// Where the first record begins.
+    pub(crate) start: usize,
+    /// For each update.
+    pub(crate) marks: Vec<Mark>,
+    /// In order; the calls since the last update have no mark yet.
+    frames: Vec<FrameMark>,
+    /// The calls since the last update.
+    next: Mark,
+}
+
+impl Timeline {
+    /// Notes a call whose record begins at an offset.
+    pub(crate) fn note<N: Recordable<D>, const D: usize>(
+        &mut self,
+        call: &Call<N, D>,
+        offset: usize,
+    ) {
+        self.next.count(call);
+        match call {
+            Call::KeyFrame(_) => self.frames.push(FrameMark { step: self.marks.len(), offset }),
+            Call::Update(_) => self.marks.push(std::mem::take(&mut self.next)),
+            _ => {}
+        }
+    }
+
+    /// The last key frame at least two updates before a step: events of the first update after it are those of
+    /// a new world. The beginning, if there is none.
+    pub(crate) fn frame_before(&self, step: usize) -> FrameMark {
+        let frames = self.frames.partition_point(|frame| frame.step + 2 <= step);
+        let beginning = FrameMark { step: 0, offset: self.start };
+        self.frames[..frames].last().copied().unwrap_or(beginning)
+    }
+}

@@ -1,0 +1,143 @@
+//! Poses as residuals: the difference of each number from a prediction.
+//!
+//! A body that moves is predictable, so each number of a pose is predicted from the last poses of the object in several
+//! ways. The prediction used is the one whose residuals of this number were the shortest lately, which the reader knows
+//! too: nothing is written about it. All is computed by sums, products and quotients of `f64`, in one order, and is the
+//! same on every machine.
+
+use std::collections::BTreeMap;
+
+use super::streams::{Inflated, Streams};
+use super::tracks::{Bits, MAX_NUMBERS, Track};
+use crate::error::{Problem, ReadError};
+use crate::space::Recordable;
+
+/// What the numbers of a pose are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Layout {
+    pub(super) scalar_bytes: usize,
+    /// How many numbers the translation has; those of the rotation follow.
+    pub(super) dimension: usize,
+    pub(super) numbers: usize,
+}
+
+impl Layout {
+    /// That of recordings of a scalar of so many bytes, and a dimension.
+    pub(super) const fn new(scalar_bytes: u8, dimension: u8) -> Result<Self, Problem> {
+        let numbers = match dimension {
+            2 => <f64 as Recordable<2>>::ISOMETRY_NUMBERS,
+            3 => <f64 as Recordable<3>>::ISOMETRY_NUMBERS,
+            found => return Err(Problem::Dimension { found }),
+        };
+        let (scalar_bytes, dimension) = match scalar_bytes {
+            4 | 8 => (scalar_bytes as usize, dimension as usize),
+            found => return Err(Problem::Scalar { found }),
+        };
+        Ok(Self { scalar_bytes, dimension, numbers })
+    }
+
+    /// How many bytes a pose has.
+    pub(super) const fn pose_bytes(&self) -> usize {
+        self.numbers * self.scalar_bytes
+    }
+
+    /// The ones are the bits that a number has.
+    const fn mask(&self) -> u64 {
+        u64::MAX >> (64 - 8 * self.scalar_bytes)
+    }
+
+    /// Bits as an integer, so that the order of numbers is the order of integers.
+    pub(super) const fn ordered(&self, bits: u64) -> u64 {
+        let sign = self.mask() ^ (self.mask() >> 1);
+        if bits & sign == 0 { bits | sign } else { !bits & self.mask() }
+    }
+
+    /// The bits of [`Self::ordered`].
+    const fn unordered(&self, integer: u64) -> u64 {
+        let sign = self.mask() ^ (self.mask() >> 1);
+        if integer & sign == 0 { !integer & self.mask() } else { integer ^ sign }
+    }
+
+    /// The difference of two ordered integers, so that small ones of both signs are small: 0, -1, 1, -2, ...
+    pub(super) const fn residual(&self, actual: u64, predicted: u64) -> u64 {
+        let unused = 64 - 8 * self.scalar_bytes;
+        let difference = (actual.wrapping_sub(predicted) << unused).cast_signed() >> unused;
+        ((difference << 1) ^ (difference >> 63)).cast_unsigned()
+    }
+
+    /// The integer with this residual from a prediction.
+    const fn with_residual(&self, predicted: u64, residual: u64) -> u64 {
+        let difference = (residual >> 1) ^ 0_u64.wrapping_sub(residual & 1);
+        predicted.wrapping_add(difference) & self.mask()
+    }
+
+    /// The bits of the numbers of a pose.
+    pub(super) fn bits(&self, bytes: &[u8]) -> Bits {
+        let mut bits = [0; MAX_NUMBERS];
+        for (own, number) in bits.iter_mut().zip(bytes.chunks_exact(self.scalar_bytes)) {
+            let mut wide = [0; 8];
+            wide[..self.scalar_bytes].copy_from_slice(number);
+            *own = u64::from_le_bytes(wide);
+        }
+        bits
+    }
+
+    /// The bytes of the numbers of a pose.
+    pub(super) fn bytes(&self, bits: &Bits) -> Vec<u8> {
+        let number = |bits: &u64| bits.to_le_bytes().into_iter().take(self.scalar_bytes);
+        bits.iter().take(self.numbers).flat_map(number).collect()
+    }
+}
+
+/// How an object comes to a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// It is set there.
+    Moved,
+    /// It is added there, or a key frame says that it is there: most likely where it was last.
+    Placed,
+}
+
+/// The objects of a recording by index, as far as it was packed or unpacked.
+#[derive(Debug)]
+pub(super) struct Poses {
+    layout: Layout,
+    tracks: BTreeMap<u32, Track>,
+}
+
+impl Poses {
+    pub(super) const fn new(layout: Layout) -> Self {
+        Self { layout, tracks: BTreeMap::new() }
+    }
+
+    /// Writes the residuals of a pose.
+    pub(super) fn write(&mut self, index: u32, pose: &Bits, way: Way, streams: &mut Streams) {
+        let track = self.tracks.entry(index).or_default();
+        let predictions = track.predictions(&self.layout, way);
+        for (number, bits) in pose.iter().enumerate().take(self.layout.numbers) {
+            let predicted = track.best(number, &predictions);
+            let actual = self.layout.ordered(*bits);
+            streams.residual(number, self.layout.residual(actual, predicted));
+        }
+        track.learn(&self.layout, pose, way, &predictions);
+    }
+
+    /// Reads the residuals of a pose.
+    pub(super) fn read(
+        &mut self,
+        index: u32,
+        way: Way,
+        streams: &mut Inflated,
+    ) -> Result<Bits, ReadError> {
+        let track = self.tracks.entry(index).or_default();
+        let predictions = track.predictions(&self.layout, way);
+        let mut pose = [0; MAX_NUMBERS];
+        for (number, bits) in pose.iter_mut().enumerate().take(self.layout.numbers) {
+            let predicted = track.best(number, &predictions);
+            let actual = self.layout.with_residual(predicted, streams.residual(number)?);
+            *bits = self.layout.unordered(actual);
+        }
+        track.learn(&self.layout, &pose, way, &predictions);
+        Ok(pose)
+    }
+}

@@ -1,0 +1,298 @@
+//! Records taken apart into streams, and put together again.
+
+use std::collections::BTreeMap;
+
+use super::poses::{Layout, Poses, Way};
+use super::streams::{INDICES, Inflated, PLAIN, Streams};
+use crate::bytes::{Sink, Source};
+use crate::call::kinds;
+use crate::error::{Problem, ReadError};
+use crate::log::{Cursor, Header, Log, Raw};
+
+/// The bytes of an update before the flag of the hashes of objects.
+const UPDATE_BYTES: usize = 28;
+
+/// A description of at most so many bytes is not written again. Those of longer ones would let few packed bytes become
+/// many.
+const REPEATED_BYTES: usize = 256;
+
+/// The bytes of the descriptions of objects by index: shape, groups, query type and data.
+type Descriptions = BTreeMap<u32, Vec<u8>>;
+
+/// A recording in streams.
+#[derive(Debug)]
+pub(super) struct Packed {
+    pub(super) streams: Streams,
+    /// The bytes of the recording that unpacking gives.
+    pub(super) length: u64,
+    /// Its last checksum.
+    pub(super) checksum: u32,
+}
+
+/// Takes records apart.
+#[derive(Debug)]
+pub(super) struct Packer {
+    layout: Layout,
+    streams: Streams,
+    poses: Poses,
+    descriptions: Descriptions,
+    /// The last index written.
+    index: u32,
+    checksum: crc32fast::Hasher,
+    length: usize,
+}
+
+impl Packer {
+    /// For recordings with this header.
+    pub(super) fn new(header: &Header) -> Result<Self, ReadError> {
+        let layout = Layout::new(header.scalar_bytes, header.dimension);
+        let layout = layout.map_err(|problem| ReadError { offset: 0, problem })?;
+        Ok(Self {
+            layout,
+            streams: Streams::new(layout.numbers),
+            poses: Poses::new(layout),
+            descriptions: Descriptions::new(),
+            index: 0,
+            checksum: crc32fast::Hasher::new(),
+            length: 0,
+        })
+    }
+
+    pub(super) fn pack(mut self, bytes: &[u8]) -> Result<Packed, ReadError> {
+        let (end, mut cursor) = (Header::end(bytes)?, Cursor::default());
+        cursor.pass(bytes, end)?;
+        self.plain_bytes(&bytes[..end]);
+        self.count(&[&bytes[..end]]);
+        while cursor.offset() < bytes.len() {
+            let start = cursor.offset();
+            let raw = Raw::at(bytes, start)?;
+            cursor.pass(bytes, raw.fields.end)?;
+            self.streams.sink(PLAIN).byte(raw.kind);
+            let mut source = Source::new(bytes, raw.fields.clone());
+            match raw.kind {
+                kinds::UPDATE => self.update(source.take(UPDATE_BYTES)?),
+                _ => {
+                    self.fields(raw.kind, &mut source)?;
+                    self.count(&[&bytes[start..raw.fields.end]]);
+                }
+            }
+        }
+        let (length, checksum) = (self.length as u64, self.checksum.finalize());
+        Ok(Packed { streams: self.streams, length, checksum })
+    }
+
+    /// Notes bytes that unpacking gives, before a checksum.
+    fn count(&mut self, parts: &[&[u8]]) {
+        for part in parts {
+            self.checksum.update(part);
+            self.length += part.len();
+        }
+        self.length += 4;
+    }
+
+    fn plain_bytes(&mut self, bytes: &[u8]) {
+        let plain = self.streams.sink(PLAIN);
+        plain.varint(bytes.len() as u64);
+        plain.bytes.extend(bytes);
+    }
+
+    /// An update without the hashes of objects.
+    fn update(&mut self, hashes: &[u8]) {
+        self.streams.sink(PLAIN).bytes.extend(hashes);
+        let mut head = Sink::default();
+        head.byte(kinds::UPDATE);
+        head.count(hashes.len() + 1);
+        self.count(&[&head.bytes, hashes, &[0]]);
+    }
+
+    fn fields(&mut self, kind: u8, source: &mut Source<'_>) -> Result<(), ReadError> {
+        match kind {
+            kinds::ADD => self.object(source)?,
+            kinds::SET_POSITIONS => {
+                for _ in 0..self.list(source)? {
+                    self.pose(source, Way::Moved)?;
+                }
+            }
+            kinds::KEY_FRAME => {
+                for _ in 0..self.list(source)? {
+                    self.plain_bytes(source.blob()?);
+                }
+                for _ in 0..self.list(source)? {
+                    let vacant = source.word()?;
+                    self.streams.sink(PLAIN).word(vacant);
+                }
+                for _ in 0..self.list(source)? {
+                    self.object(source)?;
+                }
+            }
+            _ => self.plain_bytes(source.take(source.remaining())?),
+        }
+        source.finish()
+    }
+
+    /// The length of a list, whose elements follow.
+    fn list(&mut self, source: &mut Source<'_>) -> Result<usize, ReadError> {
+        let length = source.count(4)?;
+        self.streams.sink(PLAIN).varint(length as u64);
+        Ok(length)
+    }
+
+    fn object(&mut self, source: &mut Source<'_>) -> Result<(), ReadError> {
+        let index = self.pose(source, Way::Placed)?;
+        let start = source.offset();
+        // The number of the shape, and the groups.
+        source.take(4 + 13)?;
+        let numbers = if source.choice(2, "the kind of a query type")? == 0 { 2 } else { 1 };
+        source.take(numbers * self.layout.scalar_bytes)?;
+        source.blob()?;
+        let description = source.since(start);
+        if self.descriptions.get(&index).is_some_and(|known| known == description) {
+            self.streams.sink(PLAIN).varint(0);
+            return Ok(());
+        }
+        self.plain_bytes(description);
+        remember(&mut self.descriptions, index, description);
+        Ok(())
+    }
+
+    /// The index of an object, which it returns, and the pose.
+    fn pose(&mut self, source: &mut Source<'_>, way: Way) -> Result<u32, ReadError> {
+        let index = source.word()?;
+        let difference = i64::from(index) - i64::from(self.index);
+        let zigzag = ((difference << 1) ^ (difference >> 63)).cast_unsigned();
+        self.streams.sink(INDICES).varint(zigzag);
+        self.index = index;
+        let pose = self.layout.bits(source.take(self.layout.pose_bytes())?);
+        self.poses.write(index, &pose, way, &mut self.streams);
+        Ok(index)
+    }
+}
+
+/// Keeps a short description, so that it is not written again.
+fn remember(descriptions: &mut Descriptions, index: u32, description: &[u8]) {
+    if description.len() <= REPEATED_BYTES {
+        descriptions.insert(index, description.to_vec());
+    } else {
+        descriptions.remove(&index);
+    }
+}
+
+/// Puts records together.
+#[derive(Debug)]
+pub(super) struct Unpacker {
+    layout: Layout,
+    streams: Inflated,
+    poses: Poses,
+    descriptions: Descriptions,
+    /// The last index read.
+    index: u32,
+    /// The bytes that the recording has.
+    limit: usize,
+}
+
+impl Unpacker {
+    /// For a recording of `limit` bytes.
+    pub(super) fn new(layout: Layout, streams: Inflated, limit: usize) -> Self {
+        let (poses, descriptions) = (Poses::new(layout), Descriptions::new());
+        Self { layout, streams, poses, descriptions, index: 0, limit }
+    }
+
+    pub(super) fn unpack(mut self) -> Result<Log, ReadError> {
+        let mut log = Log::empty();
+        log.append(&self.plain_bytes()?);
+        while !self.streams.is_read(PLAIN) {
+            let kind = self.streams.pull(PLAIN, Source::byte)?;
+            let mut fields = Sink::default();
+            self.fields(kind, &mut fields)?;
+            let mut record = Sink::default();
+            record.byte(kind);
+            record.blob(&fields.bytes);
+            log.append(&record.bytes);
+            self.check(log.bytes.len())?;
+        }
+        Ok(log)
+    }
+
+    /// No more bytes than the recording has.
+    fn check(&self, length: usize) -> Result<(), ReadError> {
+        let problem = Problem::BadValue { what: "the length of the recording" };
+        if length <= self.limit { Ok(()) } else { Err(ReadError { offset: 0, problem }) }
+    }
+
+    fn plain_bytes(&mut self) -> Result<Vec<u8>, ReadError> {
+        let length = self.list_length()?;
+        self.streams.pull(PLAIN, |source| Ok(source.take(length as usize)?.to_vec()))
+    }
+
+    fn list_length(&mut self) -> Result<u32, ReadError> {
+        self.streams.pull(PLAIN, |source| {
+            let error = source.error(Problem::BadValue { what: "a length" });
+            u32::try_from(source.varint()?).map_err(|_| error)
+        })
+    }
+
+    fn fields(&mut self, kind: u8, sink: &mut Sink) -> Result<(), ReadError> {
+        match kind {
+            kinds::ADD => self.object(sink)?,
+            kinds::SET_POSITIONS => {
+                for _ in 0..self.list(sink)? {
+                    self.pose(sink, Way::Moved)?;
+                }
+            }
+            kinds::KEY_FRAME => {
+                for _ in 0..self.list(sink)? {
+                    sink.blob(&self.plain_bytes()?);
+                }
+                for _ in 0..self.list(sink)? {
+                    sink.word(self.streams.pull(PLAIN, Source::word)?);
+                }
+                for _ in 0..self.list(sink)? {
+                    self.object(sink)?;
+                }
+            }
+            kinds::UPDATE => {
+                let hashes = self
+                    .streams
+                    .pull(PLAIN, |source| source.take(UPDATE_BYTES).map(<[u8]>::to_vec))?;
+                sink.bytes.extend(hashes);
+                sink.flag(false);
+            }
+            _ => sink.bytes.extend(self.plain_bytes()?),
+        }
+        Ok(())
+    }
+
+    /// The length of a list, whose elements follow.
+    fn list(&mut self, sink: &mut Sink) -> Result<u32, ReadError> {
+        let length = self.list_length()?;
+        sink.word(length);
+        Ok(length)
+    }
+
+    fn object(&mut self, sink: &mut Sink) -> Result<(), ReadError> {
+        let index = self.pose(sink, Way::Placed)?;
+        let description = self.plain_bytes()?;
+        if !description.is_empty() {
+            remember(&mut self.descriptions, index, &description);
+            sink.bytes.extend(description);
+            return Ok(());
+        }
+        let missing = self.streams.error(PLAIN, Problem::NoSuchObject(index));
+        sink.bytes.extend(self.descriptions.get(&index).ok_or(missing)?);
+        Ok(())
+    }
+
+    /// The index of an object, which it returns, and the pose.
+    fn pose(&mut self, sink: &mut Sink, way: Way) -> Result<u32, ReadError> {
+        let zigzag = self.streams.pull(INDICES, Source::varint)?;
+        let difference = (zigzag >> 1).cast_signed() ^ -(zigzag & 1).cast_signed();
+        let index = u32::try_from(i64::from(self.index).wrapping_add(difference));
+        let problem = Problem::BadValue { what: "the index of an object" };
+        self.index = index.map_err(|_| self.streams.error(INDICES, problem))?;
+        let pose = self.poses.read(self.index, way, &mut self.streams)?;
+        sink.word(self.index);
+        sink.bytes.extend(self.layout.bytes(&pose));
+        self.check(sink.bytes.len())?;
+        Ok(self.index)
+    }
+}

@@ -1,0 +1,168 @@
+//! The streams of a packed recording, each compressed by itself.
+
+use miniz_oxide::deflate::compress_to_vec;
+use miniz_oxide::inflate::decompress_to_vec_with_limit;
+
+use crate::bytes::{Sink, Source};
+use crate::error::{Problem, ReadError};
+
+/// Kinds of records, lengths, and all fields but those of the other streams.
+pub(super) const PLAIN: usize = 0;
+/// Differences of the indices of objects.
+pub(super) const INDICES: usize = 1;
+/// The low bits of residuals, which are nearly random.
+pub(super) const BITS: usize = 2;
+/// The symbols of the first number of poses; a stream for each number follows.
+pub(super) const SYMBOLS: usize = 3;
+
+/// The slowest level of deflate but for the exhaustive one.
+const LEVEL: u8 = 9;
+
+/// Numbers below this are symbols of their own.
+const SMALL: u64 = 16;
+/// The length in bits of the smallest other number.
+const SHORTEST: u32 = 5;
+
+/// Streams being written.
+#[derive(Debug)]
+pub(super) struct Streams {
+    sinks: Vec<Sink>,
+    /// Bits that fill no byte yet: the oldest are the lowest.
+    open: u64,
+    open_bits: u32,
+}
+
+impl Streams {
+    /// Streams for poses of so many numbers.
+    pub(super) fn new(numbers: usize) -> Self {
+        Self { sinks: vec![Sink::default(); SYMBOLS + numbers], open: 0, open_bits: 0 }
+    }
+
+    pub(super) fn sink(&mut self, stream: usize) -> &mut Sink {
+        &mut self.sinks[stream]
+    }
+
+    /// A residual of a number of a pose. A small one is a symbol. Of another the symbol says the length and the
+    /// two highest bits, and the others are bits.
+    pub(super) fn residual(&mut self, number: usize, residual: u64) {
+        let length = u64::BITS - residual.leading_zeros();
+        let (symbol, low) = match length.checked_sub(SHORTEST) {
+            None => (residual, 0),
+            Some(longer) => {
+                let second = residual >> (length - 2) & 1;
+                (SMALL + 2 * u64::from(longer) + second, length - 2)
+            }
+        };
+        let symbol = u8::try_from(symbol).expect("64 bits have 136 symbols");
+        self.sinks[SYMBOLS + number].byte(symbol);
+        self.bits(residual, low);
+    }
+
+    /// The lowest `count` bits of a value, in bytes of which the lowest bit is the first.
+    fn bits(&mut self, value: u64, count: u32) {
+        for bit in 0..count {
+            self.open |= (value >> bit & 1) << self.open_bits;
+            self.open_bits += 1;
+            if self.open_bits == u64::BITS {
+                self.sinks[BITS].long(std::mem::take(&mut self.open));
+                self.open_bits = 0;
+            }
+        }
+    }
+
+    /// Compresses all streams: their number, then for each its length and the compressed bytes.
+    pub(super) fn write(mut self, sink: &mut Sink) {
+        self.sinks[BITS].long(self.open);
+        sink.count(self.sinks.len());
+        for stream in &self.sinks {
+            sink.count(stream.bytes.len());
+            sink.blob(&compress_to_vec(&stream.bytes, LEVEL));
+        }
+    }
+}
+
+/// Streams being read.
+#[derive(Debug)]
+pub(super) struct Inflated {
+    streams: Vec<Stream>,
+    open: u64,
+    open_bits: u32,
+}
+
+/// A stream, and how far it was read.
+#[derive(Debug)]
+struct Stream {
+    bytes: Vec<u8>,
+    at: usize,
+    /// Where its compressed bytes begin.
+    offset: usize,
+}
+
+impl Inflated {
+    /// Streams that have at most `limit` bytes together.
+    pub(super) fn read(source: &mut Source<'_>, mut limit: usize) -> Result<Self, ReadError> {
+        // The last bits fill eight bytes.
+        limit += 8;
+        let streams = source.list(8, |source| {
+            let large = source.offset();
+            let length = source.word()? as usize;
+            let problem = Problem::TooLarge { bytes: length as u64 };
+            limit = limit.checked_sub(length).ok_or(ReadError { offset: large, problem })?;
+            let damaged = source.error(Problem::Compression);
+            let offset = source.offset();
+            let bytes = decompress_to_vec_with_limit(source.blob()?, length);
+            let bytes = bytes.ok().filter(|bytes| bytes.len() == length).ok_or(damaged)?;
+            Ok(Stream { bytes, at: 0, offset })
+        })?;
+        Ok(Self { streams, open: 0, open_bits: 0 })
+    }
+
+    /// Reads from a stream; errors have the offset of its compressed bytes.
+    pub(super) fn pull<'a, T>(
+        &'a mut self,
+        stream: usize,
+        read: impl FnOnce(&mut Source<'a>) -> Result<T, ReadError>,
+    ) -> Result<T, ReadError> {
+        let missing = self.error(stream, Problem::Truncated);
+        let Stream { bytes, at, offset } = self.streams.get_mut(stream).ok_or(missing)?;
+        let mut source = Source::new(bytes, *at..bytes.len());
+        let value = read(&mut source);
+        *at = source.offset();
+        value.map_err(|error| ReadError { offset: *offset, ..error })
+    }
+
+    /// An error in a stream.
+    pub(super) fn error(&self, stream: usize, problem: Problem) -> ReadError {
+        ReadError { offset: self.streams.get(stream).map_or(0, |stream| stream.offset), problem }
+    }
+
+    /// All bytes of the stream were read.
+    pub(super) fn is_read(&self, stream: usize) -> bool {
+        self.streams.get(stream).is_none_or(|stream| stream.at == stream.bytes.len())
+    }
+
+    /// A residual of a number of a pose.
+    pub(super) fn residual(&mut self, number: usize) -> Result<u64, ReadError> {
+        let symbol = u64::from(self.pull(SYMBOLS + number, Source::byte)?);
+        let Some(above) = symbol.checked_sub(SMALL) else { return Ok(symbol) };
+        let (second, low) = (above & 1, above / 2 + u64::from(SHORTEST) - 2);
+        let problem = Problem::BadValue { what: "the symbol of a residual" };
+        let low = u32::try_from(low).ok().filter(|low| low + 2 <= u64::BITS);
+        let low = low.ok_or_else(|| self.error(SYMBOLS + number, problem))?;
+        Ok((2 | second) << low | self.bits(low)?)
+    }
+
+    fn bits(&mut self, count: u32) -> Result<u64, ReadError> {
+        let mut value = 0;
+        for bit in 0..count {
+            if self.open_bits == 0 {
+                self.open = self.pull(BITS, Source::long)?;
+                self.open_bits = u64::BITS;
+            }
+            value |= (self.open & 1) << bit;
+            self.open >>= 1;
+            self.open_bits -= 1;
+        }
+        Ok(value)
+    }
+}

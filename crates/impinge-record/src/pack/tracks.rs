@@ -1,0 +1,128 @@
+//! Predictions of the pose of one object.
+
+use std::array;
+
+use super::poses::{Layout, Way};
+
+/// So many numbers has a pose at most.
+pub(super) const MAX_NUMBERS: usize = 7;
+
+/// The bits of the numbers of a pose; those that it does not have are 0.
+pub(super) type Bits = [u64; MAX_NUMBERS];
+
+type Numbers = [f64; MAX_NUMBERS];
+
+/// So many ways are there to predict a number.
+const CANDIDATES: usize = 4;
+
+/// Predictions as ordered integers.
+pub(super) type Predictions = [Bits; CANDIDATES];
+
+/// How many poses are remembered.
+const HISTORY: usize = 5;
+
+/// What is remembered of an object.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Track {
+    last: Bits,
+    /// The last poses, the latest first. NaN and infinities predict nothing.
+    history: [Numbers; HISTORY],
+    /// For each number and candidate: an average of the lengths of its residuals in sixteenths of a bit, of which the
+    /// latest has a quarter.
+    costs: [[u32; CANDIDATES]; MAX_NUMBERS],
+}
+
+impl Track {
+    /// Each candidate for each number. An object that is placed is predicted to be where it was.
+    pub(super) fn predictions(&self, layout: &Layout, way: Way) -> Predictions {
+        let last = self.last.map(|bits| layout.ordered(bits));
+        if way == Way::Placed {
+            return [last; CANDIDATES];
+        }
+        let [same, others @ ..] = &mut [last; CANDIDATES];
+        for (prediction, numbers) in others.iter_mut().zip(self.extrapolated(layout)) {
+            for (own, number) in prediction.iter_mut().zip(numbers).take(layout.numbers) {
+                // A NaN has other bits on other machines.
+                if number.is_finite() {
+                    *own = layout.ordered(bits_of(number, layout));
+                }
+            }
+        }
+        let [first, second, third] = *others;
+        [*same, first, second, third]
+    }
+
+    /// The candidates that compute: the last step again, the last two steps with their change, and the mean
+    /// of some steps again.
+    fn extrapolated(&self, layout: &Layout) -> [Numbers; CANDIDATES - 1] {
+        let [now, before, earlier, _, earliest] = &self.history;
+        let mut again: Numbers = array::from_fn(|i| now[i] + (now[i] - before[i]));
+        let bent = array::from_fn(|i| 3.0 * (now[i] - before[i]) + earlier[i]);
+        let mean = array::from_fn(|i| now[i] + (now[i] - earliest[i]) / 4.0);
+        // The rotation of the last step again. For complex numbers and quaternions
+        // q1 q0^-1 q1 = (2 (q0 . q1) q1 - |q1|^2 q0) / |q0|^2.
+        // Those of poses are not unit to the last bit, and a small difference is many residuals.
+        let rotation = layout.dimension..layout.numbers;
+        let dot = |one: &Numbers, two: &Numbers| {
+            rotation.clone().fold(0.0, |sum, i| sum + one[i] * two[i])
+        };
+        let [twice, square1, square0] =
+            [2.0 * dot(before, now), dot(now, now), dot(before, before)];
+        for i in rotation.clone() {
+            again[i] = (twice * now[i] - square1 * before[i]) / square0;
+        }
+        [again, bent, mean]
+    }
+
+    /// The prediction of the candidate that was best lately, the first of several.
+    pub(super) fn best(&self, number: usize, predictions: &Predictions) -> u64 {
+        let costs = self.costs[number].iter().zip(predictions);
+        costs.min_by_key(|(cost, _)| **cost).map_or(0, |(_, prediction)| prediction[number])
+    }
+
+    /// Remembers a pose.
+    pub(super) fn learn(
+        &mut self,
+        layout: &Layout,
+        pose: &Bits,
+        way: Way,
+        predictions: &Predictions,
+    ) {
+        let numbers = pose.map(|bits| number_of(bits, layout));
+        if way == Way::Placed {
+            if *pose != self.last {
+                *self =
+                    Self { last: *pose, history: [numbers; HISTORY], costs: Default::default() };
+            }
+            return;
+        }
+        for (number, costs) in self.costs.iter_mut().enumerate().take(layout.numbers) {
+            let actual = layout.ordered(pose[number]);
+            for (cost, prediction) in costs.iter_mut().zip(predictions) {
+                let residual = layout.residual(actual, prediction[number]);
+                let length = u64::BITS - residual.leading_zeros();
+                *cost = (3 * *cost + 16 * length) / 4;
+            }
+        }
+        self.last = *pose;
+        self.history.rotate_right(1);
+        self.history[0] = numbers;
+    }
+}
+
+/// The number of these bits; exact.
+fn number_of(bits: u64, layout: &Layout) -> f64 {
+    match u32::try_from(bits) {
+        Ok(bits) if layout.scalar_bytes == 4 => f64::from(f32::from_bits(bits)),
+        _ => f64::from_bits(bits),
+    }
+}
+
+/// The bits of the nearest number of the recording's scalar.
+#[expect(clippy::cast_possible_truncation, reason = "the nearest number is meant")]
+fn bits_of(number: f64, layout: &Layout) -> u64 {
+    match layout.scalar_bytes {
+        4 => u64::from((number as f32).to_bits()),
+        _ => number.to_bits(),
+    }
+}
