@@ -67,11 +67,11 @@ impl Golden {
     pub fn check(&self, name: &str, image: &Image) -> Result<(), GoldenError> {
         let path = self.folder.join(format!("{name}.png"));
         if self.bless {
-            return Ok(write(&path, image)?);
+            return Ok(write(&path, &image.to_png())?);
         }
         let found = self.failures.join(format!("{name}.png"));
         let Ok(bytes) = fs::read(&path) else {
-            write(&found, image)?;
+            write(&found, &image.to_png())?;
             return Err(GoldenError::Missing { golden: path, image: found });
         };
         let golden = Image::from_png(&bytes).map_err(GoldenError::Image)?;
@@ -79,18 +79,43 @@ impl Golden {
         if difference.pixels <= self.allowed && image.size() == golden.size() {
             return Ok(());
         }
-        write(&found, image)?;
-        write(&self.failures.join(format!("{name}.difference.png")), &difference.picture)?;
+        write(&found, &image.to_png())?;
+        let marked = self.failures.join(format!("{name}.difference.png"));
+        write(&marked, &difference.picture.to_png())?;
         let (pixels, largest) = (difference.pixels, difference.largest);
         Err(GoldenError::Differs { pixels, largest, image: found })
     }
+
+    /// Compares a text with the golden one, a file of this name: of a picture `NAME.svg`. The bound is for
+    /// images alone.
+    ///
+    /// # Errors
+    ///
+    /// If there is no golden text, or it differs. Then the text is among the failures.
+    pub fn check_text(&self, name: &str, text: &str) -> Result<(), GoldenError> {
+        let path = self.folder.join(name);
+        if self.bless {
+            return Ok(write(&path, text.as_bytes())?);
+        }
+        let golden = fs::read_to_string(&path);
+        if golden.as_ref().is_ok_and(|golden| golden == text) {
+            return Ok(());
+        }
+        let found = self.failures.join(name);
+        write(&found, text.as_bytes())?;
+        let Ok(golden) = golden else {
+            return Err(GoldenError::Missing { golden: path, image: found });
+        };
+        let same = golden.lines().zip(text.lines()).take_while(|(golden, own)| golden == own);
+        Err(GoldenError::TextDiffers { line: same.count() + 1, text: found })
+    }
 }
 
-fn write(path: &Path, image: &Image) -> io::Result<()> {
+fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
     }
-    fs::write(path, image.to_png())
+    fs::write(path, bytes)
 }
 
 fn target_folder() -> PathBuf {
@@ -122,6 +147,13 @@ pub enum GoldenError {
         /// Where the image is; the difference is beside it.
         image: PathBuf,
     },
+    /// A text is another.
+    TextDiffers {
+        /// The first line that differs, counted from 1.
+        line: usize,
+        /// Where the text is.
+        text: PathBuf,
+    },
     /// The golden image is none.
     Image(ImageError),
     /// A file could not be written.
@@ -145,6 +177,9 @@ impl fmt::Display for GoldenError {
                 let image = image.display();
                 write!(formatter, "{image}: {pixels} pixels differ, by up to {largest} of 255")
             }
+            Self::TextDiffers { line, text } => {
+                write!(formatter, "{}: line {line} differs", text.display())
+            }
             Self::Image(error) => error.fmt(formatter),
             Self::Io(error) => error.fmt(formatter),
         }
@@ -156,6 +191,22 @@ impl Error for GoldenError {}
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_are_compared_line_by_line() {
+        let folder = env::temp_dir().join(format!("impinge-view-text-{}", std::process::id()));
+        let golden = Golden::new(folder.join("golden")).with_failures(folder.join("failures"));
+        let missing = golden.clone().with_bless(false).check_text("a.svg", "one\ntwo\n");
+        assert!(matches!(missing, Err(GoldenError::Missing { .. })), "{missing:?}");
+        golden.clone().with_bless(true).check_text("a.svg", "one\ntwo\n").expect("written");
+        let golden = golden.with_bless(false);
+        golden.check_text("a.svg", "one\ntwo\n").expect("the same");
+        let error = golden.check_text("a.svg", "one\n2\n").expect_err("another line");
+        assert!(matches!(error, GoldenError::TextDiffers { line: 2, .. }), "{error}");
+        let left = fs::read_to_string(folder.join("failures/a.svg")).expect("left behind");
+        assert_eq!(left, "one\n2\n");
+        fs::remove_dir_all(folder).expect("can be removed");
+    }
 
     #[test]
     fn failures_leave_the_image_and_the_difference() {

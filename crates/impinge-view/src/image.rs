@@ -1,5 +1,7 @@
 //! Images in memory, and as PNG.
 
+use crate::palette::{MAX_COLORS, Palette};
+use crate::raster::whole;
 use std::error::Error;
 use std::fmt;
 use std::io::Cursor;
@@ -65,7 +67,45 @@ impl Image {
         self.pixels[y as usize * self.size[0] as usize + x as usize] = pixel;
     }
 
-    /// The bytes of a PNG file.
+    /// Changes the colour of the pixel in which a point lies, if there is one.
+    pub(crate) fn change(&mut self, at: [f64; 2], color: impl Fn([u8; 3]) -> [u8; 3]) {
+        let is_inside = (0..2).all(|axis| at[axis] >= 0.0 && at[axis] < f64::from(self.size[axis]));
+        if is_inside {
+            let [x, y] = at.map(|x| whole(x, MAX_SIDE as usize));
+            let pixel = &mut self.pixels[y * self.size[0] as usize + x];
+            let [red, green, blue, alpha] = *pixel;
+            let [red, green, blue] = color([red, green, blue]);
+            *pixel = [red, green, blue, alpha];
+        }
+    }
+
+    /// The same in at most so many colours, which makes its file smaller; clamped to 2 to 256.
+    ///
+    /// The colours are means of boxes that halve the pixels again and again (P. Heckbert, *Color Image
+    /// Quantization for Frame Buffer Display*, 1982). Opaque images stay opaque.
+    ///
+    /// ```
+    /// use impinge::debug_render::{Color, DebugRender, Drawn};
+    /// use impinge::dim2::math::Point;
+    /// use impinge_view::{Camera, PngPicture};
+    /// use std::collections::BTreeSet;
+    ///
+    /// let mut picture = PngPicture::new(Camera::plane(), [60, 40]);
+    /// picture.point(&Point::new(0.0_f32, 0.0), 1.0, Color::rgb(200, 40, 40), Drawn::Query);
+    /// let image = picture.to_image();
+    /// let reduced = image.with_colors(4);
+    /// let colors: BTreeSet<_> = reduced.pixels().iter().collect();
+    /// assert!(colors.len() <= 4 && reduced.size() == image.size());
+    /// assert_eq!(image.with_colors(256), image, "so few are kept");
+    /// ```
+    #[must_use]
+    pub fn with_colors(&self, count: usize) -> Self {
+        let palette = Palette::of(&self.pixels, count.clamp(2, MAX_COLORS));
+        let pixels = self.pixels.iter().map(|pixel| palette.nearest(*pixel)).collect();
+        Self { size: self.size, pixels }
+    }
+
+    /// The bytes of a PNG file: with a palette, if there are at most 256 colours, all opaque.
     ///
     /// # Panics
     ///
@@ -74,12 +114,25 @@ impl Image {
     pub fn to_png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.size[0], self.size[1]);
-        encoder.set_color(png::ColorType::Rgba);
+        let palette = Palette::exactly(&self.pixels);
+        let data = match &palette {
+            Some(palette) => {
+                encoder.set_palette(palette.rgb());
+                self.pixels.iter().map(|pixel| palette.index(*pixel)).collect()
+            }
+            None => self.pixels.as_flattened().to_vec(),
+        };
+        let kind = if palette.is_some() { png::ColorType::Indexed } else { png::ColorType::Rgba };
+        encoder.set_color(kind);
         encoder.set_depth(png::BitDepth::Eight);
+        if palette.is_some() {
+            // Differences of indices mean nothing.
+            encoder.set_filter(png::Filter::NoFilter);
+        }
         encoder.set_compression(png::Compression::High);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
         let mut writer = encoder.write_header().expect("sizes from 1 to 8192 are allowed");
-        writer.write_image_data(self.pixels.as_flattened()).expect("as many bytes as announced");
+        writer.write_image_data(&data).expect("as many bytes as announced");
         writer.finish().expect("a vector can be written");
         bytes
     }

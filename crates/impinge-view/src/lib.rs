@@ -6,7 +6,7 @@
 //!   layers, a legend, and a title and description for screen readers, and is legible in light and
 //!   dark.
 //! * [`PngPicture`] draws surfaces with a depth buffer, soft light from the upper left, darker edges
-//!   and transparency.
+//!   and transparency, texts, and a legend if it is asked for.
 //!
 //! A picture collects what is drawn and computes nothing until it is asked for its bytes. Its
 //! [`Camera`] frames itself: everything that was drawn fits, with a margin. NaN, infinite and huge
@@ -40,8 +40,12 @@ mod golden;
 mod hidden;
 mod image;
 mod kept_mesh;
+mod labels;
 mod layer;
+mod legend;
 mod lens;
+mod letters;
+mod palette;
 mod picture;
 mod pieces;
 mod png_picture;

@@ -1,6 +1,7 @@
 //! What pictures of every format have in common.
 
 use crate::camera::Camera;
+use crate::layer::Layer;
 use crate::lens::Lens;
 use crate::recording::Recording;
 use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
@@ -49,6 +50,13 @@ impl<F> Picture<F> {
     /// Sees the same from elsewhere.
     pub fn set_camera(&mut self, camera: Camera) {
         self.camera = camera;
+    }
+
+    /// The layers that occur, with the colour that each has first.
+    pub(crate) fn layers(&self) -> Vec<(Layer, Color)> {
+        let layers = self.recording.layers().into_iter();
+        let colors = |layer| Some((Layer::of(layer), self.recording.color_of(layer)?));
+        layers.filter_map(colors).collect()
     }
 
     /// The camera at the place from which it sees everything.

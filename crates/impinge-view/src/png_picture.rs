@@ -3,7 +3,10 @@
 use crate::camera::Camera;
 use crate::flatten::flatten;
 use crate::image::{Image, MAX_SIDE};
-use crate::lens::{Window, larger};
+use crate::labels::placed_labels;
+use crate::legend::{LegendEntry, NAME_AT, SWATCH, legend};
+use crate::lens::{View, Window, larger};
+use crate::letters::{draw_text, letter};
 use crate::picture::Picture;
 use crate::pieces::{draw, pieces};
 use crate::raster::Raster;
@@ -15,6 +18,8 @@ pub struct Png {
     size: [u32; 2],
     background: Color,
     margin: Option<f64>,
+    has_legend: bool,
+    has_texts: bool,
 }
 
 /// A picture of surfaces with a depth buffer.
@@ -23,7 +28,9 @@ pub struct Png {
 /// mesh is so. Edges of meshes and the outlines of their surfaces are in a darker tone of the faces.
 /// Colours with an alpha below 255 are mixed in from far to near, by the middles of triangles and
 /// lines. Contacts, proximities and queries show through what hides them, fainter. A pixel is the mean
-/// of 2 by 2 samples. Texts are left out without being counted.
+/// of 2 by 2 samples. Texts are in front of everything, in Noto Sans Mono, 16 pixels high, with a halo of the
+/// background; they avoid the sides and each other where they can. Those of points outside the picture
+/// are left out without being counted, and characters beyond Latin-1 are question marks.
 ///
 /// ```
 /// use impinge::debug_render::{Color, DebugRender, Drawn};
@@ -41,6 +48,10 @@ pub type PngPicture = Picture<Png>;
 
 /// The sides of the square of samples for a pixel.
 const SAMPLES: usize = 2;
+/// The pixels of the line of a colour in the legend.
+const SWATCH_STEPS: u8 = 16;
+/// The names of the legend.
+const INK: Color = Color::rgb(48, 54, 63);
 /// Near white, a little warm.
 const BACKGROUND: Color = Color::rgb(250, 249, 246);
 
@@ -49,7 +60,9 @@ impl Picture<Png> {
     #[must_use]
     pub fn new(camera: Camera, size: [u32; 2]) -> Self {
         let size = size.map(|side| side.clamp(1, MAX_SIDE));
-        Self::with_format(camera, Png { size, background: BACKGROUND, margin: None })
+        let format =
+            Png { size, background: BACKGROUND, margin: None, has_legend: false, has_texts: true };
+        Self::with_format(camera, format)
     }
 
     /// Another background than near white. Its alpha is not used.
@@ -67,6 +80,21 @@ impl Picture<Png> {
         self
     }
 
+    /// Names and colours of the layers that occur, in rows at the lower side. The drawing gets the room
+    /// above them; a picture too low for both has no legend.
+    #[must_use]
+    pub fn with_legend(mut self) -> Self {
+        self.format.has_legend = true;
+        self
+    }
+
+    /// Leaves the texts out, of a scene with too many of them.
+    #[must_use]
+    pub fn without_texts(mut self) -> Self {
+        self.format.has_texts = false;
+        self
+    }
+
     /// Renders what was drawn.
     ///
     /// Costs 44 bytes of memory for each pixel while it runs, and time in proportion to the pixels that
@@ -75,11 +103,15 @@ impl Picture<Png> {
     pub fn to_image(&self) -> Image {
         let lens = self.lens();
         let flat = flatten(&self.recording, &lens);
-        let view = lens.within(&self.format.window());
+        let (entries, height) = self.legend();
+        let view = lens.within(&self.format.window(height, SAMPLES as f64));
         let size = self.format.size.map(|side| side as usize * SAMPLES);
         let mut raster = Raster::new(size, self.format.background.rgb);
         draw(&pieces(&flat, &self.recording.dots, &view, SAMPLES as f64), &mut raster);
-        Image::opaque(self.format.size, &raster.reduced(SAMPLES))
+        let mut image = Image::opaque(self.format.size, &raster.reduced(SAMPLES));
+        self.draw_texts(&self.lens().within(&self.format.window(height, 1.0)), &mut image);
+        self.draw_legend(&entries, height, &mut image);
+        image
     }
 
     /// The bytes of a PNG file, of [`Self::to_image`].
@@ -87,17 +119,51 @@ impl Picture<Png> {
     pub fn to_png(&self) -> Vec<u8> {
         self.to_image().to_png()
     }
+
+    /// The entries of the legend and their height in pixels, if there is one.
+    fn legend(&self) -> (Vec<LegendEntry>, f64) {
+        let [width, height] = self.format.size.map(f64::from);
+        let (entries, own) = legend(&self.layers(), width, letter().width);
+        let has_room = own <= height * 0.5;
+        if self.format.has_legend && has_room { (entries, own) } else { (Vec::new(), 0.0) }
+    }
+
+    fn draw_texts(&self, view: &View, image: &mut Image) {
+        if !self.format.has_texts {
+            return;
+        }
+        let page = self.format.size.map(f64::from);
+        for placed in placed_labels(&self.recording, view, page, letter()) {
+            let (text, color) = (&placed.label.text, placed.label.color);
+            draw_text(image, placed.at, text, color, self.format.background.rgb);
+        }
+    }
+
+    fn draw_legend(&self, entries: &[LegendEntry], height: f64, image: &mut Image) {
+        let (top, paper) = (f64::from(self.format.size[1]) - height, self.format.background.rgb);
+        for entry in entries {
+            let [left, middle] = [entry.at[0], top + entry.at[1]];
+            for step in 0..SWATCH_STEPS {
+                let x = left + SWATCH * f64::from(step) / f64::from(SWATCH_STEPS);
+                for y in [-1.0, 0.0, 1.0] {
+                    image.change([x, middle + y], |_| entry.color.rgb);
+                }
+            }
+            let base = middle + letter().ascent * 0.5 - 1.0;
+            draw_text(image, [left + NAME_AT, base], entry.layer.name, INK, paper);
+        }
+    }
 }
 
 impl Png {
-    /// The picture without its margins, in samples.
-    fn window(&self) -> Window {
+    /// The picture without its margins and a legend of a height, in so many samples for a pixel.
+    fn window(&self, legend: f64, samples: f64) -> Window {
         let size = self.size.map(f64::from);
         let shorter = -larger(-size[0], -size[1]);
         let margin = self.margin.unwrap_or(shorter / 16.0);
         let margin = -larger(-larger(0.0, margin), -shorter / 3.0);
-        let samples = SAMPLES as f64;
         let low = [margin * samples; 2];
-        Window { low, size: size.map(|side| (side - 2.0 * margin) * samples) }
+        let size = [size[0] - 2.0 * margin, size[1] - 2.0 * margin - legend];
+        Window { low, size: size.map(|side| larger(side, 1.0) * samples) }
     }
 }

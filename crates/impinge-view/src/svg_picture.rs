@@ -3,13 +3,14 @@
 use crate::camera::Camera;
 use crate::flatten::{Flat, edge_color, flatten};
 use crate::hidden::{depths, runs};
+use crate::labels::{Letter, PlacedLabel, placed_labels};
 use crate::layer::Layer;
 use crate::lens::{OnScreen, View, Window, larger};
 use crate::picture::Picture;
 use crate::pieces::{LINE_BIAS, MIN_DOT_RADIUS};
 use crate::raster::{Raster, whole};
 use crate::svg_write::{Body, Key, document};
-use impinge::debug_render::{Color, Drawn};
+use impinge::debug_render::Drawn;
 
 /// The format of an [`SvgPicture`].
 #[derive(Clone, Debug)]
@@ -19,13 +20,15 @@ pub struct Svg {
     description: String,
     /// Whether surfaces are filled, as in 2D, or hide lines, as in 3D.
     fills: bool,
+    has_legend: bool,
 }
 
 /// A picture of lines.
 ///
 /// Each layer is a group with a class: `object`, `contact-point`, `query-hit` and so on, in the order
 /// of [`Drawn`]; in a group, what is nearer comes later. Lengths on the page are in pixels with two
-/// digits. Colours that are too dark for a dark page are lighter there. What was
+/// digits. Colours that are too dark for a dark page are lighter there. Texts avoid the sides of the page
+/// and each other where they can; those of points outside the page are left out. What was
 /// [left out](Picture::left_out) is mentioned in the description.
 ///
 /// ```
@@ -41,6 +44,8 @@ pub struct Svg {
 /// ```
 pub type SvgPicture = Picture<Svg>;
 
+/// The size of characters, roughly: which font it is depends on the reader.
+pub(crate) const LETTER: Letter = Letter { width: 8.0, ascent: 10.0, descent: 3.0 };
 /// The margin on all sides, in pixels.
 const MARGIN: f64 = 16.0;
 /// The largest height of the drawing, in widths.
@@ -64,7 +69,8 @@ impl Picture<Svg> {
 
     fn of(camera: Camera, width: u32, fills: bool) -> Self {
         let width = width.clamp(64, crate::image::MAX_SIDE);
-        let format = Svg { width, title: "Picture".into(), description: String::new(), fills };
+        let (title, description) = ("Picture".into(), String::new());
+        let format = Svg { width, title, description, fills, has_legend: true };
         Self::with_format(camera, format)
     }
 
@@ -74,6 +80,13 @@ impl Picture<Svg> {
     pub fn with_title(mut self, title: &str, description: &str) -> Self {
         self.format.title = title.to_owned();
         self.format.description = description.to_owned();
+        self
+    }
+
+    /// Without the names and colours of the layers below the drawing.
+    #[must_use]
+    pub fn without_legend(mut self) -> Self {
+        self.format.has_legend = false;
         self
     }
 
@@ -88,16 +101,19 @@ impl Picture<Svg> {
         let pixels = size.map(|side| whole(side.ceil(), usize::MAX));
         let depths = (!self.format.fills).then(|| depths(&flat, &view, pixels));
         let sheet = Sheet { flat, view, depths };
+        let labels = placed_labels(&self.recording, &sheet.view, size, LETTER);
         let mut body = Body::new(size);
         for layer in self.recording.layers() {
             body.open(Layer::of(layer));
             self.fill_layer(layer, &sheet, &mut body);
             stroke_layer(layer, &sheet, &mut body);
             self.dot_layer(layer, &sheet, &mut body);
-            self.label_layer(layer, &sheet.view, &mut body);
+            label_layer(layer, &labels, &mut body);
             body.close();
         }
-        body.legend(&self.legend());
+        if self.format.has_legend {
+            body.legend(&self.layers());
+        }
         document(body, &self.format.title, &self.description())
     }
 
@@ -131,22 +147,8 @@ impl Picture<Svg> {
         }
     }
 
-    fn label_layer(&self, layer: Drawn, view: &View, body: &mut Body) {
-        for label in self.recording.labels.iter().filter(|label| label.what == layer) {
-            if let Some(at) = view.point(&label.at, 0.0) {
-                body.label(at, &label.text, label.color);
-            }
-        }
-    }
-
-    fn legend(&self) -> Vec<(Layer, Color)> {
-        let layers = self.recording.layers().into_iter();
-        let colors = |layer| Some((Layer::of(layer), self.recording.color_of(layer)?));
-        layers.filter_map(colors).collect()
-    }
-
     fn description(&self) -> String {
-        let names: Vec<_> = self.legend().into_iter().map(|(layer, _)| layer.name).collect();
+        let names: Vec<_> = self.layers().into_iter().map(|(layer, _)| layer.name).collect();
         let mut text = self.format.description.clone();
         if text.is_empty() && names.is_empty() {
             text = "Nothing is drawn.".into();
@@ -191,6 +193,12 @@ impl Sheet {
             }
             None => vec![(false, *ends)],
         }
+    }
+}
+
+fn label_layer(layer: Drawn, labels: &[PlacedLabel<'_>], body: &mut Body) {
+    for placed in labels.iter().filter(|placed| placed.label.what == layer) {
+        body.label(placed.at, &placed.label.text, placed.label.color);
     }
 }
 

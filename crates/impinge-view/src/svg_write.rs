@@ -1,8 +1,10 @@
 //! The text of an SVG file.
 
 use crate::layer::Layer;
+use crate::legend::{LegendEntry, NAME_AT, SWATCH, legend};
 use crate::lens::OnScreen;
 use crate::shade::mixed;
+use crate::svg_picture::LETTER;
 use impinge::debug_render::Color;
 use std::fmt::Write;
 
@@ -32,11 +34,6 @@ struct Open {
     key: Key,
     last: String,
 }
-
-/// The height of a row of the legend.
-const ROW: f64 = 20.0;
-/// The width of a character of the legend, roughly.
-const LETTER: f64 = 6.6;
 
 impl Body {
     pub(crate) fn new(size: [f64; 2]) -> Self {
@@ -95,36 +92,27 @@ impl Body {
         self.push(&format!("<circle {class} cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>\n"));
     }
 
-    pub(crate) fn label(&mut self, at: OnScreen, text: &str, color: Color) {
+    /// Writes a text from the left end of its base line, with a halo that separates it from what is behind.
+    pub(crate) fn label(&mut self, at: [f64; 2], text: &str, color: Color) {
         let class = self.class('f', Key { color, is_hidden: false });
-        let (x, y, text) = (number(at.x + 5.0), number(at.y - 5.0), escaped(text));
+        let ([x, y], text) = (at.map(number), escaped(text));
         self.push(&format!("<text {class} x=\"{x}\" y=\"{y}\">{text}</text>\n"));
     }
 
-    /// One entry for each layer, in as many rows as the width asks for.
+    /// Names and colours of layers, below the drawing.
     pub(crate) fn legend(&mut self, layers: &[(Layer, Color)]) {
-        let mut at = [16.0, ROW * 0.5];
-        let mut text = String::new();
-        for (layer, color) in layers {
-            let width = 36.0 + LETTER * layer.name.len() as f64;
-            if at[0] > 16.0 && at[0] + width > self.size[0] - 8.0 {
-                at = [16.0, at[1] + ROW];
-            }
+        let (entries, height) = legend(layers, self.size[0], LETTER.width);
+        for LegendEntry { layer, color, at: [left, middle] } in entries {
             let class = self.class('s', Key { color: color.with_alpha(255), is_hidden: false });
-            let [x, y] = at.map(number);
-            let (to, name_at, base) =
-                (number(at[0] + 16.0), number(at[0] + 22.0), number(at[1] + 4.0));
-            text.push_str(&format!(
+            let [x, y, to] = [left, middle, left + SWATCH].map(number);
+            let [name_at, base] = [left + NAME_AT, middle + 4.0].map(number);
+            self.legend.push_str(&format!(
                 "<path {class} stroke-width=\"3.00\" d=\"M{x} {y}L{to} {y}\"/>\
                  <text class=\"ink\" x=\"{name_at}\" y=\"{base}\">{}</text>\n",
                 layer.name
             ));
-            at[0] += width;
         }
-        if !layers.is_empty() {
-            self.legend_height = at[1] + ROW;
-            self.legend = text;
-        }
+        self.legend_height = height;
     }
 
     fn push(&mut self, text: &str) {
@@ -152,8 +140,12 @@ impl Body {
 
     /// The style of the elements in the document with an id, in light and in dark.
     fn style(&self, id: &str) -> String {
-        let mut light = format!("#{id} .paper{{fill:#fbfaf7}}#{id} .ink{{fill:#30363f}}\n");
-        let mut dark = format!("#{id} .paper{{fill:#16191e}}#{id} .ink{{fill:#d5d9e0}}\n");
+        let mut light = format!(
+            "#{id} .paper{{fill:#fbfaf7}}#{id} .ink{{fill:#30363f}}#{id} text{{stroke:#fbfaf7}}\n"
+        );
+        let mut dark = format!(
+            "#{id} .paper{{fill:#16191e}}#{id} .ink{{fill:#d5d9e0}}#{id} text{{stroke:#16191e}}\n"
+        );
         for layer in &self.layers {
             let (class, width) = (layer.class, number(layer.width));
             light.push_str(&format!("#{id} .{class}{{stroke-width:{width}}}\n"));
@@ -164,7 +156,7 @@ impl Body {
         }
         format!(
             "#{id} path{{stroke-linecap:round;fill:none}}\n\
-             #{id} text{{font:12px system-ui,sans-serif}}\n\
+             #{id} text{{font:13px system-ui,sans-serif;paint-order:stroke;stroke-width:3;stroke-linejoin:round}}\n\
              #{id} .hidden{{stroke-dasharray:0.5 3;opacity:.45}}\n\
              {light}@media (prefers-color-scheme:dark){{\n{dark}}}\n"
         )

@@ -4,6 +4,8 @@
 mod gallery;
 mod goldens;
 mod robust;
+mod rounded;
 mod scenes;
 mod silhouettes;
 mod svg;
+mod texts;

@@ -1,0 +1,65 @@
+//! Where the entries of a legend stand.
+
+use crate::layer::Layer;
+use impinge::debug_render::Color;
+
+/// A layer, and where the line of its colour begins; its name follows [`NAME_AT`] further.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LegendEntry {
+    pub(crate) layer: Layer,
+    pub(crate) color: Color,
+    pub(crate) at: [f64; 2],
+}
+
+/// The length of the line of a colour.
+pub(crate) const SWATCH: f64 = 16.0;
+/// From the start of the line to the name.
+pub(crate) const NAME_AT: f64 = 22.0;
+/// The height of a row.
+const ROW: f64 = 20.0;
+/// The margin of a row.
+const MARGIN: f64 = 16.0;
+/// From the end of a name to the next line.
+const GAP: f64 = 14.0;
+
+/// One entry for each layer, in as many rows as a width in pixels asks for, and the height of all rows.
+/// `letter` is the width of a character.
+pub(crate) fn legend(
+    layers: &[(Layer, Color)],
+    width: f64,
+    letter: f64,
+) -> (Vec<LegendEntry>, f64) {
+    let (mut entries, mut at) = (Vec::with_capacity(layers.len()), [MARGIN, ROW * 0.5]);
+    for &(layer, color) in layers {
+        let own = NAME_AT + letter * layer.name.len() as f64;
+        if at[0] > MARGIN && at[0] + own > width - MARGIN * 0.5 {
+            at = [MARGIN, at[1] + ROW];
+        }
+        entries.push(LegendEntry { layer, color, at });
+        at[0] += own + GAP;
+    }
+    let height = if entries.is_empty() { 0.0 } else { at[1] + ROW };
+    (entries, height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impinge::debug_render::Drawn;
+
+    #[test]
+    fn entries_are_side_by_side_while_there_is_room() {
+        let color = Color::rgb(1, 2, 3);
+        let layers =
+            [Drawn::Object, Drawn::Query, Drawn::QueryHit].map(|what| (Layer::of(what), color));
+        let (wide, height) = legend(&layers, 500.0, 7.0);
+        // "objects" and "queries" have seven letters each.
+        let x: Vec<_> = wide.iter().map(|entry| entry.at[0]).collect();
+        assert_eq!(x, [16.0, 101.0, 186.0], "a line, a name and a gap each");
+        assert_eq!(height, 30.0, "one row");
+        let (narrow, height) = legend(&layers, 190.0, 7.0);
+        assert_eq!(narrow[2].at, [16.0, 30.0], "the third begins a row");
+        assert_eq!(height, 50.0, "two rows");
+        assert_eq!(legend(&[], 190.0, 7.0), (Vec::new(), 0.0), "nothing was drawn");
+    }
+}
