@@ -1,0 +1,72 @@
+//! With the feature `page`: builds the engine of the page as a WebAssembly module and compresses it.
+
+#[cfg(feature = "page")]
+mod engine {
+    use std::io::Write;
+    use std::path::{Path, PathBuf};
+    use std::process::Command;
+    use std::{env, fs};
+
+    /// The path of a module that is built already, taken instead of building one.
+    const READY: &str = "IMPINGE_PAGE_MODULE";
+
+    const TARGET: &str = "wasm32-unknown-unknown";
+
+    /// Writes `page.wasm.gz` into the folder of what is built.
+    pub(super) fn embed() -> Result<(), String> {
+        println!("cargo::rerun-if-env-changed={READY}");
+        let folder = variable("OUT_DIR")?;
+        let module = match env::var_os(READY) {
+            Some(path) => PathBuf::from(path),
+            None => build(&folder.join("engine"))?,
+        };
+        println!("cargo::rerun-if-changed={}", module.display());
+        let bytes = fs::read(&module).map_err(|error| format!("{}: {error}", module.display()))?;
+        let file = fs::File::create(folder.join("page.wasm.gz"));
+        let level = flate2::Compression::best();
+        let mut encoder = flate2::write::GzEncoder::new(file.map_err(told)?, level);
+        encoder.write_all(&bytes).and_then(|()| encoder.finish()).map(drop).map_err(told)
+    }
+
+    fn told(error: impl std::fmt::Display) -> String {
+        error.to_string()
+    }
+
+    fn variable(name: &str) -> Result<PathBuf, String> {
+        env::var_os(name).map(PathBuf::from).ok_or_else(|| format!("cargo does not set {name}"))
+    }
+
+    /// Builds the engine in a folder of its own: the outer cargo holds the lock of the usual one.
+    fn build(folder: &Path) -> Result<PathBuf, String> {
+        let crates = variable("CARGO_MANIFEST_DIR")?.join("..");
+        for name in ["impinge", "impinge-page", "impinge-record", "impinge-samples"] {
+            println!("cargo::rerun-if-changed={}", crates.join(name).join("src").display());
+        }
+        let mut cargo = Command::new(variable("CARGO")?);
+        cargo.current_dir(&crates);
+        cargo.args(["build", "--profile", "page", "-p", "impinge-page", "--lib"]);
+        cargo.args(["--target", TARGET, "--target-dir"]).arg(folder);
+        // What the outer build is for: its flags, linter and target are not those of the engine.
+        for name in
+            ["CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER", "CLIPPY_ARGS"]
+        {
+            cargo.env_remove(name);
+        }
+        cargo.env("RUSTFLAGS", "-C target-feature=+simd128");
+        let status = cargo.status().map_err(told)?;
+        if !status.success() {
+            return Err(format!(
+                "the engine of the page was not built. It needs the target {TARGET} \
+                 (rustup target add {TARGET}). With {READY}=FILE a module that is built already is taken."
+            ));
+        }
+        Ok(folder.join(TARGET).join("page").join("impinge_page.wasm"))
+    }
+}
+
+fn main() -> Result<(), String> {
+    println!("cargo::rerun-if-changed=build.rs");
+    #[cfg(feature = "page")]
+    engine::embed()?;
+    Ok(())
+}

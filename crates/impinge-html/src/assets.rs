@@ -1,0 +1,52 @@
+//! What a page consists of.
+
+use std::fs;
+use std::path::Path;
+
+use crate::error::HtmlError;
+
+/// The parts of a page, but for the recording.
+#[derive(Clone, Debug)]
+pub struct Assets {
+    /// The HTML with the placeholders `{{TITLE}}`, `{{STYLE}}`, `{{SCENE}}`, `{{RECORDING}}`, `{{WASM}}` and
+    /// `{{SCRIPT}}`, each once.
+    pub template: String,
+    /// The style sheet.
+    pub style: String,
+    /// The program of the page, bundled.
+    pub script: String,
+    /// The engine: a WebAssembly module, compressed by gzip.
+    pub module: Vec<u8>,
+}
+
+impl Assets {
+    /// Reads `page.html`, `page.css`, `page.js` and `page.wasm.gz` in a folder.
+    ///
+    /// # Errors
+    /// If one of the files cannot be read, or a text is not UTF-8.
+    pub fn from_folder(folder: impl AsRef<Path>) -> Result<Self, HtmlError> {
+        let text = |name: &str| {
+            let path = folder.as_ref().join(name);
+            fs::read_to_string(&path).map_err(HtmlError::file(&path))
+        };
+        let module = folder.as_ref().join("page.wasm.gz");
+        Ok(Self {
+            template: text("page.html")?,
+            style: text("page.css")?,
+            script: text("page.js")?,
+            module: fs::read(&module).map_err(HtmlError::file(&module))?,
+        })
+    }
+
+    /// The parts that this program was built with.
+    #[cfg(feature = "page")]
+    #[must_use]
+    pub fn embedded() -> Self {
+        Self {
+            template: include_str!("../../impinge-page/web/page.html").to_owned(),
+            style: include_str!("../../impinge-page/web/page.css").to_owned(),
+            script: include_str!("../../impinge-page/web/dist/page.js").to_owned(),
+            module: include_bytes!(concat!(env!("OUT_DIR"), "/page.wasm.gz")).to_vec(),
+        }
+    }
+}

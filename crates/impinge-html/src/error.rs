@@ -1,0 +1,71 @@
+//! Why there is no page.
+
+use core::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use impinge_record::ReadError;
+
+/// Why a page cannot be made or served.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum HtmlError {
+    /// The bytes are not a recording that can be packed.
+    Recording(ReadError),
+    /// The template does not have this placeholder just once.
+    Placeholder {
+        /// The placeholder.
+        name: &'static str,
+        /// How often it is there.
+        count: usize,
+    },
+    /// A file cannot be read or written.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// No connections can be taken on this port of the loopback interface: most likely another program has it.
+    Port {
+        /// The port.
+        port: u16,
+        /// Why.
+        error: io::Error,
+    },
+}
+
+impl HtmlError {
+    pub(crate) fn file(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |error| Self::File { path: path.to_owned(), error }
+    }
+}
+
+impl From<ReadError> for HtmlError {
+    fn from(error: ReadError) -> Self {
+        Self::Recording(error)
+    }
+}
+
+impl fmt::Display for HtmlError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Recording(error) => write!(f, "the recording cannot be packed: {error}"),
+            Self::Placeholder { name, count } => {
+                write!(f, "the template has {{{{{name}}}}} {count} times instead of once")
+            }
+            Self::File { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::Port { port, error } => write!(f, "port {port} cannot be used: {error}"),
+        }
+    }
+}
+
+impl std::error::Error for HtmlError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Recording(error) => Some(error),
+            Self::File { error, .. } | Self::Port { error, .. } => Some(error),
+            Self::Placeholder { .. } => None,
+        }
+    }
+}

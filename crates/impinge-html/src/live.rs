@@ -1,0 +1,181 @@
+//! A page of a program that runs: a small server for browsers on this machine.
+
+use std::io::{self, Write};
+use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use serde_json::json;
+
+use crate::assets::Assets;
+use crate::error::HtmlError;
+use crate::log::SharedLog;
+use crate::page::Page;
+use crate::request::{self, Wish};
+
+/// So many connections are served at once.
+const MAX_CLIENTS: usize = 32;
+
+/// A client that takes or sends nothing for so long is given up.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// So long a server that ends waits for clients to take what is left.
+const FAREWELL: Duration = Duration::from_secs(1);
+
+/// A server that shows the recording of a running program in a browser on the same machine.
+///
+/// [`Self::send`] takes what [`Recorder::take_bytes`](impinge_record::Recorder::take_bytes) gives. The page follows the
+/// recording as it grows; one that is opened later gets all of it from the beginning, so the server keeps all
+/// bytes. Connections have threads of their own: a browser that is slow or gone does not hold up the program.
+///
+/// It listens on 127.0.0.1 alone, and answers only requests by the names `127.0.0.1` and `localhost`. Dropping it ends the
+/// streams; the pages keep what they have.
+///
+/// ```no_run
+/// # fn run(assets: impinge_html::Assets) -> Result<(), Box<dyn std::error::Error>> {
+/// use impinge_html::Live;
+/// use impinge_record::{Recorder, Registry};
+///
+/// let mut recorder = Recorder::<f32, 3, String>::new(0.02, Registry::new())?;
+/// let live = Live::start(&assets, "My world", 0)?;
+/// eprintln!("watch {}", live.url());
+/// for _ in 0..1000 {
+///     recorder.update();
+///     live.send(&recorder.take_bytes());
+/// }
+/// # Ok(()) }
+/// ```
+#[derive(Debug)]
+pub struct Live {
+    address: SocketAddr,
+    log: Arc<SharedLog>,
+    acceptor: Option<JoinHandle<()>>,
+}
+
+/// What a thread needs to answer a request.
+#[derive(Debug)]
+struct Server {
+    port: u16,
+    page: String,
+    log: Arc<SharedLog>,
+}
+
+impl Live {
+    /// Starts a server on a port; 0 takes one that is free. The recording has no bytes yet.
+    ///
+    /// # Errors
+    /// If the port is in use or not allowed, or the template lacks a placeholder or has one twice.
+    pub fn start(assets: &Assets, title: &str, port: u16) -> Result<Self, HtmlError> {
+        let scene = json!({"open": "live", "title": title, "log": "/log"});
+        let page = Page { title, scene, recording: &[] }.html(assets)?;
+        let refused = |error| HtmlError::Port { port, error };
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(refused)?;
+        let address = listener.local_addr().map_err(refused)?;
+        let log = Arc::new(SharedLog::default());
+        let server = Arc::new(Server { port: address.port(), page, log: Arc::clone(&log) });
+        let acceptor = thread::Builder::new().spawn(move || accept(&listener, &server));
+        Ok(Self { address, log, acceptor: Some(acceptor.map_err(refused)?) })
+    }
+
+    /// What a browser on this machine opens.
+    #[must_use]
+    pub fn url(&self) -> String {
+        format!("http://{}/", self.address)
+    }
+
+    /// Appends bytes to the recording and wakes up those who wait for them. Waits for nobody; costs a copy of the bytes.
+    pub fn send(&self, bytes: &[u8]) {
+        self.log.append(bytes);
+    }
+}
+
+/// Ends the streams. Clients that still read get a second for the rest.
+impl Drop for Live {
+    fn drop(&mut self) {
+        self.log.close();
+        // A connection wakes up the thread that waits for one.
+        let woken = TcpStream::connect_timeout(&self.address, FAREWELL).is_ok();
+        if let Some(acceptor) = self.acceptor.take().filter(|_| woken) {
+            // It ends without a panic, or there is nothing to clean up.
+            let _ended = acceptor.join();
+        }
+        self.log.wait_for_clients(FAREWELL);
+    }
+}
+
+/// Takes connections until the log is closed.
+fn accept(listener: &TcpListener, server: &Arc<Server>) {
+    for stream in listener.incoming() {
+        if server.log.is_closed() {
+            return;
+        }
+        let Ok(stream) = stream else {
+            // There are too many open files, or the client has gone: another one may do better.
+            thread::sleep(Duration::from_millis(10));
+            continue;
+        };
+        // Dropping the stream closes the connection.
+        if !server.log.enter(MAX_CLIENTS) {
+            continue;
+        }
+        let own = Arc::clone(server);
+        let spawned = thread::Builder::new().spawn(move || {
+            // An error is that of a client that has gone.
+            let _served = own.serve(stream);
+            own.log.leave();
+        });
+        if spawned.is_err() {
+            server.log.leave();
+        }
+    }
+}
+
+impl Server {
+    fn serve(&self, mut stream: TcpStream) -> io::Result<()> {
+        stream.set_read_timeout(Some(PATIENCE))?;
+        stream.set_write_timeout(Some(PATIENCE))?;
+        stream.set_nodelay(true)?;
+        match request::read(&mut stream, self.port)? {
+            Wish::Page => respond(&mut stream, "200 OK", self.page.as_bytes()),
+            Wish::Log => self.stream_log(&mut stream),
+            Wish::Refused(status) => respond(&mut stream, status, status.as_bytes()),
+        }
+    }
+
+    /// All bytes of the log in chunks, as they come.
+    fn stream_log(&self, stream: &mut TcpStream) -> io::Result<()> {
+        let kind = "Content-Type: application/octet-stream\r\nTransfer-Encoding: chunked\r\n";
+        stream.write_all(head("200 OK", kind).as_bytes())?;
+        let mut offset = 0;
+        loop {
+            let bytes = self.log.wait_from(offset);
+            let mut chunk = format!("{:x}\r\n", bytes.len()).into_bytes();
+            chunk.extend(&bytes);
+            chunk.extend(b"\r\n");
+            stream.write_all(&chunk)?;
+            offset += bytes.len();
+            if bytes.is_empty() {
+                return stream.flush();
+            }
+        }
+    }
+}
+
+/// The head of an answer. Nothing is kept by the browser, and no other site may use it.
+fn head(status: &str, fields: &str) -> String {
+    format!(
+        "HTTP/1.1 {status}\r\n{fields}Cache-Control: no-store\r\nConnection: close\r\n\
+         Cross-Origin-Resource-Policy: same-origin\r\nX-Content-Type-Options: nosniff\r\n\r\n"
+    )
+}
+
+fn respond(stream: &mut TcpStream, status: &str, body: &[u8]) -> io::Result<()> {
+    let kind = if status == "200 OK" { "html" } else { "plain" };
+    let length = body.len();
+    let fields =
+        format!("Content-Type: text/{kind}; charset=utf-8\r\nContent-Length: {length}\r\n");
+    stream.write_all(head(status, &fields).as_bytes())?;
+    stream.write_all(body)?;
+    stream.flush()
+}

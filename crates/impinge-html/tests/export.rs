@@ -1,0 +1,122 @@
+//! The file has all parts, and the recording comes out of it as it went in.
+
+use std::fs;
+use std::path::PathBuf;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use impinge_html::{Assets, HtmlError, export, gallery};
+use impinge_record::{Recorder, Registry, pack, unpack, validate};
+
+const TEMPLATE: &str = "<title>{{TITLE}}</title><style>{{STYLE}}</style>\
+    <script id=scene>{{SCENE}}</script><script id=recording>{{RECORDING}}</script>\
+    <script id=wasm>{{WASM}}</script><script id=program>{{SCRIPT}}</script>";
+
+/// A folder that is removed in the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("impinge-html-{name}-{}", std::process::id()));
+        fs::create_dir_all(&path).expect("a temporary folder");
+        Self(path)
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        fs::write(self.0.join(name), bytes).expect("a temporary file");
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _gone = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn recording() -> Vec<u8> {
+    let recorder = Recorder::<f64, 2, ()>::new(0.02, Registry::new());
+    let mut recorder = recorder.expect("a usable margin");
+    (0..5).for_each(|_| recorder.update());
+    recorder.finish().bytes
+}
+
+/// The text between the tag with an id and the next closing tag.
+fn part<'a>(html: &'a str, id: &str) -> &'a str {
+    let (_, rest) = html.split_once(&format!("<script id={id}>")).expect("the part is there");
+    rest.split_once("</script>").expect("the part ends").0
+}
+
+#[test]
+fn all_parts_are_in_the_file() {
+    let folder = Folder::new("export");
+    folder.write("page.html", TEMPLATE);
+    folder.write("page.css", "body { content: '{{SCRIPT}}</style>' }");
+    folder.write("page.js", "run('</script><!-- {{TITLE}}')");
+    folder.write("page.wasm.gz", [0x1f, 0x8b, 0xff]);
+    let assets = Assets::from_folder(&folder.0).expect("four files");
+    let html = export(&assets, &recording(), "a </title><b> & \"c\"").expect("a recording");
+
+    assert!(
+        html.starts_with("<title>a &lt;/title&gt;&lt;b&gt; &amp; &quot;c&quot;</title>"),
+        "{html}"
+    );
+    assert!(html.contains("<style>body { content: '{{SCRIPT}}<\\/style>' }</style>"), "{html}");
+    assert_eq!(part(&html, "program"), "run('<\\/script><\\!-- {{TITLE}}')");
+    let scene: serde_json::Value = serde_json::from_str(part(&html, "scene")).expect("JSON");
+    assert_eq!(
+        (&scene["open"], &scene["title"]),
+        (&"recording".into(), &"a </title><b> & \"c\"".into())
+    );
+    assert!(!part(&html, "scene").contains('<'), "nothing ends the script");
+    assert_eq!(STANDARD.decode(part(&html, "wasm")).expect("base64"), [0x1f, 0x8b, 0xff]);
+    let packed = STANDARD.decode(part(&html, "recording")).expect("base64");
+    assert_eq!(packed, pack(&recording()).expect("a recording"));
+    let unpacked = unpack(&packed).expect("it was packed");
+    assert_eq!(validate(&unpacked, &Registry::<f64, 2, ()>::new()), Ok(None));
+    let again = export(&assets, &packed, "a </title><b> & \"c\"").expect("a packed recording");
+    assert!(again == html, "what is packed is not packed again");
+}
+
+#[test]
+fn the_gallery_is_a_folder() {
+    let folder = Folder::new("gallery");
+    let assets = Assets {
+        template: TEMPLATE.to_owned(),
+        style: String::new(),
+        script: String::new(),
+        module: vec![7],
+    };
+    gallery(&assets, folder.0.join("deep/site")).expect("the folder is made");
+    let html = fs::read_to_string(folder.0.join("deep/site/index.html")).expect("it is written");
+    let scene: serde_json::Value = serde_json::from_str(part(&html, "scene")).expect("JSON");
+    assert_eq!(scene["open"], "samples");
+    assert_eq!(part(&html, "recording"), "");
+}
+
+#[test]
+fn errors_say_what_is_wrong() {
+    let folder = Folder::new("errors");
+    folder.write("page.html", TEMPLATE);
+    let missing = Assets::from_folder(&folder.0).expect_err("three files are missing");
+    assert!(missing.to_string().contains("page.css"), "{missing}");
+    let with = |template: String| Assets {
+        template,
+        style: String::new(),
+        script: String::new(),
+        module: Vec::new(),
+    };
+    for (template, count) in
+        [(TEMPLATE.replace("{{WASM}}", ""), 0), (TEMPLATE.replace("{{SCRIPT}}", "{{WASM}}"), 2)]
+    {
+        let error = export(&with(template), &recording(), "").expect_err("a broken template");
+        let HtmlError::Placeholder { name: "WASM", count: found } = error else {
+            panic!("{error}")
+        };
+        assert_eq!(found, count);
+    }
+    let error = export(&with(TEMPLATE.to_owned()), b"text", "").expect_err("no recording");
+    assert!(matches!(error, HtmlError::Recording(_)), "{error}");
+    folder.write("file", "");
+    let error = gallery(&with(TEMPLATE.to_owned()), folder.0.join("file")).expect_err("a file");
+    assert!(error.to_string().contains("file"), "{error}");
+}

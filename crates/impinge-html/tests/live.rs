@@ -1,0 +1,164 @@
+//! The server by raw connections, as a browser would, and as it would not.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+use impinge_html::{Assets, HtmlError, Live};
+
+fn started() -> Live {
+    let assets = Assets {
+        template: "{{TITLE}}|{{STYLE}}|{{SCENE}}|{{RECORDING}}|{{WASM}}|{{SCRIPT}}".to_owned(),
+        style: String::new(),
+        script: "run()".to_owned(),
+        module: Vec::new(),
+    };
+    Live::start(&assets, "a <world>", 0).expect("some port is free")
+}
+
+/// The name and port of a server.
+fn host(live: &Live) -> String {
+    let url = live.url();
+    url.trim_start_matches("http://").trim_end_matches('/').to_owned()
+}
+
+fn connect(live: &Live) -> BufReader<TcpStream> {
+    let stream = TcpStream::connect(host(live)).expect("it listens");
+    stream.set_read_timeout(Some(Duration::from_secs(20))).expect("a timeout");
+    BufReader::new(stream)
+}
+
+/// Asks for a path at a host; the connection after the head of the answer, and this head.
+fn ask(live: &Live, path: &str, host: &str) -> (BufReader<TcpStream>, String) {
+    let mut connection = connect(live);
+    let request = format!("GET {path} HTTP/1.1\r\nHost: {host}\r\n\r\n");
+    connection.get_mut().write_all(request.as_bytes()).expect("it reads");
+    let mut head = String::new();
+    while !head.ends_with("\r\n\r\n") {
+        assert!(connection.read_line(&mut head).expect("it answers") > 0, "it ends: {head}");
+    }
+    (connection, head)
+}
+
+/// The next chunk of a stream; empty at its end.
+fn chunk(connection: &mut BufReader<TcpStream>) -> Vec<u8> {
+    let mut length = String::new();
+    connection.read_line(&mut length).expect("a length");
+    let length = usize::from_str_radix(length.trim(), 16).expect("a hexadecimal number");
+    let mut bytes = vec![0; length + 2];
+    connection.read_exact(&mut bytes).expect("as many bytes");
+    assert!(bytes.ends_with(b"\r\n"), "a chunk ends");
+    bytes.truncate(length);
+    bytes
+}
+
+/// The next bytes of a stream, in however many chunks they come.
+fn bytes(connection: &mut BufReader<TcpStream>, count: usize) -> Vec<u8> {
+    let mut all = Vec::new();
+    while all.len() < count {
+        let more = chunk(connection);
+        assert!(!more.is_empty(), "the stream ended after {} bytes", all.len());
+        all.extend(more);
+    }
+    all
+}
+
+#[test]
+fn the_page() {
+    let live = started();
+    assert!(live.url().starts_with("http://127.0.0.1:"), "{}", live.url());
+    let (mut connection, head) = ask(&live, "/", &host(&live));
+    assert!(head.starts_with("HTTP/1.1 200 OK\r\n"), "{head}");
+    assert!(head.contains("\r\nContent-Type: text/html; charset=utf-8\r\n"), "{head}");
+    let mut page = String::new();
+    connection.read_to_string(&mut page).expect("the whole page");
+    assert!(head.contains(&format!("\r\nContent-Length: {}\r\n", page.len())), "{head}");
+    let parts: Vec<_> = page.split('|').collect();
+    let scene: serde_json::Value = serde_json::from_str(parts[2]).expect("JSON");
+    assert_eq!(scene, serde_json::json!({"open": "live", "title": "a <world>", "log": "/log"}));
+    assert_eq!((parts[0], parts[5]), ("a &lt;world&gt;", "run()"));
+}
+
+#[test]
+fn the_log_grows_and_late_clients_get_all_of_it() {
+    let live = started();
+    live.send(b"first");
+    let (mut early, head) = ask(&live, "/log", &host(&live));
+    assert!(head.contains("\r\nTransfer-Encoding: chunked\r\n"), "{head}");
+    assert_eq!(bytes(&mut early, 5), b"first");
+    live.send(b"");
+    live.send(b"second");
+    assert_eq!(bytes(&mut early, 6), b"second");
+    let (mut late, _) = ask(&live, "/log", &host(&live).replace("127.0.0.1", "localhost"));
+    assert_eq!(bytes(&mut late, 11), b"firstsecond");
+    let long: Vec<u8> = (0..200_000_u32).map(|i| i.to_le_bytes()[0]).collect();
+    live.send(&long);
+    for connection in [&mut early, &mut late] {
+        assert!(bytes(connection, long.len()) == long, "many chunks");
+    }
+    drop(live);
+    for mut connection in [early, late] {
+        assert_eq!(chunk(&mut connection), b"", "the stream ends");
+        assert_eq!(connection.read(&mut [0]).expect("it is closed"), 0);
+    }
+}
+
+#[test]
+fn other_names_and_paths_are_refused() {
+    let live = started();
+    live.send(b"secret");
+    let port = host(&live).replace("127.0.0.1", "");
+    for (path, host, status) in [
+        ("/log", format!("evil.example{port}"), "403"),
+        ("/", "127.0.0.1".to_owned(), "403"),
+        ("/log/..", host(&live), "404"),
+    ] {
+        let (mut connection, head) = ask(&live, path, &host);
+        assert!(head.starts_with(&format!("HTTP/1.1 {status} ")), "{host}{path}: {head}");
+        let mut rest = String::new();
+        connection.read_to_string(&mut rest).expect("it closes");
+        assert!(!rest.contains("secret"), "{rest}");
+    }
+    let mut connection = connect(&live);
+    let long = vec![b'a'; 40_000];
+    // The server may have closed the connection before all of it is written.
+    let _written = connection.get_mut().write_all(&[b"GET /", &long[..]].concat());
+    let mut answer = Vec::new();
+    let _closed = connection.read_to_end(&mut answer);
+    assert!(answer.is_empty() || answer.starts_with(b"HTTP/1.1 431 "), "no endless heads");
+}
+
+#[test]
+fn a_client_that_is_slow_or_gone_holds_nobody_up() {
+    let live = started();
+    let silent = connect(&live);
+    let (stuck, _) = ask(&live, "/log", &host(&live));
+    let (gone, _) = ask(&live, "/log", &host(&live));
+    drop(gone);
+    let start = Instant::now();
+    let piece = vec![1; 1 << 20];
+    // More than the buffers of a connection take: nobody reads.
+    (0..64).for_each(|_| live.send(&piece));
+    assert!(start.elapsed() < Duration::from_secs(4), "sending waits for nobody");
+    let (mut quick, _) = ask(&live, "/log", &host(&live));
+    assert_eq!(bytes(&mut quick, 64 << 20).len(), 64 << 20);
+    let start = Instant::now();
+    drop(live);
+    assert!(start.elapsed() < Duration::from_secs(4), "nor does the end");
+    drop((silent, stuck));
+}
+
+#[test]
+fn a_port_in_use_is_an_error() {
+    let live = started();
+    let port = host(&live).rsplit_once(':').expect("a port").1.parse().expect("a number");
+    let assets = Assets {
+        template: "{{TITLE}}{{STYLE}}{{SCENE}}{{RECORDING}}{{WASM}}{{SCRIPT}}".to_owned(),
+        style: String::new(),
+        script: String::new(),
+        module: Vec::new(),
+    };
+    let error = Live::start(&assets, "", port).expect_err("it is in use");
+    assert!(matches!(error, HtmlError::Port { port: other, .. } if other == port), "{error}");
+    assert!(error.to_string().contains(&port.to_string()), "{error}");
+}

@@ -1,0 +1,117 @@
+//! Questions of the page about everything in a world.
+
+use core::cmp::Reverse;
+
+use impinge::bounding_volume::Ray;
+use impinge::math::{Real, Space};
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::query::ClosestPoints;
+use impinge::shape::FeatureId;
+use impinge::world::{CollisionObject, CollisionWorld, QueryFilter};
+
+use crate::answer::{NearObject, NearestAnswer, Picked, RayAnswer, RayHit};
+use crate::request::{NearestRequest, PickRequest, RayRequest};
+use crate::space::{coordinates, point, vector};
+
+/// Objects that are asked for proximity alone: they are drawn transparent.
+pub(crate) fn is_sensor<N: Space<D>, const D: usize, T>(object: &CollisionObject<N, D, T>) -> bool {
+    matches!(object.query_type(), GeometricQueryType::Proximity(_))
+}
+
+/// The first object of a ray; one behind transparent ones is preferred to these. A ray that begins inside an object
+/// sees its far side, as the screen does.
+pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    at: &PickRequest,
+) -> Picked {
+    let ray = Ray::new(point(at.from), vector(at.direction));
+    let is_opaque = |object: &CollisionObject<N, D, T>| !is_sensor(object);
+    let filters = [QueryFilter::new().predicate(&is_opaque), QueryFilter::new()];
+    let mut hits =
+        filters.iter().filter_map(|filter| world.first_ray_hit(&ray, N::INFINITY, false, filter));
+    hits.next().map_or_else(Picked::default, |(object, hit)| Picked {
+        object: Some(object.handle().uid()),
+        point: coordinates(&ray.point_at(hit.toi).coords),
+        normal: coordinates(&hit.normal),
+        time: hit.toi.as_f64(),
+    })
+}
+
+/// The object that holds a point, else the nearest within reach. Of several that hold it transparent ones come last,
+/// then endless ones, then those that are drawn earlier.
+pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    at: &PickRequest,
+) -> Picked {
+    let from = point::<N, D>(at.from);
+    let near = world.nearest_to_point(&from, usize::MAX, N::lit(at.reach), &QueryFilter::new());
+    let best = near.into_iter().min_by(|one, two| {
+        let rank = |object: &CollisionObject<N, D, T>| {
+            let is_endless = !object.shape().local_aabb().is_bounded();
+            (is_sensor(object), is_endless, Reverse(object.handle()))
+        };
+        let order = one.distance.as_f64().total_cmp(&two.distance.as_f64());
+        order.then_with(|| rank(one.object).cmp(&rank(two.object)))
+    });
+    best.map_or_else(Picked::default, |near| {
+        let at = nearest_point(&near.points).unwrap_or(at.from);
+        Picked { object: Some(near.object.handle().uid()), point: at, ..Picked::default() }
+    })
+}
+
+/// The point on the second of two that are apart.
+fn nearest_point<N: Real, const D: usize>(points: &ClosestPoints<N, D>) -> Option<[f64; 3]> {
+    match points {
+        ClosestPoints::WithinMargin(_, on_object) => Some(coordinates(&on_object.coords)),
+        _ => None,
+    }
+}
+
+/// All objects that a ray hits.
+pub(crate) fn ray<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    asked: &RayRequest,
+) -> RayAnswer {
+    let ray = Ray::new(point(asked.from), vector(asked.direction));
+    let longest = asked.longest.map_or(N::INFINITY, N::lit);
+    let hits = world.ray_hits(&ray, longest, true, &QueryFilter::new());
+    let hits = hits.into_iter().map(|(object, hit)| RayHit {
+        object: object.handle().uid(),
+        point: coordinates(&ray.point_at(hit.toi).coords),
+        normal: coordinates(&hit.normal),
+        time: hit.toi.as_f64(),
+        feature: feature_text(hit.feature, hit.part, &**object.shape()),
+    });
+    RayAnswer { hits: hits.collect() }
+}
+
+/// The objects nearest to a point.
+pub(crate) fn nearest<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    asked: &NearestRequest,
+) -> NearestAnswer {
+    let from = point::<N, D>(asked.point);
+    let count = usize::try_from(asked.count).unwrap_or(usize::MAX);
+    let near = world.nearest_to_point(&from, count, N::INFINITY, &QueryFilter::new());
+    let nearest = near.into_iter().map(|near| NearObject {
+        object: near.object.handle().uid(),
+        distance: near.distance.as_f64(),
+        point: nearest_point(&near.points).unwrap_or(asked.point),
+    });
+    NearestAnswer { nearest: nearest.collect() }
+}
+
+/// A feature in words, with the part of a composite that it is of.
+pub(crate) fn feature_text<N: Real, const D: usize>(
+    feature: FeatureId,
+    part: u32,
+    shape: &dyn impinge::shape::Shape<N, D>,
+) -> String {
+    let text = match feature {
+        FeatureId::Vertex(index) => format!("vertex {index}"),
+        FeatureId::Edge(index) => format!("edge {index}"),
+        FeatureId::Face(index) => format!("face {index}"),
+    };
+    let is_composite = shape.geometry().as_composite().is_some();
+    if is_composite { format!("{text} of part {part}") } else { text }
+}

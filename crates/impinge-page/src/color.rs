@@ -1,0 +1,147 @@
+//! Colours: a restrained palette by the kind of a shape, legible on a light and on a dark page.
+
+use impinge::debug_render::{Color, DebugOptions, Drawn, MeshOptions, Style};
+use impinge::math::Real;
+use impinge::shape::ShapeKind;
+
+/// Bits of an instance's flags.
+pub(crate) const TOUCHES: u32 = 1;
+pub(crate) const SENSOR: u32 = 2;
+pub(crate) const SELECTED: u32 = 4;
+pub(crate) const ASKED: u32 = 8;
+
+/// What is selected.
+const SELECTION: Color = Color::rgb(242, 153, 46);
+/// What is asked for proximity alone.
+const SENSORS: Color = Color::rgb(150, 120, 200).with_alpha(88);
+/// Towards this colour go objects that touch something.
+const WARM: Color = Color::rgb(205, 104, 82);
+/// How far, of 256.
+const WARMTH: u16 = 56;
+
+/// The colour of a kind of shape.
+const fn of_kind(kind: ShapeKind) -> Color {
+    match kind {
+        ShapeKind::Ball | ShapeKind::Ellipsoid => Color::rgb(98, 146, 184),
+        ShapeKind::Capsule | ShapeKind::TaperedCapsule => Color::rgb(94, 158, 146),
+        ShapeKind::Cuboid => Color::rgb(128, 146, 168),
+        ShapeKind::Polytope | ShapeKind::Rounded => Color::rgb(142, 138, 178),
+        ShapeKind::Cylinder | ShapeKind::Cone => Color::rgb(166, 150, 116),
+        ShapeKind::Segment | ShapeKind::Triangle => Color::rgb(120, 132, 146),
+        ShapeKind::SupportMap => Color::rgb(170, 134, 152),
+        _ => Color::rgb(158, 162, 158),
+    }
+}
+
+/// What the colour of an object depends on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Look {
+    pub(crate) kind: ShapeKind,
+    /// Neighbours in a pile differ a little by it.
+    pub(crate) object: usize,
+    /// Bits of flags.
+    pub(crate) flags: u32,
+}
+
+impl Look {
+    /// The colour as a word.
+    pub(crate) fn color(&self) -> u32 {
+        let base = if self.flags & SENSOR == 0 { self.shaded() } else { SENSORS };
+        if self.flags & SELECTED != 0 {
+            return word(SELECTION.with_alpha(base.alpha.max(160)));
+        }
+        let is_touching = self.flags & TOUCHES != 0;
+        word(if is_touching { mixed(base, WARM, WARMTH) } else { base })
+    }
+
+    /// One of four tones of the kind's colour.
+    fn shaded(&self) -> Color {
+        let base = of_kind(self.kind);
+        // The order 0, 2, 1, 3: neighbours differ more.
+        let tone = [0, 32, 16, 48][self.object % 4];
+        mixed(base, Color::rgb(225, 228, 230), tone)
+    }
+}
+
+/// Red, green, blue, alpha in this order in memory.
+pub(crate) const fn word(color: Color) -> u32 {
+    let [red, green, blue] = color.rgb;
+    u32::from_le_bytes([red, green, blue, color.alpha])
+}
+
+/// A colour `part` of 256 of the way to another; its alpha stays.
+fn mixed(from: Color, to: Color, part: u16) -> Color {
+    let mut rgb = from.rgb;
+    for (byte, goal) in rgb.iter_mut().zip(to.rgb) {
+        let sum = u16::from(*byte) * (256 - part) + u16::from(goal) * part;
+        *byte = sum.to_be_bytes()[0];
+    }
+    Color { rgb, ..from }
+}
+
+/// The layers of a frame in order: names, and what is drawn in them.
+pub(crate) const LAYERS: [(&str, Drawn); 10] = [
+    ("object", Drawn::Object),
+    ("tight box", Drawn::TightBox),
+    ("loosened box", Drawn::LoosenedBox),
+    ("tree", Drawn::TreeNode),
+    ("contact", Drawn::ContactPoint),
+    ("normal", Drawn::ContactNormal),
+    ("manifold", Drawn::Manifold),
+    ("proximity", Drawn::Proximity),
+    ("query", Drawn::Query),
+    ("query hit", Drawn::QueryHit),
+];
+
+/// The number of the layer of something drawn.
+pub(crate) fn layer_of(what: Drawn) -> usize {
+    LAYERS.iter().position(|(_, drawn)| *drawn == what).unwrap_or(0)
+}
+
+/// The styles of the layers that are shown, for objects of about this size. Objects themselves are instances and have
+/// none; queries have theirs whatever is shown, since samples read them.
+pub(crate) fn options<N: Real>(
+    mesh: MeshOptions<N>,
+    size: N,
+    is_shown: &[bool; LAYERS.len()],
+) -> DebugOptions<N> {
+    let style = |what, color, factor: f64| {
+        let style = Style { color, size: size * N::lit(factor) };
+        is_shown[layer_of(what)].then_some(style)
+    };
+    let always = |color, factor: f64| Some(Style { color, size: size * N::lit(factor) });
+    DebugOptions {
+        object: None,
+        tight_box: style(Drawn::TightBox, Color::rgb(96, 160, 104), 0.1),
+        loosened_box: style(Drawn::LoosenedBox, Color::rgb(128, 150, 112), 0.1),
+        tree_node: style(Drawn::TreeNode, Color::rgb(126, 132, 186), 0.1),
+        contact_point: style(Drawn::ContactPoint, Color::rgb(214, 72, 56), 0.1),
+        contact_normal: style(Drawn::ContactNormal, Color::rgb(222, 146, 42), 0.4),
+        manifold: style(Drawn::Manifold, Color::rgb(228, 110, 64).with_alpha(110), 0.1),
+        proximity: style(Drawn::Proximity, Color::rgb(146, 96, 200), 0.1),
+        query: always(Color::rgb(46, 134, 190), 0.1),
+        query_hit: always(Color::rgb(200, 62, 152), 0.4),
+        mesh,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layers_are_found_by_what_they_are_of() {
+        for (number, (_, what)) in LAYERS.iter().enumerate() {
+            assert_eq!(layer_of(*what), number, "{what:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_mixed_lies_between() {
+        let (black, white) = (Color::rgb(0, 0, 0), Color::rgb(255, 255, 255));
+        assert_eq!(mixed(black, white, 0), black, "none of it");
+        assert_eq!(mixed(black, white, 128), Color::rgb(127, 127, 127), "the half");
+        let selected = Look { kind: ShapeKind::Ball, object: 0, flags: SELECTED | SENSOR };
+        assert_eq!(selected.color().to_le_bytes(), [242, 153, 46, 160], "and half transparent");
+    }
+}

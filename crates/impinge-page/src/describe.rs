@@ -1,0 +1,139 @@
+//! All about one object, and how a world is at a step.
+
+use impinge::bounding_volume::Aabb;
+use impinge::math::{Real, Space, max};
+use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent, GeometricQueryType};
+use impinge::world::{CollisionObject, CollisionWorld};
+use impinge_record::RecordData;
+
+use crate::answer::{Ends, ObjectAnswer, ShownPair, ShownQuery, Status, StatusEvent};
+use crate::explain::proximity_text;
+use crate::groups;
+use crate::shape_text::shape_text;
+use crate::space::{Viewed, coordinates};
+
+/// So many events a status has at most.
+const MAX_EVENTS: usize = 200;
+
+/// So many bytes of data that is no text are shown.
+const MAX_BYTES: usize = 16;
+
+/// The object of a number. Costs a walk over all objects.
+pub(crate) fn object_of<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    number: u32,
+) -> Option<&CollisionObject<N, D, T>> {
+    world.collision_objects().find(|object| object.handle().uid() == number as usize)
+}
+
+/// All about an object.
+pub(crate) fn object_answer<N: Viewed<D>, const D: usize, T: RecordData>(
+    world: &CollisionWorld<N, D, T>,
+    object: &CollisionObject<N, D, T>,
+) -> ObjectAnswer {
+    let (handle, position) = (object.handle(), object.position());
+    ObjectAnswer {
+        object: handle.uid(),
+        shape: shape_text(&**object.shape()),
+        label: label(&object.data().to_bytes()),
+        translation: coordinates(&N::translation(position)),
+        rotation: N::quaternion(position),
+        groups: groups::shown(object.collision_groups()),
+        query: shown_query(object.query_type()),
+        tight_box: ends(&object.shape().aabb(&N::pose(position))),
+        loosened_box: world.loosened_aabb(handle).as_ref().and_then(ends),
+        pairs: pairs(world, handle),
+    }
+}
+
+/// The corners of a box; `None` if it has no end.
+fn ends<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Ends {
+    let corners = [aabb.mins(), aabb.maxs()].map(|point| coordinates(&point.coords));
+    aabb.is_bounded().then_some(corners)
+}
+
+/// The data of an object: as text if it is some, else its bytes in hexadecimal.
+fn label(bytes: &[u8]) -> String {
+    let text = str::from_utf8(bytes).ok();
+    if let Some(text) = text.filter(|text| !text.chars().any(char::is_control)) {
+        return text.to_owned();
+    }
+    let shown = bytes.iter().take(MAX_BYTES).map(|byte| format!("{byte:02x}"));
+    let rest = if bytes.len() > MAX_BYTES { "…" } else { "" };
+    format!("{}{rest}", shown.collect::<String>())
+}
+
+fn shown_query<N: Real>(query: GeometricQueryType<N>) -> ShownQuery {
+    match query {
+        GeometricQueryType::Contacts(linear, angular) => {
+            ShownQuery::Contacts { linear: linear.as_f64(), angular: angular.as_f64() }
+        }
+        GeometricQueryType::Proximity(margin) => ShownQuery::Proximity { margin: margin.as_f64() },
+    }
+}
+
+/// The pairs of an object that touch or are near, in order of the other objects.
+fn pairs<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    handle: CollisionObjectHandle,
+) -> Vec<ShownPair> {
+    let mut partners: Vec<_> =
+        world.contacts_with(handle).map(|(other, _)| other.handle()).collect();
+    partners.dedup();
+    let contacts = partners.into_iter().filter_map(|other| {
+        let pair = world.contact_pair(handle, other)?;
+        let deepest = pair.views().map(|view| view.deepest_contact().contact.depth).reduce(max)?;
+        let (object, contacts, depth) = (other.uid(), pair.num_contacts(), deepest.as_f64());
+        Some((other, ShownPair::Contacts { object, contacts, depth, touching: contacts > 0 }))
+    });
+    let near = world.proximities_with(handle).map(|(other, proximity)| {
+        let (object, status) = (other.handle().uid(), proximity_text(proximity));
+        (other.handle(), ShownPair::Proximity { object, status })
+    });
+    let mut pairs: Vec<_> = contacts.chain(near).collect();
+    pairs.sort_by_key(|(other, _)| *other);
+    pairs.into_iter().map(|(_, pair)| pair).collect()
+}
+
+/// How a world is; what recordings and samples know beside it is empty.
+pub(crate) fn status<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    step: usize,
+) -> Status {
+    let contacts = world.contact_events().iter().map(|event| {
+        let (a, b) = event.handles();
+        let started = matches!(event, ContactEvent::Started(..));
+        StatusEvent::Contact { started, a: a.uid(), b: b.uid() }
+    });
+    let proximities = world.proximity_events().iter().map(|event| StatusEvent::Proximity {
+        a: event.collider1.uid(),
+        b: event.collider2.uid(),
+        before: proximity_text(event.prev_status),
+        after: proximity_text(event.new_status),
+    });
+    Status {
+        step,
+        objects: world.len(),
+        pairs: world.contact_pairs().count() + world.proximity_pairs().count(),
+        contacts: world.contact_views().map(|(_, _, view)| view.len()).sum(),
+        diverged: None,
+        events: contacts.chain(proximities).take(MAX_EVENTS).collect(),
+        event_count: world.contact_events().len() + world.proximity_events().len(),
+        controls: Vec::new(),
+        readouts: Vec::new(),
+        milliseconds: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_text_where_they_can_be() {
+        assert_eq!(label("Kiste 3 ☃".as_bytes()), "Kiste 3 ☃");
+        assert_eq!(label(&[3, 0, 0, 0]), "03000000");
+        assert_eq!(label(&[0xff; 20]), format!("{}…", "ff".repeat(16)));
+        assert_eq!(label(&[]), "");
+    }
+}

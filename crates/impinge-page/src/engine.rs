@@ -1,0 +1,233 @@
+//! The engine: messages to a stage, answers back.
+
+use core::fmt;
+
+use impinge_record::{Header, Problem, ReadError, Registry, is_packed, unpack};
+use impinge_samples::{ControlValue, Make, entries};
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::answer::{Gallery, SampleTitle};
+use crate::request::{Opening, Request};
+use crate::{EngineError, Recorded, Sampled, Shown, Stage, message, parts};
+
+/// What is shown, by its scalar and dimension one of some types.
+type Opened = Box<dyn Stage>;
+
+/// Answers the messages of `PROTOCOL.md`, and holds one stage.
+///
+/// ```
+/// use impinge_page::{Engine, message, parts};
+///
+/// let mut engine = Engine::new();
+/// let mut ask = |text: &str| {
+///     let answer = engine.call(&message(text, &[]));
+///     let (text, _) = parts(&answer).expect("an answer has the layout of a message");
+///     serde_json::from_slice::<serde_json::Value>(text).expect("its text is JSON")
+/// };
+/// let info = ask(r#"{"do": "open", "kind": "sample", "name": "stack3"}"#);
+/// assert_eq!(info["dimension"], 3);
+/// assert_eq!(ask(r#"{"do": "advance", "steps": 5}"#)["step"], 5);
+/// assert_eq!(ask(r#"{"do": "object", "object": 12345}"#)["error"], "there is no object 12345");
+/// ```
+#[derive(Default)]
+pub struct Engine {
+    stage: Option<Opened>,
+    /// The bytes of a stream of which the header is not yet whole.
+    begun: Option<Vec<u8>>,
+}
+
+impl fmt::Debug for Engine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Engine").field("is_open", &self.stage.is_some()).finish_non_exhaustive()
+    }
+}
+
+/// A JSON text and a payload.
+struct Reply {
+    text: String,
+    payload: Vec<u8>,
+}
+
+/// An answer without a payload.
+fn reply(answer: &impl Serialize) -> Result<Reply, EngineError> {
+    Ok(Reply { text: serde_json::to_string(answer)?, payload: Vec::new() })
+}
+
+/// The answer that says what is wrong.
+#[derive(Serialize)]
+struct Failure {
+    error: String,
+}
+
+impl Engine {
+    /// An engine with nothing open.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { stage: None, begun: None }
+    }
+
+    /// Shows a stage of the caller's: a recording whose shapes and pair filters are code of this program, say.
+    pub fn show(&mut self, stage: Box<dyn Stage>) {
+        (self.stage, self.begun) = (Some(stage), None);
+    }
+
+    /// Answers a message, whatever its bytes are; one that cannot be answered gives an answer with `error`.
+    pub fn call(&mut self, bytes: &[u8]) -> Vec<u8> {
+        let reply = self.answer(bytes).unwrap_or_else(|error| {
+            let text = serde_json::to_string(&Failure { error: error.to_string() });
+            Reply { text: text.unwrap_or_default(), payload: Vec::new() }
+        });
+        message(&reply.text, &reply.payload)
+    }
+
+    fn answer(&mut self, bytes: &[u8]) -> Result<Reply, EngineError> {
+        let (text, payload) = parts(bytes)?;
+        match serde_json::from_slice(text)? {
+            Request::Samples => reply(&gallery()),
+            Request::Open(opening) => {
+                self.open(&opening, payload)?;
+                self.info()
+            }
+            Request::Push => {
+                self.push(payload)?;
+                self.info()
+            }
+            request => self.ask(request),
+        }
+    }
+
+    fn stage(&mut self) -> Result<&mut Opened, EngineError> {
+        self.stage.as_mut().ok_or(EngineError::NothingOpen)
+    }
+
+    fn info(&mut self) -> Result<Reply, EngineError> {
+        reply(&self.stage()?.info())
+    }
+
+    /// Questions to the stage, and changes of it, which are answered by its status.
+    fn ask(&mut self, request: Request) -> Result<Reply, EngineError> {
+        let stage = self.stage()?;
+        match request {
+            Request::Frame(asked) => {
+                let frame = stage.frame(&asked)?;
+                return Ok(Reply { text: frame.text, payload: frame.payload });
+            }
+            Request::Object { object } => return reply(&stage.object(object)?),
+            Request::Pair { a, b } => return reply(&stage.pair(a, b)?),
+            Request::Pick(at) => return reply(&stage.pick(&at)),
+            Request::Ray(asked) => return reply(&stage.ray(&asked)),
+            Request::Nearest(asked) => return reply(&stage.nearest(&asked)),
+            Request::Seek { step } => stage.seek(usize::try_from(step).unwrap_or(usize::MAX))?,
+            Request::Advance { steps } => stage.advance(steps)?,
+            Request::Reset => stage.reset()?,
+            Request::Control { name, value } => stage.control(&name, &control_value(value)?)?,
+            Request::Drag(asked) => stage.drag(&asked)?,
+            // Those are answered before.
+            Request::Samples | Request::Open(_) | Request::Push => {}
+        }
+        reply(&stage.status())
+    }
+
+    /// The stage before stays if this fails.
+    fn open(&mut self, opening: &Opening, payload: &[u8]) -> Result<(), EngineError> {
+        let stage = match opening {
+            Opening::Recording => open_recording(payload.to_vec())?,
+            // Its scalar and dimension are those of its header.
+            Opening::Stream => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
+            Opening::Sample { name } => open_sample(name)?,
+        };
+        self.show(stage);
+        if matches!(opening, Opening::Stream) {
+            self.begun = Some(Vec::new());
+            self.push(payload)?;
+        }
+        Ok(())
+    }
+
+    /// Bytes of a stream: until the header is whole, its scalar and dimension are not known.
+    fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
+        let Some(begun) = &mut self.begun else { return self.stage()?.push(bytes) };
+        let before = begun.len();
+        begun.extend(bytes);
+        match Header::read(begun) {
+            Ok(header) => {
+                let mut stage = growing(&header)?;
+                stage.push(begun)?;
+                self.show(stage);
+                Ok(())
+            }
+            Err(error) if is_begun(begun, &error) => Ok(()),
+            Err(error) => {
+                begun.truncate(before);
+                Err(error.into())
+            }
+        }
+    }
+}
+
+/// The bytes lack the rest of a header and nothing else.
+fn is_begun(bytes: &[u8], error: &ReadError) -> bool {
+    const MAGIC_BYTES: usize = 8;
+    match error.problem {
+        Problem::Truncated => true,
+        Problem::NotARecording => bytes.len() < MAGIC_BYTES,
+        _ => false,
+    }
+}
+
+fn gallery() -> Gallery {
+    let samples = entries().iter().map(|entry| SampleTitle {
+        name: entry.name,
+        title: entry.title,
+        about: entry.about,
+        dimension: entry.make.dimension(),
+    });
+    Gallery { samples: samples.collect() }
+}
+
+fn open_sample(name: &str) -> Result<Opened, EngineError> {
+    let entry = entries().iter().find(|entry| entry.name == name);
+    let entry = entry.ok_or_else(|| EngineError::UnknownSample(name.to_owned()))?;
+    Ok(match entry.make {
+        Make::Plane(make) => Box::new(Shown::new(Sampled::new(entry, make())?)),
+        Make::Space(make) => Box::new(Shown::new(Sampled::new(entry, make())?)),
+    })
+}
+
+fn open_recording(bytes: Vec<u8>) -> Result<Opened, EngineError> {
+    let bytes = if is_packed(&bytes) { unpack(&bytes)? } else { bytes };
+    let header = Header::read(&bytes)?;
+    Ok(match (header.scalar_bytes, header.dimension) {
+        (4, 2) => Box::new(Shown::new(Recorded::<f32, 2>::open(bytes, Registry::new())?)),
+        (4, 3) => Box::new(Shown::new(Recorded::<f32, 3>::open(bytes, Registry::new())?)),
+        (8, 2) => Box::new(Shown::new(Recorded::<f64, 2>::open(bytes, Registry::new())?)),
+        (8, 3) => Box::new(Shown::new(Recorded::<f64, 3>::open(bytes, Registry::new())?)),
+        (scalar_bytes, dimension) => return Err(EngineError::Kind { dimension, scalar_bytes }),
+    })
+}
+
+/// A stream of which the header is known.
+fn growing(header: &Header) -> Result<Opened, EngineError> {
+    Ok(match (header.scalar_bytes, header.dimension) {
+        (4, 2) => Box::new(Shown::new(Recorded::<f32, 2>::growing(Registry::new()))),
+        (4, 3) => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
+        (8, 2) => Box::new(Shown::new(Recorded::<f64, 2>::growing(Registry::new()))),
+        (8, 3) => Box::new(Shown::new(Recorded::<f64, 3>::growing(Registry::new()))),
+        (scalar_bytes, dimension) => return Err(EngineError::Kind { dimension, scalar_bytes }),
+    })
+}
+
+/// The value of a control: `null` presses a button.
+fn control_value(value: Value) -> Result<ControlValue, EngineError> {
+    Ok(match value {
+        Value::Null => ControlValue::Pressed,
+        Value::Bool(flag) => ControlValue::Flag(flag),
+        Value::String(word) => ControlValue::Choice(word),
+        Value::Number(number) => match number.as_f64() {
+            Some(number) => ControlValue::Number(number),
+            None => return Err(EngineError::Value(number.to_string())),
+        },
+        other => return Err(EngineError::Value(other.to_string())),
+    })
+}

@@ -1,0 +1,114 @@
+//! Why a message was not answered.
+
+use core::fmt;
+
+use impinge::world::WorldError;
+use impinge_record::{ReadError, RecordError};
+use impinge_samples::SampleError;
+
+/// Why a message was not answered: its text is shown to people.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum EngineError {
+    /// The message ends before the JSON text does.
+    Truncated {
+        /// How many bytes the layout asks for.
+        wanted: u64,
+        /// How many there are.
+        found: usize,
+    },
+    /// The text is not JSON, or not a message.
+    Json(serde_json::Error),
+    /// No stage is open.
+    NothingOpen,
+    /// The gallery has no sample of this name.
+    UnknownSample(String),
+    /// A sample cannot do this: it has no recorded steps, and grows by no bytes.
+    OfRecordings(&'static str),
+    /// A recording cannot do this: it has no controls.
+    OfSamples(&'static str),
+    /// More steps than one message may ask for.
+    TooManySteps(u64),
+    /// No object has this number.
+    NoObject(u32),
+    /// A pair is of two objects, not of this one and itself.
+    OneObject(u32),
+    /// The rotation has no direction: all its components are zero.
+    Rotation([f64; 4]),
+    /// A control was given a value of no kind: a list, say.
+    Value(String),
+    /// The bytes are not a recording that can be played.
+    Read(ReadError),
+    /// The dimension of a recording is neither 2 nor 3, or its numbers have neither 4 nor 8 bytes.
+    Kind {
+        /// The dimension.
+        dimension: u8,
+        /// The bytes of a number.
+        scalar_bytes: u8,
+    },
+    /// The world refuses a change.
+    World(WorldError),
+    /// The sample refuses a change.
+    Sample(SampleError),
+}
+
+impl fmt::Display for EngineError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Truncated { wanted, found } => {
+                write!(f, "the message has {found} bytes, its text asks for {wanted}")
+            }
+            Self::Json(error) => write!(f, "the message is not understood: {error}"),
+            Self::NothingOpen => f.write_str("nothing is open"),
+            Self::UnknownSample(name) => write!(f, "there is no sample {name:?}"),
+            Self::OfRecordings(what) => write!(f, "a sample has no {what}"),
+            Self::OfSamples(what) => write!(f, "a recording has no {what}"),
+            Self::TooManySteps(steps) => {
+                write!(f, "{steps} steps at once are more than {}", crate::stage::MAX_STEPS)
+            }
+            Self::NoObject(object) => write!(f, "there is no object {object}"),
+            Self::OneObject(object) => write!(f, "object {object} and itself are no pair"),
+            Self::Rotation(rotation) => write!(f, "{rotation:?} is no rotation"),
+            Self::Value(value) => write!(f, "{value} is no value of a control"),
+            Self::Read(error) => error.fmt(f),
+            Self::Kind { dimension, scalar_bytes } => write!(
+                f,
+                "there are no worlds of dimension {dimension} with numbers of {scalar_bytes} bytes"
+            ),
+            Self::World(error) => error.fmt(f),
+            Self::Sample(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for EngineError {}
+
+impl From<serde_json::Error> for EngineError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Json(error)
+    }
+}
+
+impl From<ReadError> for EngineError {
+    fn from(error: ReadError) -> Self {
+        Self::Read(error)
+    }
+}
+
+impl From<WorldError> for EngineError {
+    fn from(error: WorldError) -> Self {
+        Self::World(error)
+    }
+}
+
+impl From<SampleError> for EngineError {
+    fn from(error: SampleError) -> Self {
+        Self::Sample(error)
+    }
+}
+
+impl From<RecordError> for EngineError {
+    fn from(error: RecordError) -> Self {
+        Self::Sample(error.into())
+    }
+}

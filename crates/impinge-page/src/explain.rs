@@ -1,0 +1,291 @@
+//! Why two objects touch, or do not.
+
+use impinge::bounding_volume::{Aabb, BoundingVolume};
+use impinge::math::{Real, Space, Unit, Vector, max, min};
+use impinge::narrow_phase::{ContactPair, GeometricQueryType};
+use impinge::query::{
+    ClosestPoints, Contact, ContactPoint, Proximity, closest_points, contact, distance, proximity,
+};
+use impinge::world::{CollisionObject, CollisionWorld};
+
+use crate::answer::{ManifoldPoint, PairAnswer, ShownContact, ShownManifold, Test, Why};
+use crate::ask::feature_text;
+use crate::groups::{self, Named};
+use crate::space::{coordinates, isometry};
+
+/// Two objects of a world, in the order of the question.
+#[derive(Debug)]
+pub(crate) struct Two<'a, N: Space<D>, const D: usize, T> {
+    pub(crate) world: &'a CollisionWorld<N, D, T>,
+    pub(crate) one: &'a CollisionObject<N, D, T>,
+    pub(crate) two: &'a CollisionObject<N, D, T>,
+    /// Names of pair filters that are code of another program: here they let all pairs through.
+    pub(crate) stand_ins: &'a [String],
+}
+
+/// What a world asks of a pair, and up to which distance.
+#[derive(Clone, Copy, Debug)]
+enum Limit<N> {
+    /// Contacts are kept up to the sum of both predictions.
+    Prediction(N),
+    /// Objects are near up to the sum of both margins.
+    Margin(N),
+}
+
+impl<N: Real> Limit<N> {
+    /// Proximity, if either object asks for it.
+    fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>) -> Self {
+        use GeometricQueryType::{Contacts, Proximity};
+        match (one, two) {
+            (Contacts(first, _), Contacts(second, _)) => Self::Prediction(first + second),
+            (Proximity(first), Proximity(second)) => Self::Margin(first + second),
+            (Proximity(margin), Contacts(..)) | (Contacts(..), Proximity(margin)) => {
+                Self::Margin(margin)
+            }
+        }
+    }
+
+    const fn length(self) -> N {
+        match self {
+            Self::Prediction(length) | Self::Margin(length) => length,
+        }
+    }
+}
+
+/// The geometry of two objects, there and then.
+struct Measures<N: Real, const D: usize> {
+    distance: N,
+    points: ClosestPoints<N, D>,
+    contact: Option<Contact<N, D>>,
+    proximity: Proximity,
+}
+
+/// A proximity in words.
+pub(crate) const fn proximity_text(proximity: Proximity) -> &'static str {
+    match proximity {
+        Proximity::Intersecting => "intersecting",
+        Proximity::WithinMargin => "within margin",
+        Proximity::Disjoint => "disjoint",
+    }
+}
+
+impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
+    /// All about both.
+    pub(crate) fn answer(&self) -> PairAnswer {
+        let limit = Limit::of(self.one.query_type(), self.two.query_type());
+        let measures = self.measures(limit.length());
+        let points = match measures.points {
+            ClosestPoints::WithinMargin(point1, point2) => {
+                Some([point1, point2].map(|point| coordinates(&point.coords)))
+            }
+            _ => None,
+        };
+        PairAnswer {
+            a: self.one.handle().uid(),
+            b: self.two.handle().uid(),
+            distance: measures.distance.as_f64(),
+            points,
+            contact: measures.contact.as_ref().map(shown_contact),
+            proximity: proximity_text(measures.proximity),
+            manifolds: self.manifolds(),
+            why: self.why(limit, &measures),
+        }
+    }
+
+    fn measures(&self, limit: N) -> Measures<N, D> {
+        let [pose1, pose2] =
+            [self.one, self.two].map(|object| isometry(&N::pose(object.position())));
+        let (shape1, shape2) = (&**self.one.shape(), &**self.two.shape());
+        Measures {
+            distance: distance(&pose1, shape1, &pose2, shape2),
+            points: closest_points(&pose1, shape1, &pose2, shape2, N::INFINITY),
+            contact: contact(&pose1, shape1, &pose2, shape2, limit),
+            proximity: proximity(&pose1, shape1, &pose2, shape2, limit),
+        }
+    }
+
+    /// The manifolds of the world, seen from the first of the question.
+    fn manifolds(&self) -> Vec<ShownManifold> {
+        let (one, two) = (self.one.handle(), self.two.handle());
+        let views = self.world.contact_pair(one, two).into_iter().flat_map(ContactPair::views);
+        let point = |point: ContactPoint<N, D>| {
+            self.manifold_point(&if two < one { point.flipped() } else { point })
+        };
+        views.map(|view| ShownManifold { contacts: view.contacts().map(point).collect() }).collect()
+    }
+
+    fn manifold_point(&self, point: &ContactPoint<N, D>) -> ManifoldPoint {
+        let [feature1, feature2] = [
+            feature_text(point.feature1, point.part1, &**self.one.shape()),
+            feature_text(point.feature2, point.part2, &**self.two.shape()),
+        ];
+        let contact = shown_contact(&point.contact);
+        ManifoldPoint { contact, features: format!("{feature1}, {feature2}") }
+    }
+
+    fn why(&self, limit: Limit<N>, measures: &Measures<N, D>) -> Why {
+        let tests =
+            vec![self.groups(), self.filters(), self.boxes(), distance_test(limit, measures)];
+        let (touch, found) = self.found();
+        let refusal = tests.iter().find(|test| !test.passes);
+        let text = match (touch, refusal) {
+            (true, None) => format!("They touch: {found}."),
+            (true, Some(test)) => {
+                format!("They touched at the last update; since then: {}.", test.text)
+            }
+            (false, Some(test)) => format!("They do not touch: {}.", test.text),
+            (false, None) => format!("They do not touch: {found}."),
+        };
+        Why { touch, text, tests }
+    }
+
+    /// What the world has of the pair, as of the last update.
+    fn found(&self) -> (bool, String) {
+        let (one, two) = (self.one.handle(), self.two.handle());
+        if let Some(pair) = self.world.proximity_pair(one, two) {
+            let proximity = pair.proximity();
+            let text = format!("the last update found them {}", proximity_text(proximity));
+            return (proximity == Proximity::Intersecting, text);
+        }
+        let Some(pair) = self.world.contact_pair(one, two) else {
+            return (false, "the last update found no pair of them".to_owned());
+        };
+        let depth = pair.views().map(|view| view.deepest_contact().contact.depth).reduce(max);
+        match depth {
+            Some(depth) => {
+                let (count, deepest) = (pair.num_contacts(), short(depth.as_f64()));
+                let points = if count == 1 { "contact point" } else { "contact points" };
+                (true, format!("{count} {points}, the deepest of depth {deepest}"))
+            }
+            None => (
+                false,
+                "the last update found no contact; surfaces have none from behind".to_owned(),
+            ),
+        }
+    }
+
+    fn groups(&self) -> Test {
+        let [one, two] = [self.one, self.two].map(|object| Named {
+            object: object.handle().uid(),
+            groups: object.collision_groups(),
+        });
+        let passes = one.groups.can_interact_with_groups(two.groups);
+        Test { name: "groups", passes, text: groups::text(one, two) }
+    }
+
+    fn filters(&self) -> Test {
+        let refusing = self.world.refusing_pair_filters(self.one.handle(), self.two.handle());
+        let names: Vec<&str> = self.world.broad_phase_pair_filter_names().collect();
+        let mut text = match (names.as_slice(), refusing.as_slice()) {
+            ([], _) => "no filter is registered".to_owned(),
+            ([name], []) => format!("the filter {name} allows the pair"),
+            (names, []) => format!("the filters {} allow the pair", names.join(", ")),
+            (_, [name]) => format!("the filter {name} refuses the pair"),
+            (_, names) => format!("the filters {} refuse the pair", names.join(", ")),
+        };
+        if names.iter().any(|name| self.stand_ins.iter().any(|own| own == name)) {
+            text.push_str("; what is code of another program lets all pairs through here");
+        }
+        Test { name: "filter", passes: refusing.is_empty(), text }
+    }
+
+    fn boxes(&self) -> Test {
+        let boxes = [self.one, self.two].map(|object| self.world.loosened_aabb(object.handle()));
+        let [Some(box1), Some(box2)] = boxes else {
+            let text = "the broad phase has seen no box of one of them".to_owned();
+            return Test { name: "boxes", passes: false, text };
+        };
+        let passes = box1.intersects(&box2);
+        let text = if passes {
+            let overlap = overlap(&box1, &box2).as_f64();
+            let is_finite = overlap.is_finite();
+            let by = if is_finite { format!(" by {}", short(overlap)) } else { String::new() };
+            format!("the loosened boxes overlap{by}")
+        } else {
+            let distance = box1.distance_to_aabb(&box2).as_f64();
+            format!("the loosened boxes are {} apart", short(distance))
+        };
+        Test { name: "boxes", passes, text }
+    }
+}
+
+/// The least extent of the intersection of two boxes that intersect.
+fn overlap<N: Real, const D: usize>(box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> N {
+    let on_axis = |axis: usize| {
+        let low = max(box1.mins()[axis], box2.mins()[axis]);
+        min(box1.maxs()[axis], box2.maxs()[axis]) - low
+    };
+    (0..D).map(on_axis).fold(N::INFINITY, min)
+}
+
+/// The shapes themselves.
+fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N, D>) -> Test {
+    let (length, apart) = (short(limit.length().as_f64()), short(measures.distance.as_f64()));
+    let passes = measures.distance <= limit.length();
+    let depth = measures.contact.as_ref().map(|contact| contact.depth.as_f64());
+    let state = match depth {
+        _ if measures.distance > N::ZERO => format!("{apart} apart"),
+        Some(depth) if depth > 0.0 => format!("they overlap, {} deep", short(depth)),
+        _ => "they touch".to_owned(),
+    };
+    let kept = match limit {
+        Limit::Prediction(_) => format!("contacts are kept up to {length}"),
+        Limit::Margin(_) => format!("they are near up to {length}"),
+    };
+    Test { name: "distance", passes, text: format!("{state}; {kept}") }
+}
+
+/// A contact in the world frame.
+pub(crate) fn shown_contact<N: Real, const D: usize>(contact: &Contact<N, D>) -> ShownContact {
+    let normal: &Unit<Vector<N, D>> = &contact.normal;
+    ShownContact {
+        a: coordinates(&contact.world1.coords),
+        b: coordinates(&contact.world2.coords),
+        normal: coordinates(&normal.into_inner()),
+        depth: contact.depth.as_f64(),
+    }
+}
+
+/// A number with four significant digits, without zeros at its end.
+pub(crate) fn short(number: f64) -> String {
+    let size = number.abs();
+    if number == 0.0 || !number.is_finite() {
+        return if number == 0.0 { "0".to_owned() } else { number.to_string() };
+    }
+    if !(1e-3..1e6).contains(&size) {
+        return format!("{number:.3e}");
+    }
+    // Digits after the point, by the digits before it.
+    let digits =
+        [1e-2, 1e-1, 1.0, 10.0, 100.0, 1000.0].iter().filter(|power| size < **power).count();
+    let text = format!("{number:.digits$}");
+    if !text.contains('.') {
+        return text;
+    }
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [
+            (0.0, "0"),
+            (0.02, "0.02"),
+            (0.012_345_67, "0.01235"),
+            (0.123_456, "0.1235"),
+            (1.0, "1"),
+            (12.3456, "12.35"),
+            (1234.56, "1235"),
+            (100_000.0, "100000"),
+            (-0.5, "-0.5"),
+            (1.5e-7, "1.500e-7"),
+            (f64::INFINITY, "inf"),
+        ];
+        for (number, text) in cases {
+            assert_eq!(short(number), text, "{number}");
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Where a stage is and how large its objects are, for coordinates and cameras.
+
+use impinge::bounding_volume::Aabb;
+use impinge::math::{Real, Space};
+use impinge::world::CollisionWorld;
+
+use crate::space::coordinates;
+
+/// An extent of objects beyond this counts as endless, and a coordinate beyond it as nowhere: numbers of `f32` have
+/// room for squares of it.
+const FAR: f64 = 1e18;
+
+/// A box in `f64` and three dimensions; the third is empty in 2D.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    pub(crate) mins: [f64; 3],
+    pub(crate) maxs: [f64; 3],
+}
+
+impl Bounds {
+    /// That of a box with an end.
+    pub(crate) fn of<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Option<Self> {
+        let [mins, maxs] = [aabb.mins(), aabb.maxs()].map(|point| coordinates(&point.coords));
+        let is_near = mins.iter().chain(&maxs).all(|x| x.abs() <= FAR);
+        is_near.then_some(Self { mins, maxs })
+    }
+
+    /// The box around both.
+    fn joined(self, other: Self) -> Self {
+        let mut both = self;
+        for axis in 0..3 {
+            both.mins[axis] = self.mins[axis].min(other.mins[axis]);
+            both.maxs[axis] = self.maxs[axis].max(other.maxs[axis]);
+        }
+        both
+    }
+
+    pub(crate) fn center(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| f64::midpoint(self.mins[axis], self.maxs[axis]))
+    }
+
+    /// Half the length of the diagonal.
+    pub(crate) fn radius(&self) -> f64 {
+        let halves = [0, 1, 2].map(|axis| (self.maxs[axis] - self.mins[axis]) / 2.0);
+        halves.iter().map(|half| half * half).sum::<f64>().sqrt()
+    }
+}
+
+/// The origin of coordinates in frames, and the size of a typical object.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Framing {
+    pub(crate) origin: [f64; 3],
+    /// Half the diagonal of the box of an object in the middle of the order of sizes; never 0.
+    pub(crate) size: f64,
+    /// How far what is endless is drawn from its origin.
+    pub(crate) patch: f64,
+}
+
+impl Framing {
+    /// Before there is an object.
+    pub(crate) const UNKNOWN: Self = Self { origin: [0.0; 3], size: 1.0, patch: 10.0 };
+
+    /// That of a world; `None` if it has no objects.
+    pub(crate) fn of<N: Space<D>, const D: usize, T>(
+        world: &CollisionWorld<N, D, T>,
+    ) -> Option<Self> {
+        if world.is_empty() {
+            return None;
+        }
+        let Some(bounds) = bounds(world) else { return Some(Self::UNKNOWN) };
+        let mut sizes: Vec<f64> = boxes(world).map(|own| own.radius()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let (center, radius) = (bounds.center(), bounds.radius());
+        let middle = sizes[sizes.len() / 2];
+        // Points and segments have no size, a world of one point no radius.
+        let size = [middle, radius / 8.0].into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
+        let distance = center.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
+        let is_near = distance <= 64.0 * radius.max(size);
+        let origin = if is_near { [0.0; 3] } else { center };
+        // An endless ground goes on beyond what stands on it.
+        Some(Self { origin, size, patch: (1.5 * radius).max(8.0 * size) })
+    }
+}
+
+/// The boxes of the objects that have an end.
+fn boxes<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+) -> impl Iterator<Item = Bounds> {
+    world
+        .collision_objects()
+        .filter_map(|object| Bounds::of(&object.shape().aabb(&N::pose(object.position()))))
+}
+
+/// The box of all objects that have an end; `None` if none has. Costs the boxes of all objects.
+pub(crate) fn bounds<N: Space<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+) -> Option<Bounds> {
+    boxes(world).reduce(Bounds::joined)
+}

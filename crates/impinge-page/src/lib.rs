@@ -1,0 +1,42 @@
+//! The engine of a web page that shows worlds and answers questions about them.
+//!
+//! An [`Engine`] takes messages as bytes and answers with bytes; `PROTOCOL.md` describes both. It holds one *stage*: a
+//! recording, a recording that grows, or a sample that runs. The page draws and asks; all geometry is computed
+//! here, by the public functions of the library.
+//!
+//! As a WebAssembly module it exports three functions of numbers; natively the same engine is called directly, by
+//! tests and by programs that have recordings with shapes and pair filters of their own.
+
+pub mod answer;
+mod ask;
+mod color;
+mod describe;
+mod engine;
+mod error;
+mod explain;
+#[cfg(target_family = "wasm")]
+mod exports;
+mod framing;
+mod gather;
+mod groups;
+mod mesh;
+mod message;
+mod payload;
+mod picture;
+mod queries;
+mod recorded;
+pub mod request;
+mod sampled;
+mod shape_text;
+mod space;
+mod stage;
+mod stand_in;
+mod time_line;
+
+pub use engine::Engine;
+pub use error::EngineError;
+pub use message::{message, parts};
+pub use recorded::Recorded;
+pub use sampled::Sampled;
+pub use space::Viewed;
+pub use stage::{Shown, Source, Stage};

@@ -1,0 +1,167 @@
+//! The meshes of a stage, by number.
+
+use std::collections::BTreeMap;
+
+use impinge::debug_render::ShapeMesh;
+use impinge::math::Real;
+
+use crate::payload::{Payload, Section};
+use crate::space::coordinates;
+use serde::Serialize;
+
+/// A mesh that no frame has named for so many frames is dropped.
+const PATIENCE: u64 = 120;
+
+/// A mesh in `f32`, as the page has it.
+#[derive(Clone, Debug)]
+struct Buffers {
+    /// [`ShapeMesh::id`].
+    hash: u64,
+    /// What the vertices are relative to, in the frame of the shape: `f32` cannot tell apart the vertices of a
+    /// mesh that lies far from its own origin.
+    center: [f64; 3],
+    vertices: Vec<f32>,
+    triangles: Vec<u32>,
+    lines: Vec<u32>,
+    /// The last frame that named it.
+    used: u64,
+}
+
+/// Where the parts of a mesh are in a payload.
+#[derive(Debug, Serialize)]
+pub(crate) struct MeshSections {
+    id: u32,
+    vertices: Section,
+    triangles: Section,
+    lines: Section,
+}
+
+/// Meshes by number; numbers count up and are given once.
+#[derive(Debug, Default)]
+pub(crate) struct MeshTable {
+    numbers: BTreeMap<u64, u32>,
+    /// `None` for those that were dropped.
+    meshes: Vec<Option<Buffers>>,
+    frame: u64,
+}
+
+impl MeshTable {
+    /// Begins a frame: drops meshes that were not used for long, and returns their numbers.
+    pub(crate) fn begin(&mut self) -> Vec<u32> {
+        self.frame += 1;
+        let (frame, mut dropped) = (self.frame, Vec::new());
+        for (number, mesh) in (0..).zip(&mut self.meshes) {
+            if let Some(old) = mesh.take_if(|mesh| mesh.used + PATIENCE < frame) {
+                self.numbers.remove(&old.hash);
+                dropped.push(number);
+            }
+        }
+        dropped
+    }
+
+    /// The number of a mesh, by which frames name it.
+    pub(crate) fn number<N: Real, const D: usize>(&mut self, mesh: &ShapeMesh<N, D>) -> u32 {
+        if let Some(&number) = self.numbers.get(&mesh.id) {
+            return number;
+        }
+        // There is memory for fewer.
+        let number = u32::try_from(self.meshes.len()).unwrap_or(u32::MAX);
+        self.meshes.push(Some(Buffers::of(mesh, self.frame)));
+        self.numbers.insert(mesh.id, number);
+        number
+    }
+
+    /// Notes that the frame names a mesh, and returns what its vertices are relative to; `None` if it was dropped.
+    pub(crate) fn place(&mut self, number: u32) -> Option<[f64; 3]> {
+        let mesh = self.meshes.get_mut(number as usize)?.as_mut()?;
+        mesh.used = self.frame;
+        Some(mesh.center)
+    }
+
+    /// Writes the meshes with numbers from `known` on.
+    pub(crate) fn write(&self, known: u32, payload: &mut Payload) -> Vec<MeshSections> {
+        let meshes = (0..).zip(&self.meshes).skip(known as usize);
+        let kept = meshes.filter_map(|(id, mesh)| Some((id, mesh.as_ref()?)));
+        kept.map(|(id, mesh)| MeshSections {
+            id,
+            vertices: payload.floats(&mesh.vertices),
+            triangles: payload.words(&mesh.triangles),
+            lines: payload.words(&mesh.lines),
+        })
+        .collect()
+    }
+}
+
+impl Buffers {
+    fn of<N: Real, const D: usize>(mesh: &ShapeMesh<N, D>, frame: u64) -> Self {
+        let points: Vec<_> =
+            mesh.vertices.iter().map(|vertex| coordinates(&vertex.coords)).collect();
+        let center = far_center(&points);
+        let relative = |point: &[f64; 3]| [0, 1, 2].map(|axis| single(point[axis] - center[axis]));
+        Self {
+            hash: mesh.id,
+            center,
+            vertices: points.iter().flat_map(relative).collect(),
+            triangles: mesh.triangles.as_flattened().to_vec(),
+            lines: mesh.lines.as_flattened().to_vec(),
+            used: frame,
+        }
+    }
+}
+
+/// The middle of some points if they are far from the origin, measured by their extent; else the origin.
+fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
+    let ends = |axis: usize| {
+        let on_axis = points.iter().map(|point| point[axis]);
+        let least = on_axis.clone().fold(f64::INFINITY, f64::min);
+        [least, on_axis.fold(f64::NEG_INFINITY, f64::max)]
+    };
+    if points.is_empty() {
+        return [0.0; 3];
+    }
+    let ends = [0, 1, 2].map(ends);
+    let extent = ends.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
+    let center = ends.map(|[low, high]| f64::midpoint(low, high));
+    let distance = center.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    if distance > 16.0 * extent { center } else { [0.0; 3] }
+}
+
+/// The nearest `f32`, within what the page can compute with.
+#[expect(clippy::cast_possible_truncation, reason = "rounds, as documented")]
+pub(crate) const fn single(x: f64) -> f32 {
+    x.clamp(-1e30, 1e30) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use impinge::debug_render::MeshOptions;
+    use impinge::dim3::math::Point;
+    use impinge::dim3::shape::{Segment, Shape};
+
+    use super::*;
+
+    fn mesh(shape: &dyn Shape<f64, 3>) -> ShapeMesh<f64, 3> {
+        ShapeMesh::of(shape, &MeshOptions::default())
+    }
+
+    #[test]
+    fn a_mesh_far_from_its_origin_keeps_its_size() {
+        let far = Segment::new(Point::new(1e12, 0.0, 0.0), Point::new(1e12 + 1.0, 0.0, 0.0));
+        let mut table = MeshTable::default();
+        let number = table.number(&mesh(&far));
+        assert_eq!(table.place(number), Some([1e12 + 0.5, 0.0, 0.0]), "the middle");
+        let buffers = table.meshes[0].as_ref().expect("it was just made");
+        assert_eq!(buffers.vertices, [-0.5, 0.0, 0.0, 0.5, 0.0, 0.0], "half a length each way");
+    }
+
+    #[test]
+    fn meshes_are_known_again_until_they_are_dropped() {
+        let segment = Segment::new(Point::origin(), Point::new(1.0, 0.0, 0.0));
+        let mut table = MeshTable::default();
+        assert_eq!([0; 2].map(|_| table.number(&mesh(&segment))), [0, 0], "the same number");
+        let dropped: Vec<u32> = (0..PATIENCE + 2).flat_map(|_| table.begin()).collect();
+        assert_eq!((dropped, table.place(0)), (vec![0], None), "once");
+        assert_eq!(table.number(&mesh(&segment)), 1, "numbers are given once");
+        assert_eq!(table.write(0, &mut Payload::default()).len(), 1, "the dropped one is gone");
+    }
+}

@@ -1,0 +1,30 @@
+//! The payload of a frame: sections of numbers, one after another.
+
+use serde::Serialize;
+
+/// Where a section begins, in bytes, and how many elements it has.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Section(usize, usize);
+
+/// Sections of numbers of four bytes, little-endian.
+#[derive(Debug, Default)]
+pub(crate) struct Payload(pub(crate) Vec<u8>);
+
+impl Payload {
+    /// Appends numbers as a section.
+    pub(crate) fn floats(&mut self, numbers: &[f32]) -> Section {
+        self.section(numbers.len(), numbers.iter().map(|number| number.to_le_bytes()))
+    }
+
+    /// Appends indices or colours as a section.
+    pub(crate) fn words(&mut self, words: &[u32]) -> Section {
+        self.section(words.len(), words.iter().map(|word| word.to_le_bytes()))
+    }
+
+    fn section(&mut self, count: usize, numbers: impl Iterator<Item = [u8; 4]>) -> Section {
+        let start = self.0.len();
+        self.0.reserve(4 * count);
+        numbers.for_each(|bytes| self.0.extend_from_slice(&bytes));
+        Section(start, count)
+    }
+}

@@ -1,0 +1,264 @@
+//! What a stage keeps from frame to frame: meshes, and what is known of each object's shape.
+
+use core::marker::PhantomData;
+
+use impinge::bounding_volume::Aabb;
+use impinge::debug_render::{DebugDrawing, DebugRender, Drawn, MeshOptions};
+use impinge::math::{Point, Real, Vector};
+use impinge::query::Proximity;
+use impinge::shape::{ShapeHandle, ShapeKind};
+use impinge::world::{CollisionObject, CollisionWorld};
+use serde::Serialize;
+
+use crate::EngineError;
+use crate::answer::Frame;
+use crate::ask::is_sensor;
+use crate::color::{LAYERS, Look, SELECTED, SENSOR, TOUCHES, options};
+use crate::framing::{Framing, bounds};
+use crate::gather::{Buffers, Gather, Instance, Sections};
+use crate::mesh::{MeshSections, MeshTable};
+use crate::payload::Payload;
+use crate::request::FrameRequest;
+use crate::space::{Viewed, coordinates};
+
+/// The shape that an object had in the last frame, and its mesh.
+#[derive(Clone, Debug)]
+struct KnownShape<N: Real, const D: usize> {
+    shape: ShapeHandle<N, D>,
+    kind: ShapeKind,
+    mesh: u32,
+}
+
+/// Draws frames of one stage.
+///
+/// A frame costs a pose for each object: comparing it with an earlier one would cost as much. Shapes are looked at
+/// when an object has another one, touching objects when the world was changed.
+#[derive(Debug)]
+pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
+    drawing: DebugDrawing<N, D>,
+    meshes: MeshTable,
+    /// By the index of the handle.
+    shapes: Vec<Option<KnownShape<N, D>>>,
+    /// `None` before there was an object.
+    framing: Option<Framing>,
+    /// By the index of the handle; `None` after a change.
+    touching: Option<Vec<bool>>,
+}
+
+/// The text of a frame.
+#[derive(Debug, Serialize)]
+struct FrameText {
+    origin: [f64; 3],
+    meshes: Vec<MeshSections>,
+    dropped: Vec<u32>,
+    #[serde(flatten)]
+    sections: Sections,
+    layers: [&'static str; LAYERS.len()],
+}
+
+impl<N: Viewed<D>, const D: usize> Picture<N, D> {
+    pub(crate) fn new() -> Self {
+        Self {
+            drawing: DebugDrawing::default(),
+            meshes: MeshTable::default(),
+            shapes: Vec::new(),
+            framing: None,
+            touching: None,
+        }
+    }
+
+    /// The world was changed.
+    pub(crate) fn note_change(&mut self) {
+        self.touching = None;
+    }
+
+    /// Draws a world, and beside it what `beside` draws.
+    pub(crate) fn frame<T>(
+        &mut self,
+        world: &CollisionWorld<N, D, T>,
+        asked: &FrameRequest,
+        beside: impl FnOnce(&mut DebugDrawing<N, D>, &mut dyn DebugRender<N, D>),
+    ) -> Result<Frame, EngineError> {
+        let framing = self.framing(world);
+        let is_shown = LAYERS.map(|(name, _)| asked.layers.iter().any(|layer| layer == name));
+        self.set_options(&framing, &is_shown);
+        let dropped = self.begin();
+        let touching = self.touching.take().unwrap_or_else(|| touching(world));
+        let Self { drawing, meshes, shapes, .. } = self;
+        let mut gather = Gather {
+            buffers: Buffers::default(),
+            meshes,
+            is_shown,
+            origin: framing.origin,
+            scalar: PhantomData,
+        };
+        if is_shown[0] {
+            let mut objects = Objects { drawing, shapes, touching: &touching, asked };
+            objects.draw(world, &mut gather);
+        }
+        drawing.world(world, &mut gather);
+        draw_selected(drawing, world, asked, &framing, &mut gather);
+        beside(drawing, &mut gather);
+        let buffers = gather.buffers;
+        self.touching = Some(touching);
+
+        let mut payload = Payload::default();
+        let text = FrameText {
+            origin: framing.origin,
+            meshes: self.meshes.write(asked.known, &mut payload),
+            dropped,
+            sections: buffers.write(&mut payload),
+            layers: LAYERS.map(|(name, _)| name),
+        };
+        Ok(Frame { text: serde_json::to_string(&text)?, payload: payload.0 })
+    }
+
+    /// Begins a frame, and forgets the shapes whose meshes are dropped.
+    fn begin(&mut self) -> Vec<u32> {
+        let dropped = self.meshes.begin();
+        if !dropped.is_empty() {
+            for known in &mut self.shapes {
+                let _ = known.take_if(|known| dropped.contains(&known.mesh));
+            }
+        }
+        dropped
+    }
+
+    /// Fixed once there is an object.
+    fn framing<T>(&mut self, world: &CollisionWorld<N, D, T>) -> Framing {
+        self.framing = self.framing.or_else(|| Framing::of(world));
+        self.framing.unwrap_or(Framing::UNKNOWN)
+    }
+
+    fn set_options(&mut self, framing: &Framing, is_shown: &[bool; LAYERS.len()]) {
+        let mesh =
+            MeshOptions { half_space_extent: N::lit(framing.patch), ..MeshOptions::default() };
+        self.drawing.set_options(options(mesh, N::lit(framing.size), is_shown));
+    }
+
+    /// A box for the camera: around the objects that have an end, else around the patch of one that has none.
+    pub(crate) fn bounds<T>(&self, world: &CollisionWorld<N, D, T>) -> [[f64; 3]; 2] {
+        if let Some(bounds) = bounds(world) {
+            return [bounds.mins, bounds.maxs];
+        }
+        let half = self.framing.unwrap_or(Framing::UNKNOWN).patch / 2.0;
+        let corner = coordinates(&Vector::<N, D>::repeat(N::lit(half)));
+        [corner.map(|x| -x), corner]
+    }
+}
+
+/// The pass over all objects.
+struct Objects<'a, N: Viewed<D>, const D: usize> {
+    drawing: &'a mut DebugDrawing<N, D>,
+    shapes: &'a mut Vec<Option<KnownShape<N, D>>>,
+    touching: &'a [bool],
+    asked: &'a FrameRequest,
+}
+
+impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
+    /// An instance for each object.
+    fn draw<T>(&mut self, world: &CollisionWorld<N, D, T>, gather: &mut Gather<'_, N, D>) {
+        for object in world.collision_objects() {
+            let index = object.handle().uid();
+            let flags = self.flags(index, object);
+            let &KnownShape { mesh, kind, .. } = self.known(index, object.shape(), gather.meshes);
+            let color = Look { kind, object: index, flags }.color();
+            let object_number = u32::try_from(index).unwrap_or(u32::MAX);
+            let instance = Instance { mesh, object: object_number, color, flags };
+            gather.instance(instance, object.position());
+        }
+    }
+
+    /// The mesh of a shape, which is looked at if the object had another one.
+    fn known(
+        &mut self,
+        index: usize,
+        shape: &ShapeHandle<N, D>,
+        meshes: &mut MeshTable,
+    ) -> &KnownShape<N, D> {
+        if self.shapes.len() <= index {
+            self.shapes.resize(index + 1, None);
+        }
+        let Self { drawing, shapes, .. } = self;
+        let slot = &mut shapes[index];
+        let _ = slot.take_if(|known| !known.shape.is_same(shape));
+        slot.get_or_insert_with(|| KnownShape {
+            shape: shape.clone(),
+            kind: shape.geometry().kind(),
+            mesh: meshes.number(drawing.mesh(shape)),
+        })
+    }
+
+    fn flags<T>(&self, index: usize, object: &CollisionObject<N, D, T>) -> u32 {
+        let touches = self.touching.get(index) == Some(&true);
+        let is_selected = self.asked.selected.iter().any(|number| *number as usize == index);
+        let flag = |is_set: bool, bit: u32| if is_set { bit } else { 0 };
+        flag(touches, TOUCHES) | flag(is_sensor(object), SENSOR) | flag(is_selected, SELECTED)
+    }
+}
+
+/// Which objects have a contact or intersect another, by the index of the handle.
+fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Vec<bool> {
+    let last = world.collision_objects().map(|object| object.handle().uid()).max();
+    let mut touching = vec![false; last.map_or(0, |last| last + 1)];
+    let mut mark = |object: &CollisionObject<N, D, T>| touching[object.handle().uid()] = true;
+    for (one, two, _) in world.contact_views() {
+        [one, two].into_iter().for_each(&mut mark);
+    }
+    for (one, two, pair) in world.proximity_pairs() {
+        if pair.proximity() == Proximity::Intersecting {
+            [one, two].into_iter().for_each(&mut mark);
+        }
+    }
+    touching
+}
+
+/// Boxes and contacts of selected objects, but for those of layers that are shown anyway.
+fn draw_selected<N: Viewed<D>, const D: usize, T>(
+    drawing: &mut DebugDrawing<N, D>,
+    world: &CollisionWorld<N, D, T>,
+    asked: &FrameRequest,
+    framing: &Framing,
+    gather: &mut Gather<'_, N, D>,
+) {
+    if asked.selected.is_empty() {
+        return;
+    }
+    let (before, own) = (gather.is_shown, *drawing.options());
+    let all = options(own.mesh, N::lit(framing.size), &[true; LAYERS.len()]);
+    gather.is_shown = before.map(|is_shown| !is_shown);
+    drawing.set_options(all);
+    let is_selected = |object: &&CollisionObject<N, D, T>| {
+        asked.selected.iter().any(|number| *number as usize == object.handle().uid())
+    };
+    for object in world.collision_objects().filter(is_selected) {
+        let tight = object.shape().aabb(&N::pose(object.position()));
+        let boxes = [
+            (Some(tight), Drawn::TightBox),
+            (world.loosened_aabb(object.handle()), Drawn::LoosenedBox),
+        ];
+        for (aabb, what) in boxes {
+            let style = if what == Drawn::TightBox { all.tight_box } else { all.loosened_box };
+            if let (Some(aabb), Some(style)) = (aabb, style) {
+                edges(&aabb).for_each(|ends| gather.line(ends, style.color, what));
+            }
+        }
+        let contacts = world.contacts_with(object.handle()).map(|(_, point)| point.contact);
+        drawing.contacts(contacts, gather);
+    }
+    drawing.set_options(own);
+    gather.is_shown = before;
+}
+
+/// The edges of a box: from each corner along each axis on which it is at the least coordinate.
+fn edges<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> impl Iterator<Item = [Point<N, D>; 2]> {
+    let [mins, maxs] = [*aabb.mins(), *aabb.maxs()];
+    let corner = move |number: usize| {
+        let at = |axis, _| if number >> axis & 1 == 0 { mins[axis] } else { maxs[axis] };
+        Point::from(Vector::<N, D>::from_fn(at))
+    };
+    let starts = |axis: usize| (0..1_usize << D).filter(move |start| start >> axis & 1 == 0);
+    (0..D).flat_map(move |axis| {
+        starts(axis).map(move |start| [corner(start), corner(start | 1 << axis)])
+    })
+}

@@ -1,0 +1,110 @@
+//! Messages of the page as data: the members of `PROTOCOL.md`.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+/// What the page asks; each variant is the value of `do`.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase")]
+pub(crate) enum Request {
+    Samples,
+    Open(Opening),
+    Push,
+    Seek {
+        step: u64,
+    },
+    Advance {
+        #[serde(default = "one")]
+        steps: u64,
+    },
+    Reset,
+    Control {
+        name: String,
+        #[serde(default)]
+        value: Value,
+    },
+    Frame(FrameRequest),
+    Object {
+        object: u32,
+    },
+    Pair {
+        a: u32,
+        b: u32,
+    },
+    Pick(PickRequest),
+    Ray(RayRequest),
+    Nearest(NearestRequest),
+    Drag(DragRequest),
+}
+
+const fn one() -> u64 {
+    1
+}
+
+/// What is opened.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub(crate) enum Opening {
+    Recording,
+    Stream,
+    Sample { name: String },
+}
+
+/// What a frame shall have.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub struct FrameRequest {
+    /// Names of layers.
+    pub layers: Vec<String>,
+    /// Objects whose boxes and contacts are drawn whatever the layers are.
+    pub selected: Vec<u32>,
+    /// How many meshes the page has.
+    pub known: u32,
+}
+
+/// A point on the screen: in 3D the ray through it, in 2D the point `from`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct PickRequest {
+    /// Where the ray begins; in 2D the point.
+    pub from: [f64; 3],
+    /// Its direction, of any length; not looked at in 2D.
+    #[serde(default)]
+    pub direction: [f64; 3],
+    /// In 2D: up to which distance an object counts that does not hold the point.
+    #[serde(default)]
+    pub reach: f64,
+}
+
+/// A ray whose points are `from + time * direction`.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct RayRequest {
+    /// Where it begins.
+    pub from: [f64; 3],
+    /// Its direction, of any length.
+    pub direction: [f64; 3],
+    /// The largest time; without it the ray has no end.
+    #[serde(default)]
+    pub longest: Option<f64>,
+}
+
+/// The objects nearest to a point.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct NearestRequest {
+    /// The point.
+    pub point: [f64; 3],
+    #[serde(default = "one")]
+    /// So many at most.
+    pub count: u64,
+}
+
+/// An object is moved by hand.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct DragRequest {
+    /// The object.
+    pub object: u32,
+    /// Where its origin goes.
+    pub translation: [f64; 3],
+    /// A quaternion x, y, z, w of any length but zero; without it the object keeps its rotation.
+    #[serde(default)]
+    pub rotation: Option<[f64; 4]>,
+}

@@ -1,0 +1,119 @@
+//! Between the library's dimensions and the page, which has three throughout.
+
+use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
+use impinge::math::{Isometry2, Isometry3, Point, Pose, Real, Vector, na};
+use impinge::world::{CollisionObject, CollisionWorld};
+use impinge_record::{Recordable, Registry, Scalar};
+
+use crate::answer::Picked;
+use crate::ask;
+use crate::request::PickRequest;
+
+/// What the page needs of a scalar and a dimension: every [`Scalar`] with `D` = 2 and `D` = 3.
+pub trait Viewed<const D: usize>: Recordable<D> {
+    /// The rotation of an isometry as a unit quaternion x, y, z, w; in 2D about the third axis.
+    fn quaternion(isometry: &Self::Isometry) -> [f64; 4];
+
+    /// The isometry of a translation and a unit quaternion, of which 2D takes z and w alone.
+    fn placed(translation: &Vector<Self, D>, quaternion: [f64; 4]) -> Self::Isometry;
+
+    /// The registry with a pair filter that lets all pairs through.
+    fn with_open_filter<T>(registry: Registry<Self, D, T>, name: &str) -> Registry<Self, D, T>;
+
+    /// The object at a point on the screen, where, and the normal there.
+    fn pick<T>(world: &CollisionWorld<Self, D, T>, at: &PickRequest) -> Picked;
+}
+
+impl<N: Scalar> Viewed<2> for N {
+    /// By the half angle, from the larger of its sine and cosine.
+    fn quaternion(isometry: &Isometry2<N>) -> [f64; 4] {
+        let [cosine, sine] = [isometry.rotation.re, isometry.rotation.im].map(N::as_f64);
+        if cosine >= 0.0 {
+            let w = f64::midpoint(1.0, cosine).sqrt();
+            [0.0, 0.0, sine / (2.0 * w), w]
+        } else {
+            let z = f64::midpoint(1.0, -cosine).sqrt().copysign(sine);
+            [0.0, 0.0, z, sine / (2.0 * z)]
+        }
+    }
+
+    fn placed(translation: &Vector<N, 2>, [_, _, z, w]: [f64; 4]) -> Isometry2<N> {
+        let squared = z * z + w * w;
+        // A turn about an axis in the plane is none in 2D.
+        let [cosine, sine] = if squared > 0.0 {
+            [(w * w - z * z) / squared, 2.0 * z * w / squared]
+        } else {
+            [1.0, 0.0]
+        };
+        let turn = UnitComplex::from_cos_sin_unchecked(N::lit(cosine), N::lit(sine));
+        Isometry2::from_parts(Translation2::from(*translation), turn)
+    }
+
+    fn with_open_filter<T>(registry: Registry<N, 2, T>, name: &str) -> Registry<N, 2, T> {
+        type Object<N, T> = CollisionObject<N, 2, T>;
+        registry.with_filter(name, |_: &Object<N, T>, _: &Object<N, T>| true)
+    }
+
+    fn pick<T>(world: &CollisionWorld<N, 2, T>, at: &PickRequest) -> Picked {
+        ask::pick_by_point(world, at)
+    }
+}
+
+impl<N: Scalar> Viewed<3> for N {
+    fn quaternion(isometry: &Isometry3<N>) -> [f64; 4] {
+        let turn = &isometry.rotation.coords;
+        [turn.x, turn.y, turn.z, turn.w].map(N::as_f64)
+    }
+
+    fn placed(translation: &Vector<N, 3>, quaternion: [f64; 4]) -> Isometry3<N> {
+        let [x, y, z, w] = quaternion.map(N::lit);
+        let turn = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+        Isometry3::from_parts(Translation3::from(*translation), turn)
+    }
+
+    fn with_open_filter<T>(registry: Registry<N, 3, T>, name: &str) -> Registry<N, 3, T> {
+        type Object<N, T> = CollisionObject<N, 3, T>;
+        registry.with_filter(name, |_: &Object<N, T>, _: &Object<N, T>| true)
+    }
+
+    fn pick<T>(world: &CollisionWorld<N, 3, T>, at: &PickRequest) -> Picked {
+        ask::pick_by_ray(world, at)
+    }
+}
+
+/// Three coordinates; those that the dimension does not have are zero.
+pub(crate) fn coordinates<N: Real, const D: usize>(vector: &Vector<N, D>) -> [f64; 3] {
+    let mut three = [0.0; 3];
+    for (coordinate, own) in three.iter_mut().zip(vector.iter()) {
+        *coordinate = own.as_f64();
+    }
+    three
+}
+
+/// The coordinates that the dimension has, rounded to its scalar.
+pub(crate) fn vector<N: Real, const D: usize>(three: [f64; 3]) -> Vector<N, D> {
+    Vector::<N, D>::from_fn(|axis, _| N::lit(three[axis]))
+}
+
+/// The point of three coordinates.
+pub(crate) fn point<N: Real, const D: usize>(three: [f64; 3]) -> Point<N, D> {
+    Point::from(vector(three))
+}
+
+/// A pose as queries about two shapes take it, in either dimension; its matrix has the same bits.
+pub(crate) fn isometry<N: Real, const D: usize>(
+    pose: &Pose<N, D>,
+) -> na::Isometry<N, na::Rotation<N, D>, D> {
+    let rotation = na::Rotation::from_matrix_unchecked(pose.rotation);
+    na::Isometry::from_parts(na::Translation::from(pose.translation), rotation)
+}
+
+/// A quaternion of length 1; `None` for one of length zero, or a length that is not finite.
+pub(crate) fn unit_quaternion(quaternion: [f64; 4]) -> Option<[f64; 4]> {
+    let largest = quaternion.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let is_usable = largest > 0.0 && largest.is_finite();
+    // Divided first, so that no square is too large or too small.
+    let scaled = quaternion.map(|x| x / largest);
+    let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
+    is_usable.then(|| scaled.map(|x| x / length))
+}

@@ -1,0 +1,227 @@
+//! What is shown: a recording or a sample, whatever its scalar and dimension.
+
+use impinge::debug_render::{DebugDrawing, DebugRender};
+use impinge::narrow_phase::CollisionObjectHandle;
+use impinge::world::{CollisionObject, CollisionWorld};
+use impinge_record::RecordData;
+use impinge_samples::ControlValue;
+
+use crate::EngineError;
+use crate::answer::{
+    Frame, Info, NearestAnswer, ObjectAnswer, PairAnswer, Picked, RayAnswer, Status,
+};
+use crate::ask;
+use crate::describe::{object_answer, object_of};
+use crate::explain::Two;
+use crate::picture::Picture;
+use crate::request::{DragRequest, FrameRequest, NearestRequest, PickRequest, RayRequest};
+use crate::space::{Viewed, unit_quaternion, vector};
+
+/// So many steps may one message ask for.
+pub(crate) const MAX_STEPS: u64 = 10_000;
+
+/// What an engine shows: the messages of the page as methods, without scalar and dimension.
+///
+/// A method that fails has changed nothing, but that a step which fails midway may have changed a part.
+#[expect(clippy::missing_errors_doc, reason = "the variants of the error say when they are")]
+pub trait Stage {
+    /// What it is.
+    fn info(&self) -> Info;
+
+    /// How it is at its step. Controls of a sample are named where they changed since the last call.
+    fn status(&mut self) -> Status;
+
+    /// Appends bytes to a recording that grows.
+    fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError>;
+
+    /// Goes to a step of a recording; beyond the last one to that.
+    fn seek(&mut self, step: usize) -> Result<(), EngineError>;
+
+    /// Goes on by some steps; a recording stays at its end.
+    fn advance(&mut self, steps: u64) -> Result<(), EngineError>;
+
+    /// Begins again.
+    fn reset(&mut self) -> Result<(), EngineError>;
+
+    /// Sets a control of a sample.
+    fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError>;
+
+    /// Draws it.
+    fn frame(&mut self, asked: &FrameRequest) -> Result<Frame, EngineError>;
+
+    /// All about an object.
+    fn object(&self, object: u32) -> Result<ObjectAnswer, EngineError>;
+
+    /// All about two objects, and why they touch or do not.
+    fn pair(&self, a: u32, b: u32) -> Result<PairAnswer, EngineError>;
+
+    /// The object at a point on the screen.
+    fn pick(&self, at: &PickRequest) -> Picked;
+
+    /// The objects that a ray hits.
+    fn ray(&self, asked: &RayRequest) -> RayAnswer;
+
+    /// The objects nearest to a point.
+    fn nearest(&self, asked: &NearestRequest) -> NearestAnswer;
+
+    /// Moves an object by hand.
+    fn drag(&mut self, asked: &DragRequest) -> Result<(), EngineError>;
+}
+
+/// Where the world of a stage comes from: what recordings and samples have each for themselves.
+#[expect(clippy::missing_errors_doc, reason = "the variants of the error say when they are")]
+pub trait Source<N: Viewed<D>, const D: usize> {
+    /// The data of the objects.
+    type Data: RecordData;
+
+    /// The world.
+    fn world(&self) -> &CollisionWorld<N, D, Self::Data>;
+
+    /// As [`Stage::info`], but for what is known of the world itself.
+    fn info(&self, bounds: [[f64; 3]; 2]) -> Info;
+
+    /// As [`Stage::status`].
+    fn status(&mut self) -> Status;
+
+    /// As [`Stage::push`].
+    fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError>;
+
+    /// As [`Stage::seek`].
+    fn seek(&mut self, step: usize) -> Result<(), EngineError>;
+
+    /// As [`Stage::advance`].
+    fn advance(&mut self, steps: u64) -> Result<(), EngineError>;
+
+    /// As [`Stage::reset`].
+    fn reset(&mut self) -> Result<(), EngineError>;
+
+    /// As [`Stage::control`].
+    fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError>;
+
+    /// Moves an object and updates the world.
+    fn drag(&mut self, object: CollisionObjectHandle, to: &N::Isometry) -> Result<(), EngineError>;
+
+    /// Draws what is to be seen beside the objects.
+    fn draw(&self, drawing: &mut DebugDrawing<N, D>, renderer: &mut dyn DebugRender<N, D>);
+
+    /// Names of pair filters for which others stand in.
+    fn stand_ins(&self) -> &[String];
+}
+
+/// The stage of a source: its world, and what was drawn of it.
+///
+/// ```
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::world::{CollisionGroups, GeometricQueryType};
+/// use impinge_page::{Recorded, Shown, Stage};
+/// use impinge_record::{Recorder, Registry};
+///
+/// let mut recorder = Recorder::new(0.02, Registry::<f64, 2, Vec<u8>>::new())?;
+/// let (ball, query) = (ShapeHandle::new(Ball::new(1.0)), GeometricQueryType::Proximity(0.0));
+/// for x in [0.0, 5.0] {
+///     let position = Isometry::translation(x, 0.0);
+///     recorder.add(position, ball.clone(), CollisionGroups::new(), query, Vec::new())?;
+/// }
+/// recorder.update();
+/// let recorded = Recorded::<f64, 2>::open(recorder.finish().bytes, Registry::new())?;
+/// assert_eq!(Shown::new(recorded).pair(0, 1)?.distance, 3.0);
+/// # Ok::<(), impinge_page::EngineError>(())
+/// ```
+#[derive(Debug)]
+pub struct Shown<S, N: Viewed<D>, const D: usize> {
+    source: S,
+    picture: Picture<N, D>,
+}
+
+impl<S: Source<N, D>, N: Viewed<D>, const D: usize> Shown<S, N, D> {
+    /// A stage of which nothing was drawn.
+    #[must_use]
+    pub fn new(source: S) -> Self {
+        Self { source, picture: Picture::new() }
+    }
+
+    fn object_of(&self, object: u32) -> Result<&CollisionObject<N, D, S::Data>, EngineError> {
+        object_of(self.source.world(), object).ok_or(EngineError::NoObject(object))
+    }
+}
+
+impl<S: Source<N, D>, N: Viewed<D>, const D: usize> Stage for Shown<S, N, D> {
+    fn info(&self) -> Info {
+        self.source.info(self.picture.bounds(self.source.world()))
+    }
+
+    fn status(&mut self) -> Status {
+        self.source.status()
+    }
+
+    fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
+        self.picture.note_change();
+        self.source.push(bytes)
+    }
+
+    fn seek(&mut self, step: usize) -> Result<(), EngineError> {
+        self.picture.note_change();
+        self.source.seek(step)
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), EngineError> {
+        if steps > MAX_STEPS {
+            return Err(EngineError::TooManySteps(steps));
+        }
+        self.picture.note_change();
+        self.source.advance(steps)
+    }
+
+    fn reset(&mut self) -> Result<(), EngineError> {
+        self.picture.note_change();
+        self.source.reset()
+    }
+
+    fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError> {
+        self.picture.note_change();
+        self.source.control(name, value)
+    }
+
+    fn frame(&mut self, asked: &FrameRequest) -> Result<Frame, EngineError> {
+        let Self { source, picture } = self;
+        picture.frame(source.world(), asked, |drawing, renderer| source.draw(drawing, renderer))
+    }
+
+    fn object(&self, object: u32) -> Result<ObjectAnswer, EngineError> {
+        Ok(object_answer(self.source.world(), self.object_of(object)?))
+    }
+
+    fn pair(&self, a: u32, b: u32) -> Result<PairAnswer, EngineError> {
+        if a == b {
+            return Err(EngineError::OneObject(a));
+        }
+        let (one, two) = (self.object_of(a)?, self.object_of(b)?);
+        let (world, stand_ins) = (self.source.world(), self.source.stand_ins());
+        Ok(Two { world, one, two, stand_ins }.answer())
+    }
+
+    fn pick(&self, at: &PickRequest) -> Picked {
+        N::pick(self.source.world(), at)
+    }
+
+    fn ray(&self, asked: &RayRequest) -> RayAnswer {
+        ask::ray(self.source.world(), asked)
+    }
+
+    fn nearest(&self, asked: &NearestRequest) -> NearestAnswer {
+        ask::nearest(self.source.world(), asked)
+    }
+
+    fn drag(&mut self, asked: &DragRequest) -> Result<(), EngineError> {
+        let object = self.object_of(asked.object)?;
+        let rotation = match asked.rotation {
+            Some(rotation) => unit_quaternion(rotation).ok_or(EngineError::Rotation(rotation))?,
+            None => N::quaternion(object.position()),
+        };
+        let to = N::placed(&vector(asked.translation), rotation);
+        let handle = object.handle();
+        self.picture.note_change();
+        self.source.drag(handle, &to)
+    }
+}

@@ -1,0 +1,135 @@
+//! Why two objects do not touch: each of the four reasons.
+
+use impinge::dim2;
+use impinge::dim3;
+use impinge::shape::{Ball, Cuboid};
+use impinge::world::CollisionGroups;
+use impinge_page::{Engine, Recorded, Shown, Viewed};
+use impinge_record::{Recordable, Registry};
+use serde_json::Value;
+
+use crate::support::{Asker, Scene, all};
+
+/// The tests of a pair by name: whether they pass, and their texts.
+struct Reasons(Value);
+
+impl Reasons {
+    fn of(asker: &mut Asker, a: u32, b: u32) -> Self {
+        let pair = asker.ask(&format!(r#"{{"do": "pair", "a": {a}, "b": {b}}}"#));
+        let why = pair["why"].clone();
+        let names: Vec<_> =
+            why["tests"].as_array().expect("a list").iter().map(|test| &test["name"]).collect();
+        assert_eq!(names, ["groups", "filter", "boxes", "distance"], "all are asked");
+        Self(why)
+    }
+
+    /// The only test that does not pass has a name and a text, which is the text of all.
+    fn assert_only(&self, name: &str, text: &str) {
+        let tests = self.0["tests"].as_array().expect("a list");
+        let failing: Vec<_> = tests.iter().filter(|test| test["passes"] == false).collect();
+        assert_eq!(failing.len(), 1, "{name}: {}", self.0);
+        assert_eq!(
+            (&failing[0]["name"], &failing[0]["text"]),
+            (&name.into(), &text.into()),
+            "{tests:?}"
+        );
+        assert_eq!(self.0["touch"], false, "{name}");
+        assert_eq!(self.0["text"], format!("They do not touch: {text}."), "{name}");
+    }
+}
+
+/// Objects on top of each other, but for the last three. The filter refuses pairs of objects with the same data.
+fn scene<N: Recordable<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) -> Vec<u8> {
+    let [mut shy, mut other] = [CollisionGroups::new(); 2];
+    shy.set_membership(&[2]);
+    other.set_membership(&[0]);
+    other.set_whitelist(&[0, 1]);
+    let mut scene = Scene::<N, D>::new(registry);
+    scene.0.register_broad_phase_pair_filter("teams").expect("the registry has it");
+    let origin = [0.0; 3];
+    let ball = || Ball::new(N::ONE);
+    let objects = [
+        scene.add_in(shy, origin, ball()),
+        scene.add_in(other, origin, ball()),
+        scene.add(origin, ball()),
+        scene.add([1.5, 1.5, 0.0], ball()),
+        scene.add([6.0, 0.0, 0.0], Cuboid::new(all::<N, D>(1.0))),
+    ];
+    let teams: [&[u8]; 5] = [b"a", b"b", b"c", b"d", b"e"];
+    for (object, team) in objects.into_iter().zip(teams) {
+        scene.0.set_data(object, team.to_vec()).expect("it is there");
+    }
+    let twin = scene.add([-1.0, 0.0, 0.0], ball());
+    scene.0.set_data(twin, b"c".to_vec()).expect("it is there");
+    scene.finish()
+}
+
+fn reasons<N: Viewed<D>, const D: usize>(registry: Registry<N, D, Vec<u8>>) {
+    let bytes = scene(registry.clone());
+    let recorded = Recorded::open(bytes, registry).expect("it was just written");
+    let mut asker = Asker(Engine::new());
+    asker.0.show(Box::new(Shown::new(recorded)));
+
+    let text = "membership 2 of 0 is not in the whitelist 0, 1 of 1";
+    Reasons::of(&mut asker, 0, 1).assert_only("groups", text);
+    Reasons::of(&mut asker, 5, 2).assert_only("filter", "the filter teams refuses the pair");
+    let text = "0.1213 apart; contacts are kept up to 0";
+    Reasons::of(&mut asker, 2, 3).assert_only("distance", text);
+
+    // Boxes that do not overlap are of shapes that are apart.
+    let far = Reasons::of(&mut asker, 2, 4).0;
+    let [boxes, distance] = [2, 3].map(|test| &far["tests"][test]);
+    assert_eq!((&boxes["passes"], &distance["passes"]), (&false.into(), &false.into()), "{far}");
+    let text = boxes["text"].as_str().expect("a text");
+    let apart =
+        text.strip_prefix("the loosened boxes are ").and_then(|rest| rest.strip_suffix(" apart"));
+    let apart: f64 = apart.and_then(|number| number.parse().ok()).expect(text);
+    assert!((3.75..4.0).contains(&apart), "4 less both margins: {text}");
+    assert_eq!(far["text"], format!("They do not touch: {text}."), "the first reason");
+    assert_eq!(distance["text"], "4 apart; contacts are kept up to 0", "from 1 to 5");
+
+    let touching = Reasons::of(&mut asker, 1, 5).0;
+    assert_eq!(touching["touch"], true, "{touching}");
+    assert_eq!(
+        touching["text"], "They touch: 1 contact point, the deepest of depth 1.",
+        "{touching}"
+    );
+    let passing =
+        touching["tests"].as_array().expect("a list").iter().all(|test| test["passes"] == true);
+    assert!(passing, "{touching}");
+}
+
+fn registry2<N: Viewed<2>>() -> Registry<N, 2, Vec<u8>> {
+    type Object<N> = dim2::world::CollisionObject<N, Vec<u8>>;
+    Registry::new().with_filter("teams", |a: &Object<N>, b: &Object<N>| a.data() != b.data())
+}
+
+fn registry3<N: Viewed<3>>() -> Registry<N, 3, Vec<u8>> {
+    type Object<N> = dim3::world::CollisionObject<N, Vec<u8>>;
+    Registry::new().with_filter("teams", |a: &Object<N>, b: &Object<N>| a.data() != b.data())
+}
+
+#[test]
+fn each_reason_is_named() {
+    reasons::<f32, 2>(registry2());
+    reasons::<f64, 2>(registry2());
+    reasons::<f32, 3>(registry3());
+    reasons::<f64, 3>(registry3());
+}
+
+#[test]
+fn what_lacks_in_a_page_is_stood_in_for() {
+    let mut asker = Asker::of(&scene::<f64, 2>(registry2()));
+    let reasons = Reasons::of(&mut asker, 5, 2).0;
+    assert_eq!(reasons["touch"], true, "the filter is code that the page does not have");
+    let text = reasons["tests"][1]["text"].as_str().expect("a text");
+    assert!(text.contains("lets all pairs through here"), "{text}");
+    let status = asker.ask(r#"{"do": "seek", "step": 1}"#);
+    assert!(
+        status["diverged"].as_str().is_some_and(|text| text.starts_with("step 1: ")),
+        "{status}"
+    );
+    let (info, _) =
+        asker.ask_with(r#"{"do": "open", "kind": "recording"}"#, &scene::<f64, 2>(registry2()));
+    assert_eq!(info["notes"].as_array().map(Vec::len), Some(1), "{info}");
+}

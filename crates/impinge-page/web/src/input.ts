@@ -1,0 +1,188 @@
+// Pointer and keyboard: what a gesture means, without what it does.
+
+import { button, make } from "./dom";
+
+/** What the pointer's button means. */
+export type Mode = "select" | "pair" | "ray" | "move";
+
+/** With a hint for the reader, and a key. */
+const MODES: { mode: Mode; label: string; hint: string; key: string }[] = [
+  { mode: "select", label: "Select", hint: "Click an object; Shift-click a second one", key: "s" },
+  { mode: "pair", label: "Pair", hint: "Click two objects: why do they touch, or not?", key: "p" },
+  { mode: "ray", label: "Ray", hint: "Draw a ray: drag in 2D, click in 3D", key: "r" },
+  { mode: "move", label: "Move", hint: "Drag an object; also Alt-drag in any mode", key: "m" },
+];
+/** A press that moved less than this, in CSS pixels, is a click. */
+const SLACK = 5;
+
+/** A point of the window in CSS pixels. */
+export interface At {
+  x: number;
+  y: number;
+}
+
+/** What the pointer asks for. */
+export interface Gestures {
+  /** `second`: the object is added to the selection. */
+  click(at: At, second: boolean): void;
+  /** A ray from a point to another one, in 2D; while it is drawn and when it ends. */
+  drawRay(from: At, to: At): void;
+  /** True if there is an object to move. */
+  grab(at: At): boolean;
+  /** What was grabbed follows. */
+  move(to: At): void;
+  /** The gesture ended. */
+  drop(): void;
+  /** Whether the camera may take the drag. */
+  free(camera: boolean): void;
+  /** Rays are drawn by a drag, not by a click. */
+  dragsRays(): boolean;
+}
+
+/** The bar of modes, and the canvas under the pointer. */
+export class Pointer {
+  mode: Mode = "select";
+  private readonly buttons = new Map<Mode, HTMLButtonElement>();
+  /** Where the button went down, while it is down. */
+  private start: At | null = null;
+  /** What the gesture will be if it moves. */
+  private action: "click" | "ray" | "move" = "click";
+  /** It is no click any more. */
+  private moved = false;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly hint: HTMLElement,
+    private readonly gestures: Gestures,
+    signal: AbortSignal,
+  ) {
+    // Before the camera's own listeners, which a captured gesture switches off.
+    canvas.addEventListener("pointerdown", (event) => this.down(event), { signal, capture: true });
+    canvas.addEventListener("pointermove", (event) => this.drag(event), { signal });
+    canvas.addEventListener("pointerup", (event) => this.up(event), { signal });
+    canvas.addEventListener("pointercancel", () => this.finish(), { signal });
+  }
+
+  /** The buttons of the modes. */
+  tools(): HTMLElement {
+    const group = make("div", { class: "modes", role: "group", "aria-label": "Mode" });
+    for (const { mode, label, hint, key } of MODES) {
+      const element = button(label, () => this.choose(mode), { title: `${hint} (${key})` });
+      this.buttons.set(mode, element);
+      group.append(element);
+    }
+    this.choose("select");
+    return group;
+  }
+
+  /** Takes up another mode, and shows its hint. */
+  choose(mode: Mode): void {
+    this.mode = mode;
+    for (const [other, element] of this.buttons) element.setAttribute("aria-pressed", String(other === mode));
+    this.canvas.dataset.mode = mode;
+    this.hint.textContent = MODES.find((other) => other.mode === mode)?.hint ?? "";
+  }
+
+  /** Only the first finger and the main button draw and move: the rest is the camera's. */
+  private down(event: PointerEvent): void {
+    if (event.button !== 0 || !event.isPrimary) return;
+    this.start = { x: event.clientX, y: event.clientY };
+    this.moved = false;
+    this.action = this.actionOf(event);
+    this.gestures.free(this.action === "click");
+    if (this.action !== "click") this.canvas.setPointerCapture(event.pointerId);
+  }
+
+  /** Moving needs an object under the pointer; otherwise the camera takes the drag. */
+  private actionOf(event: PointerEvent): "click" | "ray" | "move" {
+    const at = { x: event.clientX, y: event.clientY };
+    if (this.mode === "ray" && this.gestures.dragsRays() && !event.altKey) return "ray";
+    if ((this.mode === "move" || event.altKey) && this.gestures.grab(at)) return "move";
+    return "click";
+  }
+
+  /** A press becomes a drag once it has moved far enough. */
+  private drag(event: PointerEvent): void {
+    if (!this.start || !event.isPrimary) return;
+    const at = { x: event.clientX, y: event.clientY };
+    this.moved ||= Math.hypot(at.x - this.start.x, at.y - this.start.y) > SLACK;
+    if (!this.moved) return;
+    if (this.action === "ray") this.gestures.drawRay(this.start, at);
+    if (this.action === "move") this.gestures.move(at);
+  }
+
+  /** A press that did not move is a click, whatever the mode. */
+  private up(event: PointerEvent): void {
+    if (!this.start || !event.isPrimary) return;
+    const at = { x: event.clientX, y: event.clientY };
+    if (!this.moved) this.gestures.click(at, event.shiftKey || this.mode === "pair");
+    this.finish();
+  }
+
+  /** Also where the browser took the gesture away. */
+  private finish(): void {
+    if (this.action === "move") this.gestures.drop();
+    this.start = null;
+    this.action = "click";
+    this.gestures.free(true);
+  }
+}
+
+/** A key, what it does, and the words for it in the list of keys. */
+export interface Key {
+  keys: string[];
+  text: string;
+  act: (event: KeyboardEvent) => void;
+}
+
+/** Calls what a key stands for, unless the reader types or a control takes the key itself. */
+export function listen(keys: Key[], signal: AbortSignal): void {
+  const acts = new Map(keys.flatMap(({ keys: names, act }) => names.map((name) => [name, act] as const)));
+  const act = (event: KeyboardEvent): void => {
+    if (event.ctrlKey || event.metaKey || event.altKey || taken(event)) return;
+    const found = acts.get((event.shiftKey && event.key.startsWith("Arrow") ? "Shift+" : "") + event.key);
+    if (!found) return;
+    event.preventDefault();
+    found(event);
+  };
+  document.addEventListener("keydown", act, { signal });
+}
+
+/** Elements that have a meaning of their own for a key keep it. */
+function taken(event: KeyboardEvent): boolean {
+  if (!(event.target instanceof HTMLElement)) return false;
+  if (event.target.closest("dialog[open]")) return true;
+  if (event.target instanceof HTMLSelectElement) return true;
+  if (event.target instanceof HTMLInputElement) return event.target.type !== "checkbox" || event.key === " ";
+  const presses = event.key === " " || event.key === "Enter";
+  return presses && event.target.closest("button, a, summary") !== null;
+}
+
+/** The list of keys, as a dialog that the browser opens and closes. */
+export function fillHelp(dialog: HTMLDialogElement, keys: Key[]): void {
+  const rows = keys.map(({ keys: names, text }) => {
+    const shown = keyNames(names).map((name) => make("kbd", {}, name));
+    return make("tr", {}, make("td", {}, ...shown), make("td", {}, text));
+  });
+  const hints = MODES.map(({ label, hint, key }) =>
+    make("tr", {}, make("td", {}, make("kbd", {}, key)), make("td", {}, `${label}: ${hint}`)),
+  );
+  const close = button("Close", () => dialog.close(), { autofocus: true });
+  dialog.replaceChildren(
+    make("div", { class: "title" }, make("h2", { id: "help-title" }, "Keys"), close),
+    make("table", {}, make("tbody", {}, ...rows, ...hints)),
+    make("p", {}, "Drag to orbit or pan, wheel or pinch to zoom, two fingers to pan."),
+  );
+}
+
+/** Keys as they are printed on a keyboard; of a long list its ends. */
+function keyNames(keys: string[]): string[] {
+  const names = keys.map((key) => (key === " " ? "Space" : key.replace("Arrow", "").replace("Escape", "Esc")));
+  if (names.length <= 2) return names;
+  return keys.every((key) => key.startsWith("Shift+")) ? ["Shift", "arrows"] : [`${names[0]} … ${names.at(-1)}`];
+}
+
+/** The modes and their keys. */
+export function modeKeys(choose: (mode: Mode) => void): Key[] {
+  return MODES.map(({ mode, key, label }) => ({ keys: [key], text: label, act: () => choose(mode) }));
+}

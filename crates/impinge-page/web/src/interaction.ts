@@ -1,0 +1,159 @@
+// What gestures and keys do to a stage.
+
+import type { Engine } from "./engine";
+import { byId } from "./dom";
+import { type At, fillHelp, type Gestures, type Key, listen, modeKeys, Pointer } from "./input";
+import type { PickAnswer, Vec3 } from "./protocol";
+import type { Viewer } from "./viewer";
+
+/** A click this far from an object, in CSS pixels, still picks it in 2D. */
+const REACH = 6;
+
+/** An object in the hand: where it was, and where it was taken. */
+interface Grip {
+  object: number;
+  translation: Vec3;
+  anchor: Vec3;
+}
+
+/** Connects the canvas and the keyboard with a viewer until it is closed. Returns the bar of modes. */
+export function interact(engine: Engine, viewer: Viewer, leave: (() => void) | null): HTMLElement {
+  const hand = new Hand(engine, viewer, () => pointer.mode);
+  const pointer: Pointer = new Pointer(byId<HTMLCanvasElement>("canvas"), byId("hint"), hand, viewer.signal);
+  const tools = pointer.tools();
+  const keys = [...stageKeys(viewer, leave), ...modeKeys((mode) => pointer.choose(mode))];
+  listen(keys, viewer.signal);
+  fillHelp(byId<HTMLDialogElement>("help"), keys.slice(0, -4));
+  return tools;
+}
+
+/** The pointer's gestures as questions and moves. */
+class Hand implements Gestures {
+  /** What is dragged at the moment. */
+  private grip: Grip | null = null;
+
+  constructor(
+    private readonly engine: Engine,
+    private readonly viewer: Viewer,
+    private readonly mode: () => string,
+  ) {}
+
+  /** In 2D a ray is a drag, so that a click in that mode selects as in the others. */
+  click(at: At, second: boolean): void {
+    const { camera } = this.viewer.view;
+    const { from, direction } = camera.rayAt(at.x, at.y);
+    this.viewer.attempt(() => {
+      if (this.mode() === "ray" && !camera.flat) this.viewer.inquiry.shoot(from, direction, null);
+      else this.viewer.inquiry.pick(this.pick(at).object, second);
+    });
+  }
+
+  /** The ray has the length of the drag: it hits what lies between its ends. */
+  drawRay(from: At, to: At): void {
+    const [a, b] = [this.point(from), this.point(to)];
+    const direction: Vec3 = [b[0] - a[0], b[1] - a[1], 0];
+    this.viewer.inquiry.shoot(a, direction, Math.hypot(...direction));
+  }
+
+  /** Stops time, since a running world would take the object back. */
+  grab(at: At): boolean {
+    const { camera } = this.viewer.view;
+    this.viewer.attempt(() => {
+      const { object, point } = this.pick(at);
+      if (object === null) return;
+      const { translation } = this.engine.object(object);
+      this.grip = { object, translation, anchor: camera.flat ? this.point(at) : (point ?? translation) };
+      this.viewer.player.pause();
+      if (!this.viewer.inquiry.selected.includes(object)) this.viewer.inquiry.pick(object, false);
+    });
+    return this.grip !== null;
+  }
+
+  /** The point that was taken stays under the pointer. */
+  move(to: At): void {
+    const { grip } = this;
+    if (!grip) return;
+    const point = this.viewer.view.camera.pointAt(to.x, to.y, grip.anchor);
+    const translation = grip.translation.map((part, index) => part + (point[index] ?? 0) - (grip.anchor[index] ?? 0));
+    this.viewer.attempt(() => this.viewer.player.take(this.engine.drag(grip.object, translation as Vec3)));
+  }
+
+  /** The object stays where it is: recordings take it back with the next step. */
+  drop(): void {
+    this.grip = null;
+  }
+
+  /** A drag that means something else must not turn the camera. */
+  free(camera: boolean): void {
+    this.viewer.view.camera.controls.enabled = camera;
+  }
+
+  dragsRays(): boolean {
+    return this.viewer.view.camera.flat;
+  }
+
+  /** The object under a point of the window. */
+  private pick(at: At): PickAnswer {
+    const { camera } = this.viewer.view;
+    const { from, direction } = camera.rayAt(at.x, at.y);
+    return this.engine.pick(from, direction, REACH / camera.pixelsPerUnit());
+  }
+
+  /** The point of the world under a point of the window, in 2D. */
+  private point(at: At): Vec3 {
+    return this.viewer.view.camera.rayAt(at.x, at.y).from;
+  }
+}
+
+/** The keys of a stage with their words; `leave` goes back to the gallery. */
+function stageKeys(viewer: Viewer, leave: (() => void) | null): Key[] {
+  const { player, view, inquiry, layers } = viewer;
+  const turn = ({ key }: KeyboardEvent): void => {
+    const right = Number(key === "ArrowRight") - Number(key === "ArrowLeft");
+    view.camera.nudge(right, Number(key === "ArrowUp") - Number(key === "ArrowDown"));
+    viewer.redraw();
+  };
+  const zoom = ({ key }: KeyboardEvent): void => {
+    view.camera.zoom(key === "+" ? 1.15 : 1 / 1.15);
+    viewer.redraw();
+  };
+  const seekable = player.canSeek;
+  const escape = (): void => {
+    if (inquiry.empty && leave) leave();
+    else inquiry.clear();
+  };
+  return [
+    { keys: [" "], text: "play or pause", act: () => player.toggle() },
+    { keys: ["ArrowRight"], text: "one step on", act: () => player.move(1) },
+    { keys: ["ArrowLeft"], text: "one step back (recordings)", act: () => player.move(-1) },
+    { keys: ["PageDown"], text: "ten steps on", act: () => player.move(10) },
+    { keys: ["PageUp"], text: "ten steps back (recordings)", act: () => player.move(-10) },
+    { keys: ["ArrowUp"], text: "faster", act: () => player.faster(1) },
+    { keys: ["ArrowDown"], text: "slower", act: () => player.faster(-1) },
+    { keys: ["Home"], text: "to the start", act: () => player.reset() },
+    { keys: ["End"], text: "to the end (recordings)", act: () => seekable && player.follow() },
+    {
+      keys: [".", ","],
+      text: "next and last mark of the time line",
+      act: (event) => viewer.toMark(event.key === "." ? 1 : -1),
+    },
+    {
+      keys: ["Shift+ArrowLeft", "Shift+ArrowRight", "Shift+ArrowUp", "Shift+ArrowDown"],
+      text: "turn or shift the view",
+      act: turn,
+    },
+    {
+      keys: ["+", "-"],
+      text: "nearer, farther",
+      act: zoom,
+    },
+    { keys: ["f"], text: "fit the world into the view", act: () => viewer.fit() },
+    {
+      keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"],
+      text: "layers on and off",
+      act: (event) => layers.toggle((Number(event.key) + 9) % 10),
+    },
+    { keys: ["Escape"], text: "clear the selection, then back to the gallery", act: escape },
+    { keys: ["?"], text: "this list", act: () => byId<HTMLDialogElement>("help").showModal() },
+  ];
+}

@@ -1,0 +1,129 @@
+// The page: what it opens when it is loaded, and what changes with its address.
+
+import type { WebGLRenderer } from "three";
+import { button, byId, setText } from "./dom";
+import { readModule, readRecording, readScene, type Scene } from "./embedded";
+import { type Engine, loadEngine } from "./engine";
+import { sampleInAddress, showGallery } from "./gallery";
+import { interact } from "./interaction";
+import { follow } from "./live";
+import type { Info } from "./protocol";
+import { makeRenderer } from "./view";
+import { Viewer } from "./viewer";
+
+/** What is open at the moment. The engine has one stage, so that there is one viewer at most. */
+class Page {
+  private viewer: Viewer | null = null;
+  /** Made when the first stage opens: the gallery needs no graphics. */
+  private renderer: WebGLRenderer | null = null;
+
+  constructor(
+    private readonly scene: Scene,
+    private readonly engine: Engine,
+  ) {}
+
+  /** Opens what the file says; errors of it are the caller's. */
+  open(): void {
+    switch (this.scene.open) {
+      case "recording":
+        this.show(this.engine.open({ kind: "recording", bytes: readRecording() }), null);
+        break;
+      case "live":
+        this.watch(this.scene.log ?? "/log");
+        break;
+      case "samples":
+        addEventListener("hashchange", () => this.route());
+        this.route();
+    }
+  }
+
+  /** The gallery, or the sample that the address names. */
+  private route(): void {
+    const name = sampleInAddress();
+    this.viewer?.close();
+    this.viewer = null;
+    dismiss();
+    byId("viewer").hidden = name === null;
+    byId("gallery").hidden = name !== null;
+    document.title = this.scene.title;
+    if (name === null) showGallery(byId("gallery"), this.scene.title, this.engine.samples());
+    else attempt(() => this.show(this.engine.open({ kind: "sample", name }), () => (location.hash = "")));
+  }
+
+  /** Shows the stage that the engine has opened. Samples run at once, unless the reader prefers less motion. */
+  private show(info: Info, leave: (() => void) | null): Viewer {
+    const title = info.title || this.scene.title;
+    byId("viewer").hidden = false;
+    byId("back").hidden = leave === null;
+    setText(byId("title"), title);
+    setText(byId("facts"), facts(info));
+    document.title = title;
+    this.renderer ??= makeRenderer(byId<HTMLCanvasElement>("canvas"));
+    const viewer = new Viewer(this.engine, this.renderer, info, complain);
+    this.viewer = viewer;
+    const fit = button("Fit", () => viewer.fit(), { title: "Fit the world into the view (f)" });
+    const help = button("?", () => byId<HTMLDialogElement>("help").showModal(), {
+      "aria-label": "Keys",
+      title: "Keys (?)",
+    });
+    byId("tools").replaceChildren(interact(this.engine, viewer, leave), fit, help);
+    if (info.kind === "sample" && !matchMedia("(prefers-reduced-motion: reduce)").matches) viewer.player.toggle();
+    return viewer;
+  }
+
+  /** The stage is opened when the head of the recording is there, which says its dimension. */
+  private watch(address: string): void {
+    this.engine.open({ kind: "stream" });
+    const take = (bytes: Uint8Array): void =>
+      attempt(() => {
+        const info = this.engine.push(bytes);
+        if (this.viewer) this.viewer.grow(info);
+        else if (info.steps) this.show(info, null);
+      });
+    follow(address, take).then(
+      () => this.viewer?.ended(),
+      (error: unknown) => complain(`The recording cannot be followed: ${text(error)}`),
+    );
+  }
+}
+
+/** What a stage is, in a line: dimension, scalar, length and the program that wrote it. */
+function facts(info: Info): string {
+  const steps = info.steps === null || info.kind === "stream" ? [] : [`${info.steps} steps`];
+  return [`${info.dimension}D`, info.scalar, ...steps, info.written_by].filter(Boolean).join(" · ");
+}
+
+/** Shows a text that the reader should know; it stays until it is dismissed. */
+function complain(message: string): void {
+  const notice = byId("notice");
+  setText(notice.querySelector("p") ?? notice, message);
+  notice.hidden = false;
+}
+
+/** Hides the notice. */
+function dismiss(): void {
+  byId("notice").hidden = true;
+}
+
+/** Does what may fail, and says so if it does. */
+function attempt(act: () => void): void {
+  try {
+    act();
+  } catch (error) {
+    complain(text(error));
+  }
+}
+
+/** The message of whatever was thrown. */
+function text(error: unknown): string {
+  return error instanceof Error ? error.message : String(error);
+}
+
+/** A page that cannot be shown says why instead of staying blank. */
+async function main(): Promise<void> {
+  byId("notice").querySelector("button")?.addEventListener("click", dismiss);
+  const page = new Page(readScene(), await loadEngine(await readModule()));
+  page.open();
+}
+
+main().catch((error: unknown) => complain(`This page cannot be shown: ${text(error)}`));

@@ -1,0 +1,210 @@
+// What the page draws and how it is operated, with the engine of boxes in place of the module.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import type { Browser } from "puppeteer-core";
+import type { Vec3 } from "../src/protocol";
+import { projection2, projection3, silhouette } from "./project";
+import { findBrowser, golden, launch, settle, textOf, until, visit, write } from "./support";
+
+const path = findBrowser();
+if (!path) console.log("no browser: the tests of the page's drawing are skipped");
+const options = { skip: path === null, timeout: 120_000 };
+const recording = write({ scene: { open: "recording", title: "Boxes <b>&" }, recording: golden(3) });
+const samples = write({ scene: { open: "samples", title: "Samples" } });
+const BOUNDS2: [Vec3, Vec3] = [
+  [-0.5, 0, 0],
+  [11, 15, 0],
+];
+let browser: Browser;
+
+before(async () => {
+  if (path) browser = await launch(path);
+});
+
+after(async () => {
+  await browser?.close();
+});
+
+test("a recording opens without an error, and its title is a text", options, async () => {
+  const { page, errors } = await visit(browser, recording, { fake: true });
+  await until(page, /^step 0 of 240: 60 objects, 1 pair, 2 contacts; contact of 0 and 1 started$/);
+  assert.equal(await textOf(page, "h1"), "Boxes <b>&");
+  assert.equal(await page.title(), "Boxes <b>&");
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("boxes in 2D cover the pixels that the fitted bounds say", options, async () => {
+  const { page } = await visit(browser, `${samples}#sample=boxes2:60`, { fake: true });
+  await until(page, /60 objects/);
+  for (const _ of Array.from({ length: 12 })) await page.keyboard.press("PageDown");
+  await until(page, /step 120/);
+  await settle(page);
+  const project = await projection2(page, BOUNDS2);
+  // The blue ones are every fourth of rows of eight: columns 0 and 4, rows 0 to 7 at a distance of one.
+  const [low, high] = [project([-0.5, 8, 0]), project([6.5, 0, 0])];
+  const seen = await silhouette(page, "blue");
+  for (const [one, other] of [
+    [seen.low, low],
+    [seen.high, high],
+  ] as const) {
+    assert.ok(
+      Math.hypot(one.x - other.x, one.y - other.y) < 4,
+      `${JSON.stringify(one)} is not ${JSON.stringify(other)}`,
+    );
+  }
+  // Fifteen boxes of area 1: some are below the normal, and edges are darker.
+  const box = (high.x - low.x) / 7;
+  const expected = 15 * box * box;
+  assert.ok(seen.pixels > 0.8 * expected && seen.pixels < 1.05 * expected, `${seen.pixels} of ${expected} pixels`);
+  await page.close();
+});
+
+test("boxes in 3D lie within the projection of their bounds and nearly fill it", options, async () => {
+  const { page } = await visit(browser, recording, { fake: true });
+  await until(page, /step 0/);
+  await settle(page);
+  const [low, high]: [Vec3, Vec3] = [
+    [-0.5, 0, -0.5],
+    [5, 7, 5],
+  ];
+  const project = await projection3(page, [low, high]);
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((bits) =>
+    project([0, 1, 2].map((axis) => ((bits >> axis) & 1 ? high : low)[axis]!) as Vec3),
+  );
+  const [xs, ys] = [corners.map(({ x }) => x), corners.map(({ y }) => y)];
+  const seen = await silhouette(page, "solid");
+  const margins = [
+    seen.low.x - Math.min(...xs),
+    Math.max(...xs) - seen.high.x,
+    seen.low.y - Math.min(...ys),
+    Math.max(...ys) - seen.high.y,
+  ];
+  assert.ok(
+    margins.every((margin) => margin > -4 && margin < 40),
+    `margins ${margins.join(", ")}`,
+  );
+  await page.close();
+});
+
+test("two clicks give the distance of two boxes", options, async () => {
+  const { page, errors } = await visit(browser, `${samples}#sample=boxes2:60`, { fake: true });
+  await until(page, /60 objects/);
+  const project = await projection2(page, BOUNDS2);
+  const [one, other] = [project([0.2, 0.6, 0]), project([6.1, 0.6, 0])];
+  await page.mouse.click(one.x, one.y);
+  await page.waitForSelector(".selection:not([hidden])");
+  assert.match(await textOf(page, ".selection"), /Object 0[\s\S]*box 0/);
+  await page.keyboard.down("Shift");
+  await page.mouse.click(other.x, other.y);
+  await page.keyboard.up("Shift");
+  await page.waitForFunction(() => document.querySelector(".selection h2")?.textContent?.startsWith("Pair"));
+  assert.match(await textOf(page, ".selection"), /Pair of 0 and 4[\s\S]*distance\s+5\b/);
+  assert.equal(await textOf(page, "#labels span:not([hidden])"), "5", "the length stands at the line");
+  assert.equal((await page.$$(".tests .pass")).length, 3);
+  assert.equal((await page.$$(".tests .fail")).length, 1);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector(".selection[hidden]");
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("an object follows the pointer", options, async () => {
+  const { page } = await visit(browser, `${samples}#sample=boxes2:60`, { fake: true });
+  await until(page, /60 objects/);
+  const project = await projection2(page, BOUNDS2);
+  const [from, to] = [project([0.2, 0.6, 0]), project([-3.3, 4.6, 0])];
+  await page.keyboard.press("m");
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  await page.mouse.move((from.x + to.x) / 2, from.y, { steps: 3 });
+  await page.mouse.move(to.x, to.y, { steps: 3 });
+  await page.mouse.up();
+  await settle(page);
+  const text = await textOf(page, ".selection");
+  const [x, y] = /position\s+(\S+), (\S+)/
+    .exec(text)!
+    .slice(1)
+    .map((part) => Number(part.replace("\u2212", "-")));
+  assert.ok(Math.abs(x! + 3.5) < 0.05 && Math.abs(y! - 4.5) < 0.05, text);
+  await page.close();
+});
+
+test("keys step, scrub, play and show the list of keys", options, async () => {
+  const { page } = await visit(browser, recording, { fake: true });
+  await until(page, /^step 0 /);
+  await page.keyboard.press("ArrowRight");
+  await until(page, /^step 1 /);
+  await page.keyboard.press("End");
+  await until(page, /^step 240 /);
+  await page.keyboard.press("ArrowLeft");
+  await until(page, /^step 239 /);
+  await page.keyboard.press("Home");
+  await until(page, /^step 0 /);
+  await page.keyboard.press(" ");
+  assert.equal(await page.$eval(".play", (element) => element.getAttribute("aria-label")), "Pause");
+  await until(page, /^step (?!0 )\d+ /);
+  await page.keyboard.press(" ");
+  assert.equal(await page.$eval(".play", (element) => element.getAttribute("aria-label")), "Play");
+  await page.keyboard.press("2");
+  assert.equal(await page.$eval(".layers li:nth-child(2) input", (element) => element.checked), true);
+  await page.keyboard.press("?");
+  assert.match(await textOf(page, "dialog[open]"), /play or pause/);
+  await page.keyboard.press("Escape");
+  assert.equal(await page.$("dialog[open]"), null);
+  await page.close();
+});
+
+test("the time line is a slider that is dragged", options, async () => {
+  const { page } = await visit(browser, recording, { fake: true });
+  await until(page, /^step 0 /);
+  const box = (await (await page.$(".timeline"))!.boundingBox())!;
+  const x = (step: number): number => box.x + 10 + (step / 240) * (box.width - 20);
+  await page.mouse.move(x(60), box.y + 30);
+  await page.mouse.down();
+  await until(page, /^step 60 /);
+  await page.mouse.move(x(180), box.y + 30, { steps: 4 });
+  await until(page, /^step 180 /);
+  await page.mouse.up();
+  assert.equal(await page.$eval(".timeline", (element) => element.getAttribute("aria-valuenow")), "180");
+  await page.close();
+});
+
+test("every control has a name, and what has the focus is marked", options, async () => {
+  const { page } = await visit(browser, `${samples}#sample=boxes3:60`, { fake: true });
+  await until(page, /60 objects/);
+  const nameless = await page.$$eval(
+    "#viewer :is(button, input, select, [tabindex])",
+    (elements) =>
+      elements.filter((element) => {
+        const own = element.getAttribute("aria-label") ?? element.textContent?.trim();
+        return !own && !element.closest("label")?.textContent?.trim();
+      }).length,
+  );
+  assert.equal(nameless, 0);
+  await page.keyboard.press("Tab");
+  const outline = await page.evaluate(() => getComputedStyle(document.activeElement!).outlineStyle);
+  assert.notEqual(outline, "none");
+  await page.close();
+});
+
+test("a narrow page does not scroll sideways", options, async () => {
+  for (const address of [recording, samples, `${samples}#sample=boxes2:60`]) {
+    const { page } = await visit(browser, address, { fake: true, width: 380, height: 780, dark: true });
+    await settle(page);
+    const [scroll, client] = await page.evaluate(() => [
+      document.documentElement.scrollWidth,
+      document.documentElement.clientWidth,
+    ]);
+    assert.ok(scroll! <= client!, `${scroll} of ${client} at ${address}`);
+    await page.close();
+  }
+});
+
+test("a file that lacks its engine says so", options, async () => {
+  const { page } = await visit(browser, recording);
+  await page.waitForSelector("#notice:not([hidden])");
+  assert.match(await textOf(page, "#notice"), /This page cannot be shown/);
+  await page.close();
+});

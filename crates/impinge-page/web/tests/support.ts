@@ -1,0 +1,133 @@
+// Pages from the template, a browser, and what tests read of both.
+
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { gzipSync } from "node:zlib";
+import puppeteer, { type Browser, type Page } from "puppeteer-core";
+import type { Scene } from "../src/embedded";
+
+/** The folder of the page's sources; `run.mjs` starts the tests there. */
+const WEB = process.cwd();
+/** Software rendering of ten thousand objects takes long on a busy machine; in milliseconds. */
+const PATIENCE = 180_000;
+const FLAGS = [
+  "--headless=new",
+  "--no-sandbox",
+  "--use-gl=angle",
+  "--use-angle=swiftshader",
+  "--enable-unsafe-swiftshader",
+];
+
+/** What a file is made of. */
+export interface Parts {
+  scene: Scene;
+  recording?: Uint8Array;
+  wasm?: Uint8Array;
+}
+
+/** The path of a browser, or null where there is none. */
+export function findBrowser(): string | null {
+  for (const name of ["chromium", "chromium-browser", "google-chrome"]) {
+    try {
+      return execFileSync("/bin/sh", ["-c", `command -v ${name}`], { encoding: "utf8" }).trim();
+    } catch {
+      continue;
+    }
+  }
+  return null;
+}
+
+export function launch(path: string): Promise<Browser> {
+  return puppeteer.launch({ executablePath: path, args: FLAGS });
+}
+
+/** The module of the engine, whose path is in the environment; null where it was not built. */
+export function findModule(): Uint8Array | null {
+  const path = process.env.IMPINGE_PAGE_WASM;
+  return path ? readFileSync(path) : null;
+}
+
+/** The golden recordings of worlds in 2D and 3D. */
+export function golden(dimension: 2 | 3): Uint8Array {
+  return readFileSync(join(WEB, `../../impinge-record/tests/golden/scene${dimension}.rec`));
+}
+
+/** Fills the template in one pass, so that nothing that is put in is filled again. */
+export function fill({ scene, recording, wasm }: Parts): string {
+  const base64 = (bytes: Uint8Array): string => Buffer.from(bytes).toString("base64");
+  const escape = (text: string): string => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;");
+  const values: Record<string, string> = {
+    TITLE: escape(scene.title),
+    STYLE: readFileSync(join(WEB, "page.css"), "utf8"),
+    SCENE: JSON.stringify(scene).replaceAll("<", "\\u003c"),
+    RECORDING: base64(recording ?? new Uint8Array([0])),
+    WASM: base64(gzipSync(wasm ?? new Uint8Array([0]))),
+    SCRIPT: readFileSync(join(WEB, "dist/page.js"), "utf8"),
+  };
+  const template = readFileSync(join(WEB, "page.html"), "utf8");
+  return template.replace(/\{\{([A-Z]+)\}\}/g, (whole, name: string) => values[name] ?? whole);
+}
+
+/** Writes a file as its receiver would have it. Returns its address. */
+export function write(parts: Parts): string {
+  const path = join(mkdtempSync(join(tmpdir(), "page-")), "page.html");
+  writeFileSync(path, fill(parts));
+  return pathToFileURL(path).href;
+}
+
+/** A page of a browser, and what it complained of. */
+export interface Visit {
+  page: Page;
+  errors: string[];
+}
+
+export interface Look {
+  width?: number;
+  height?: number;
+  dark?: boolean;
+  /** With the engine of boxes instead of the module. */
+  fake?: boolean;
+}
+
+export async function visit(browser: Browser, address: string, look: Look = {}): Promise<Visit> {
+  const page = await browser.newPage();
+  page.setDefaultTimeout(PATIENCE);
+  const errors: string[] = [];
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("console", (message) => {
+    // Cards ask for thumbnails, which a file on its own does not have.
+    const isThumbnail = message.location().url?.includes("/thumbnails/") ?? false;
+    if (message.type() === "error" && !isThumbnail) errors.push(message.text());
+  });
+  await page.setViewport({ width: look.width ?? 1180, height: look.height ?? 760 });
+  await page.emulateMediaFeatures([
+    { name: "prefers-color-scheme", value: look.dark ? "dark" : "light" },
+    { name: "prefers-reduced-motion", value: "reduce" },
+  ]);
+  if (look.fake)
+    await page.evaluateOnNewDocument(readFileSync(join(process.env.IMPINGE_PAGE_TESTS ?? "", "fake.js"), "utf8"));
+  await page.goto(address);
+  return { page, errors };
+}
+
+/** Waits until the summary, which is what assistive technology reads, matches. */
+export async function until(page: Page, pattern: RegExp): Promise<string> {
+  await page.waitForFunction(
+    (source) => new RegExp(source).test(document.getElementById("summary")?.textContent ?? ""),
+    { timeout: PATIENCE, polling: 200 },
+    pattern.source,
+  );
+  return page.$eval("#summary", (element) => element.textContent ?? "");
+}
+
+/** Lets the page draw what it has to. */
+export async function settle(page: Page, milliseconds = 400): Promise<void> {
+  await page.evaluate((pause) => new Promise((done) => setTimeout(done, pause)), milliseconds);
+}
+
+export function textOf(page: Page, selector: string): Promise<string> {
+  return page.$eval(selector, (element) => (element as HTMLElement).innerText);
+}

@@ -1,0 +1,257 @@
+//! Bodies that fall, push each other and come to rest: enough dynamics for piles and stacks to look right.
+//!
+//! It is no part of the library, which computes contacts and leaves motion to its users. The method is sequential
+//! impulses with warm starts (Catto, "Iterative dynamics with temporal coherence", 2005): each contact point gets the
+//! impulse that stops its approach, in turn and several times, starting from the impulse that the point with the
+//! same id had a step before.
+
+use std::collections::BTreeMap;
+
+use impinge::math::{Matrix, Pose, Space, Vector, max, min, unit_or};
+use impinge::narrow_phase::CollisionObjectHandle;
+use impinge::query::{ContactId, ContactPoint};
+use impinge_record::Recordable;
+
+use crate::place::pose_of;
+use crate::{Isometry, SampleError, World};
+
+/// Seconds.
+pub(crate) const TIME_STEP: f32 = 1.0 / 60.0;
+const ITERATIONS: usize = 20;
+const GRAVITY: f32 = 10.0;
+const FRICTION: f32 = 0.5;
+/// An overlap that is left alone, so that contacts last.
+const SLOP: f32 = 0.005;
+/// The share of a deeper overlap that is gone after a step.
+const RECOVERY: f32 = 0.2;
+/// Slower bodies stay where they are.
+const REST_SPEED: f32 = 0.03;
+
+/// A body that moves. Its mass is that of a cube, so that it turns as easily about every axis.
+#[derive(Clone, Debug)]
+struct Body<const D: usize> {
+    /// The object of the world.
+    object: CollisionObjectHandle,
+    /// Zero would be a body that nothing moves.
+    inverse_mass: f32,
+    /// The same about every axis.
+    inverse_inertia: f32,
+    /// Of the centre, per second.
+    velocity: Vector<f32, D>,
+    /// The velocity of a point seen from the centre is this matrix times its place.
+    spin: Matrix<f32, D>,
+}
+
+/// A contact point that the solver works on.
+#[derive(Clone, Debug)]
+struct Row<const D: usize> {
+    id: ContactId,
+    /// Indices of bodies; `None` for what does not move.
+    bodies: [Option<usize>; 2],
+    /// The point, seen from both centres.
+    arms: [Vector<f32, D>; 2],
+    normal: Vector<f32, D>,
+    /// The least speed of parting along the normal; negative while there is a gap to close.
+    speed: f32,
+    impulse: Impulse<D>,
+}
+
+/// What a contact point has got so far.
+#[derive(Clone, Copy, Debug)]
+struct Impulse<const D: usize> {
+    /// Along the normal; never negative.
+    normal: f32,
+    /// Across it.
+    friction: Vector<f32, D>,
+}
+
+/// The bodies of a world. What is not among them does not move.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Bodies<const D: usize> {
+    /// In the order in which they were added.
+    bodies: Vec<Body<D>>,
+    /// The index of each object.
+    indices: BTreeMap<CollisionObjectHandle, usize>,
+    /// Of the last step, by the ids of contacts, which stay while the same features meet.
+    impulses: BTreeMap<ContactId, Impulse<D>>,
+}
+
+impl<const D: usize> Bodies<D>
+where
+    f32: Recordable<D>,
+{
+    /// Lets an object fall, whose mass is that of a cube with a half width.
+    pub(crate) fn add(&mut self, object: CollisionObjectHandle, half_width: f32) {
+        let mass = (0..D).fold(1.0, |mass, _| mass * 2.0 * half_width);
+        let body = Body {
+            object,
+            inverse_mass: 1.0 / mass,
+            inverse_inertia: 6.0 / (mass * 4.0 * half_width * half_width),
+            velocity: Vector::<f32, D>::zeros(),
+            spin: Matrix::<f32, D>::zeros(),
+        };
+        self.indices.insert(object, self.bodies.len());
+        self.bodies.push(body);
+    }
+
+    /// Gives a body a velocity.
+    pub(crate) fn push(&mut self, object: CollisionObjectHandle, velocity: Vector<f32, D>) {
+        if let Some(index) = self.indices.get(&object) {
+            self.bodies[*index].velocity = velocity;
+        }
+    }
+
+    /// The largest speed of a body.
+    pub(crate) fn speed(&self) -> f32 {
+        self.bodies.iter().map(|body| body.velocity.norm()).fold(0.0, max)
+    }
+
+    /// Moves the bodies by a step, pushed by gravity and by the contacts of the last update.
+    pub(crate) fn advance(&mut self, world: &mut World<D>) -> Result<(), SampleError> {
+        for body in &mut self.bodies {
+            body.velocity[1] -= GRAVITY * TIME_STEP;
+        }
+        let mut rows = self.rows(world);
+        for row in &rows {
+            // A warm start: most of the work was done a step before.
+            let push = row.normal * row.impulse.normal + row.impulse.friction;
+            self.apply(row, &push);
+        }
+        for _ in 0..ITERATIONS {
+            for row in &mut rows {
+                self.solve(row);
+            }
+        }
+        self.impulses = rows.iter().map(|row| (row.id, row.impulse)).collect();
+        // All positions are set at once: the world takes all or none.
+        let moved: Vec<_> = self.bodies.iter_mut().filter_map(|body| body.moved(world)).collect();
+        Ok(world.set_positions(&moved)?)
+    }
+
+    fn rows(&self, world: &World<D>) -> Vec<Row<D>> {
+        let mut rows = Vec::new();
+        for (object1, object2, manifold) in world.contact_views() {
+            let handles = [object1.handle(), object2.handle()];
+            let bodies = handles.map(|handle| self.indices.get(&handle).copied());
+            if bodies == [None, None] {
+                continue;
+            }
+            let centers = handles.map(|handle| pose_of(world, handle).translation);
+            rows.extend(manifold.contacts().map(|point| self.row(bodies, centers, &point)));
+        }
+        rows
+    }
+
+    fn row(
+        &self,
+        bodies: [Option<usize>; 2],
+        centers: [Vector<f32, D>; 2],
+        point: &ContactPoint<f32, D>,
+    ) -> Row<D> {
+        let contact = &point.contact;
+        // Between the two surfaces, so that both bodies have the same lever.
+        let middle = (contact.world1.coords + contact.world2.coords) * 0.5;
+        let depth = contact.depth;
+        // A gap may be closed within a step; an overlap is undone slowly, which keeps piles calm.
+        let closing = if depth < 0.0 { depth } else { RECOVERY * max(depth - SLOP, 0.0) };
+        let none = Impulse { normal: 0.0, friction: Vector::<f32, D>::zeros() };
+        Row {
+            id: point.id,
+            bodies,
+            arms: centers.map(|center| middle - center),
+            normal: contact.normal.into_inner(),
+            speed: min(closing / TIME_STEP, 3.0),
+            impulse: self.impulses.get(&point.id).copied().unwrap_or(none),
+        }
+    }
+
+    /// Corrects the impulse of a point: none ever pulls, and friction is bounded by the push (Coulomb).
+    fn solve(&mut self, row: &mut Row<D>) {
+        let normal = row.normal;
+        let parting = self.relative_velocity(row).dot(&normal);
+        let wanted = row.impulse.normal + (row.speed - parting) * self.mass(row, &normal);
+        let wanted = max(wanted, 0.0);
+        self.apply(row, &(normal * (wanted - row.impulse.normal)));
+        row.impulse.normal = wanted;
+
+        let velocity = self.relative_velocity(row);
+        // What is left of the velocity along the surface is slowed down.
+        let sliding = velocity - normal * velocity.dot(&normal);
+        let direction = unit_or(&sliding, Vector::<f32, D>::zeros());
+        let friction = row.impulse.friction - sliding * self.mass(row, &direction);
+        let bound = FRICTION * row.impulse.normal;
+        let excess = friction.norm() / max(bound, f32::MIN_POSITIVE);
+        let friction = if excess > 1.0 { friction / excess } else { friction };
+        self.apply(row, &(friction - row.impulse.friction));
+        row.impulse.friction = friction;
+    }
+
+    /// The velocity of the second body at the point, seen from the first.
+    fn relative_velocity(&self, row: &Row<D>) -> Vector<f32, D> {
+        let velocity = |side: usize| {
+            let body = row.bodies[side].map(|index| &self.bodies[index]);
+            let velocity = body.map(|body| body.velocity + body.spin * row.arms[side]);
+            velocity.unwrap_or_else(Vector::<f32, D>::zeros)
+        };
+        velocity(1) - velocity(0)
+    }
+
+    /// The impulse along a direction that changes the relative speed by 1.
+    fn mass(&self, row: &Row<D>, direction: &Vector<f32, D>) -> f32 {
+        let inverse = |side: usize| {
+            let body = row.bodies[side].map(|index| &self.bodies[index]);
+            let (arm, along) = (row.arms[side], row.arms[side].dot(direction));
+            let across = arm.norm_squared() - along * along;
+            body.map_or(0.0, |body| body.inverse_mass + body.inverse_inertia * across)
+        };
+        1.0 / (inverse(0) + inverse(1))
+    }
+
+    /// Pushes the second body by an impulse at the point, and the first one back.
+    fn apply(&mut self, row: &Row<D>, impulse: &Vector<f32, D>) {
+        for (side, sign) in [(0, -1.0), (1, 1.0)] {
+            if let Some(index) = row.bodies[side] {
+                let (body, push) = (&mut self.bodies[index], impulse * sign);
+                body.velocity += push * body.inverse_mass;
+                // The plane of the turn is that of the lever and the push: an antisymmetric matrix in both dimensions.
+                let moment = push * row.arms[side].transpose();
+                body.spin += (moment - moment.transpose()) * body.inverse_inertia;
+            }
+        }
+    }
+}
+
+impl<const D: usize> Body<D>
+where
+    f32: Recordable<D>,
+{
+    /// The position after a step; `None` for a body at rest.
+    fn moved(&mut self, world: &World<D>) -> Option<(CollisionObjectHandle, Isometry<D>)> {
+        // A little of every motion is lost, as it is to air.
+        self.velocity *= 0.998;
+        self.spin *= 0.99;
+        if self.velocity.norm() < REST_SPEED && self.spin.norm() < REST_SPEED {
+            return None;
+        }
+        let pose = pose_of(world, self.object);
+        let turned = pose.rotation + self.spin * pose.rotation * TIME_STEP;
+        let pose = Pose {
+            rotation: orthonormal(turned),
+            translation: pose.translation + self.velocity * TIME_STEP,
+        };
+        Some((self.object, f32::isometry(&pose)))
+    }
+}
+
+/// The nearest columns that are perpendicular and of length 1, one after the other (Gram and Schmidt).
+fn orthonormal<const D: usize>(mut matrix: Matrix<f32, D>) -> Matrix<f32, D> {
+    for column in 0..D {
+        let mut axis = matrix.column(column).into_owned();
+        for before in 0..column {
+            let other = matrix.column(before).into_owned();
+            axis -= other * axis.dot(&other);
+        }
+        matrix.set_column(column, &(axis / axis.norm()));
+    }
+    matrix
+}

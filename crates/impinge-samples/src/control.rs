@@ -1,0 +1,219 @@
+//! Controls of a sample: numbers, choices, flags and buttons, by name.
+
+use impinge::math::Real;
+
+use crate::SampleError;
+
+/// What a control is, and its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ControlKind {
+    /// A number between bounds.
+    Number {
+        /// The value.
+        value: f64,
+        /// The least value.
+        min: f64,
+        /// The greatest value.
+        max: f64,
+        /// By how much a slider changes it; values between are taken as well.
+        step: f64,
+    },
+    /// One of some words.
+    Choice {
+        /// The word.
+        value: &'static str,
+        /// All words.
+        choices: &'static [&'static str],
+    },
+    /// Yes or no.
+    Flag {
+        /// The value.
+        value: bool,
+    },
+    /// Something to be done once.
+    Button {
+        /// It was pressed, and the sample has not yet done it.
+        is_pressed: bool,
+    },
+}
+
+/// A control, as it is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Control {
+    /// The name by which it is set; unique within a sample.
+    pub name: &'static str,
+    /// The text beside it.
+    pub label: &'static str,
+    /// Kind and value.
+    pub kind: ControlKind,
+}
+
+/// A value for a control.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ControlValue {
+    /// Of a number.
+    Number(f64),
+    /// Of a choice.
+    Choice(String),
+    /// Of a flag.
+    Flag(bool),
+    /// Of a button.
+    Pressed,
+}
+
+/// The controls of a sample, declared once as a table, in the order of the page.
+///
+/// ```
+/// use impinge_samples::{ControlValue, Panel, SampleError};
+///
+/// let mut panel = Panel::new()
+///     .number("speed", "Speed", 1.0, [0.0, 5.0, 0.1])
+///     .choice("shape", "Shape", "ball", &["ball", "box"])
+///     .button("drop", "Drop one");
+/// panel.set("speed", &ControlValue::Number(2.5))?;
+/// panel.set("drop", &ControlValue::Pressed)?;
+/// assert_eq!((panel.value("speed"), panel.chosen("shape")), (2.5, "ball"));
+/// assert!(panel.take_press("drop") && !panel.take_press("drop"), "it is done once");
+///
+/// let error = panel.set("speed", &ControlValue::Number(f64::NAN)).expect_err("NaN is in no range");
+/// assert_eq!(error.to_string(), "speed is NaN, not from 0 to 5");
+/// # Ok::<(), SampleError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel(Vec<Control>);
+
+impl Panel {
+    /// No controls.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    /// With a number: its value at first, and the least value, the greatest, and the step.
+    #[must_use]
+    pub fn number(
+        self,
+        name: &'static str,
+        label: &'static str,
+        value: f64,
+        [min, max, step]: [f64; 3],
+    ) -> Self {
+        self.with(name, label, ControlKind::Number { value, min, max, step })
+    }
+
+    /// With a choice: the word at first, and all words.
+    #[must_use]
+    pub fn choice(
+        self,
+        name: &'static str,
+        label: &'static str,
+        value: &'static str,
+        choices: &'static [&'static str],
+    ) -> Self {
+        self.with(name, label, ControlKind::Choice { value, choices })
+    }
+
+    /// With a flag.
+    #[must_use]
+    pub fn flag(self, name: &'static str, label: &'static str, value: bool) -> Self {
+        self.with(name, label, ControlKind::Flag { value })
+    }
+
+    /// With a button.
+    #[must_use]
+    pub fn button(self, name: &'static str, label: &'static str) -> Self {
+        self.with(name, label, ControlKind::Button { is_pressed: false })
+    }
+
+    fn with(mut self, name: &'static str, label: &'static str, kind: ControlKind) -> Self {
+        self.0.push(Control { name, label, kind });
+        self
+    }
+
+    /// The controls, in order.
+    #[must_use]
+    pub fn controls(&self) -> &[Control] {
+        &self.0
+    }
+
+    /// Sets a control; nothing changes where that is refused.
+    ///
+    /// # Errors
+    /// If no control has the name, the value is of another kind, out of bounds, NaN, or none of the words.
+    pub fn set(&mut self, name: &str, value: &ControlValue) -> Result<(), SampleError> {
+        let control = self.0.iter_mut().find(|control| control.name == name);
+        let control = control.ok_or_else(|| SampleError::UnknownControl(name.to_owned()))?;
+        let name = control.name;
+        match (&mut control.kind, value) {
+            (ControlKind::Number { value, min, max, .. }, ControlValue::Number(wanted)) => {
+                if !(*min..=*max).contains(wanted) {
+                    let (value, bounds) = (*wanted, [*min, *max]);
+                    return Err(SampleError::OutOfBounds { name, value, bounds });
+                }
+                *value = *wanted;
+            }
+            (ControlKind::Choice { value, choices }, ControlValue::Choice(wanted)) => {
+                let known = choices.iter().find(|choice| *choice == wanted);
+                let refused = || SampleError::UnknownChoice { name, value: wanted.clone() };
+                *value = known.ok_or_else(refused)?;
+            }
+            (ControlKind::Flag { value }, ControlValue::Flag(wanted)) => *value = *wanted,
+            (ControlKind::Button { is_pressed }, ControlValue::Pressed) => *is_pressed = true,
+            (_, wanted) => {
+                return Err(SampleError::WrongKind { name, value: wanted.clone() });
+            }
+        }
+        Ok(())
+    }
+
+    fn find(&self, name: &str) -> Option<&ControlKind> {
+        self.0.iter().find(|control| control.name == name).map(|control| &control.kind)
+    }
+
+    /// The value of a number as a scalar of samples; 0 if there is no number of this name.
+    #[must_use]
+    pub fn value(&self, name: &str) -> f32 {
+        match self.find(name) {
+            Some(ControlKind::Number { value, .. }) => f32::lit(*value),
+            _ => 0.0,
+        }
+    }
+
+    /// The value of a number as a count, rounded down; 0 if there is no number of this name.
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "saturates, and is rounded down as documented"
+    )]
+    pub fn count(&self, name: &str) -> usize {
+        match self.find(name) {
+            Some(ControlKind::Number { value, .. }) => *value as usize,
+            _ => 0,
+        }
+    }
+
+    /// The word of a choice; none if there is no choice of this name.
+    #[must_use]
+    pub fn chosen(&self, name: &str) -> &'static str {
+        match self.find(name) {
+            Some(ControlKind::Choice { value, .. }) => value,
+            _ => "",
+        }
+    }
+
+    /// The value of a flag; `false` if there is no flag of this name.
+    #[must_use]
+    pub fn is_set(&self, name: &str) -> bool {
+        matches!(self.find(name), Some(ControlKind::Flag { value: true }))
+    }
+
+    /// Whether a button was pressed since the last call.
+    pub fn take_press(&mut self, name: &str) -> bool {
+        let control = self.0.iter_mut().find(|control| control.name == name);
+        match control.map(|control| &mut control.kind) {
+            Some(ControlKind::Button { is_pressed }) => std::mem::take(is_pressed),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! The samples in the order of the gallery.
+
+use crate::Sample;
+use crate::catalog::ENTRIES;
+
+/// Makes a sample of a dimension.
+#[derive(Clone, Copy, Debug)]
+pub enum Make {
+    /// In 2D.
+    Plane(fn() -> Box<dyn Sample<2>>),
+    /// In 3D.
+    Space(fn() -> Box<dyn Sample<3>>),
+}
+
+impl Make {
+    /// 2 or 3.
+    #[must_use]
+    pub const fn dimension(&self) -> usize {
+        match self {
+            Self::Plane(_) => 2,
+            Self::Space(_) => 3,
+        }
+    }
+}
+
+/// What is to be seen of a sample within its first two seconds, for tests.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shows {
+    /// A contact.
+    Contacts,
+    /// An event of proximity.
+    ProximityEvents,
+    /// Something that is drawn beside the objects.
+    Drawing,
+}
+
+/// A sample of the gallery.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// A word, unique in the gallery.
+    pub name: &'static str,
+    /// The heading.
+    pub title: &'static str,
+    /// What to see, in two sentences.
+    pub about: &'static str,
+    /// What is to be seen soon.
+    pub shows: Shows,
+    /// Makes it.
+    pub make: Make,
+}
+
+/// The samples in the order of the gallery.
+///
+/// ```
+/// use impinge_samples::entries;
+///
+/// let names: Vec<_> = entries().iter().map(|entry| entry.name).collect();
+/// assert_eq!(names[..2], ["playground2", "playground3"]);
+/// ```
+#[must_use]
+pub const fn entries() -> &'static [Entry] {
+    ENTRIES
+}

@@ -1,0 +1,93 @@
+//! Positions, vectors and points from three numbers, of which 2D takes the first two.
+
+use impinge::math::na::{self, Rotation};
+use impinge::math::{Matrix, Point, Pose, Real, Space, Unit, Vector};
+use impinge::narrow_phase::CollisionObjectHandle;
+use impinge_record::Recordable;
+
+use crate::{Isometry, World};
+
+/// The circumference of a circle of radius 1.
+pub(crate) const TAU: f32 = core::f32::consts::TAU;
+
+/// A vector.
+pub(crate) fn vector<const D: usize>(xyz: [f32; 3]) -> Vector<f32, D> {
+    Vector::<f32, D>::from_fn(|axis, _| xyz[axis])
+}
+
+/// A point.
+pub(crate) fn point<const D: usize>(xyz: [f32; 3]) -> Point<f32, D> {
+    Point::from(vector::<D>(xyz))
+}
+
+/// A position without a rotation.
+pub(crate) fn at<const D: usize>(xyz: [f32; 3]) -> Isometry<D>
+where
+    f32: Space<D>,
+{
+    f32::isometry(&Pose::from_translation(vector(xyz)))
+}
+
+/// A position turned by an angle from the x axis to the y axis.
+pub(crate) fn turned<const D: usize>(xyz: [f32; 3], angle: f32) -> Isometry<D>
+where
+    f32: Space<D>,
+{
+    f32::isometry(&Pose { rotation: turn([0, 1], angle), translation: vector(xyz) })
+}
+
+/// The rotation by an angle from one axis to another. Sine and cosine are those of the library, which have the
+/// same bits everywhere.
+pub(crate) fn turn<const D: usize>([from, to]: [usize; 2], angle: f32) -> Matrix<f32, D> {
+    let (sine, cosine) = angle.sine_cosine();
+    let mut matrix = Matrix::<f32, D>::identity();
+    (matrix[(from, from)], matrix[(to, to)]) = (cosine, cosine);
+    (matrix[(from, to)], matrix[(to, from)]) = (-sine, sine);
+    matrix
+}
+
+/// The pose of an object; the identity if it is gone.
+pub(crate) fn pose_of<const D: usize>(
+    world: &World<D>,
+    object: CollisionObjectHandle,
+) -> Pose<f32, D>
+where
+    f32: Recordable<D>,
+{
+    let object = world.collision_object(object);
+    object.map_or_else(Pose::identity, |object| f32::pose(object.position()))
+}
+
+/// A pose as the isometry that queries about two shapes take in any dimension.
+pub(crate) fn isometry<const D: usize>(
+    pose: &Pose<f32, D>,
+) -> na::Isometry<f32, Rotation<f32, D>, D> {
+    let rotation = Rotation::from_matrix_unchecked(pose.rotation);
+    na::Isometry::from_parts(pose.translation.into(), rotation)
+}
+
+/// Numbers from 0 to 1 without a pattern: the fractional parts of multiples of an irrational number, which
+/// differs by stream (Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018).
+#[expect(clippy::cast_possible_truncation, reason = "a fraction rounded to f32")]
+pub(crate) fn scattered(index: usize, stream: usize) -> f32 {
+    const STEPS: [f64; 4] =
+        [0.819_172_513_396, 0.671_043_606_703, 0.549_700_477_901, 0.450_304_206];
+    let position = 0.5 + (index + 1) as f64 * STEPS[stream % STEPS.len()];
+    (position - position.floor()) as f32
+}
+
+/// To and fro between 0 and 1: a triangle wave of period 1.
+pub(crate) fn to_and_fro(phase: f32) -> f32 {
+    1.0 - (2.0 * (phase - phase.floor()) - 1.0).abs()
+}
+
+/// A count as a scalar.
+#[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
+pub(crate) const fn number(count: usize) -> f32 {
+    count as f32
+}
+
+/// The direction upwards.
+pub(crate) fn up<const D: usize>() -> Unit<Vector<f32, D>> {
+    Unit::new_unchecked(vector([0.0, 1.0, 0.0]))
+}

@@ -1,0 +1,23 @@
+//! What most samples need: names of the library, and the few functions of this crate.
+
+pub(crate) use impinge::debug_render::{Color, SweptShape};
+pub(crate) use impinge::math::{Point, Pose, Space, Vector, max, min, unit, unit_or};
+pub(crate) use impinge::narrow_phase::{CollisionObjectHandle, ContactQuery, ProximityQuery};
+pub(crate) use impinge::query::{
+    ClosestPoints, Contact, Impact, ImpactOptions, Moving, Proximity, contact, distance, impact,
+};
+pub(crate) use impinge::shape::{Ball, Capsule, Cuboid, Plane, ShapeHandle};
+pub(crate) use impinge::world::{CollisionGroups, QueryFilter};
+
+pub(crate) use crate::dimension::{Dimension, SurfaceKind, solid};
+pub(crate) use crate::place::{
+    TAU, at, isometry, number, point, pose_of, scattered, to_and_fro, turn, turned, up, vector,
+};
+pub(crate) use crate::{Canvas, Isometry, Panel, Readout, Sample, SampleError, World};
+
+/// What is as it should be.
+pub(crate) const GREEN: Color = Color::rgb(90, 200, 120);
+/// What hits something.
+pub(crate) const RED: Color = Color::rgb(240, 80, 70);
+/// What is measured.
+pub(crate) const BLUE: Color = Color::rgb(80, 160, 250);

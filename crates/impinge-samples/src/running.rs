@@ -1,0 +1,168 @@
+//! A sample that runs.
+
+use core::fmt;
+
+use impinge::debug_render::{DebugDrawing, DebugRender};
+use impinge::narrow_phase::CollisionObjectHandle;
+use impinge_record::{Recordable, Recorder, Registry};
+
+use crate::{Canvas, Control, ControlValue, Isometry, Panel, Readout, Sample, SampleError, World};
+
+/// A sample with its controls and its world.
+///
+/// The world is updated after each method that changes it. A method that fails may have changed a part; a
+/// [`restart`](Self::restart) begins anew.
+///
+/// ```
+/// use impinge_samples::{ControlValue, Make, Running, entries};
+///
+/// let entry = entries().iter().find(|entry| entry.name == "stack2").expect("the stack");
+/// let Make::Plane(make) = entry.make else { panic!("it is a sample in 2D") };
+/// let mut stack = Running::new(make())?;
+/// stack.set_control("count", &ControlValue::Number(3.0))?;
+/// stack.advance()?;
+/// assert_eq!(stack.world().len(), 4, "three boxes and the floor");
+/// assert!(stack.world().contact_views().count() >= 3, "each lies on something");
+/// # Ok::<(), impinge_samples::SampleError>(())
+/// ```
+pub struct Running<const D: usize>
+where
+    f32: Recordable<D>,
+{
+    sample: Box<dyn Sample<D>>,
+    panel: Panel,
+    world: World<D>,
+    step: u64,
+}
+
+impl<const D: usize> Running<D>
+where
+    f32: Recordable<D>,
+{
+    /// The sample at step 0, with its objects, updated once.
+    ///
+    /// # Errors
+    /// Where the world refuses the objects.
+    pub fn new(sample: Box<dyn Sample<D>>) -> Result<Self, SampleError> {
+        let world = Recorder::new(sample.margin(), sample.registry())?;
+        let panel = sample.panel();
+        let mut running = Self { sample, panel, world, step: 0 };
+        running.restart()?;
+        Ok(running)
+    }
+
+    /// Begins again at step 0, with the controls as they are. The recording goes on: its objects are removed and
+    /// added again.
+    ///
+    /// # Errors
+    /// Where the world refuses the objects.
+    pub fn restart(&mut self) -> Result<(), SampleError> {
+        if !self.world.is_empty() {
+            self.world.retain(|_| false);
+        }
+        self.sample.build(&mut self.world, &self.panel)?;
+        self.step = 0;
+        self.update()
+    }
+
+    /// Goes on by a sixtieth of a second.
+    ///
+    /// # Errors
+    /// Where the world refuses a change.
+    pub fn advance(&mut self) -> Result<(), SampleError> {
+        self.sample.advance(&mut self.world, &mut self.panel)?;
+        self.step += 1;
+        self.update()
+    }
+
+    /// Sets a control, and shows at once what does not need a step. A button takes effect at the next step.
+    ///
+    /// # Errors
+    /// If the control or the value is refused; see [`Panel::set`].
+    pub fn set_control(&mut self, name: &str, value: &ControlValue) -> Result<(), SampleError> {
+        self.panel.set(name, value)?;
+        if *value == ControlValue::Pressed {
+            return Ok(());
+        }
+        self.sample.changed(&mut self.world, &self.panel)?;
+        self.update()
+    }
+
+    /// Moves an object, as a person does who drags it.
+    ///
+    /// # Errors
+    /// If the handle is stale or the position is not finite.
+    pub fn drag(
+        &mut self,
+        object: CollisionObjectHandle,
+        to: &Isometry<D>,
+    ) -> Result<(), SampleError> {
+        self.sample.dragged(&mut self.world, object, to)?;
+        self.update()
+    }
+
+    fn update(&mut self) -> Result<(), SampleError> {
+        self.world.update();
+        self.sample.updated(&mut self.world, &self.panel)
+    }
+
+    /// Draws what the sample shows beside its objects; [`DebugDrawing::world`] draws these.
+    pub fn draw(&self, drawing: &mut DebugDrawing<f32, D>, renderer: &mut dyn DebugRender<f32, D>) {
+        self.sample.draw(&self.world, &self.panel, &mut Canvas { drawing, renderer });
+    }
+
+    /// The numbers that the sample shows.
+    #[must_use]
+    pub fn readouts(&self) -> Vec<Readout> {
+        self.sample.readouts(&self.world, &self.panel)
+    }
+
+    /// The controls with their values.
+    #[must_use]
+    pub fn controls(&self) -> &[Control] {
+        self.panel.controls()
+    }
+
+    /// The world, for any query.
+    #[must_use]
+    pub const fn world(&self) -> &World<D> {
+        &self.world
+    }
+
+    /// How many steps were made.
+    #[must_use]
+    pub const fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// What the recording names and does not hold.
+    #[must_use]
+    pub fn registry(&self) -> Registry<f32, D, String> {
+        self.sample.registry()
+    }
+
+    /// The bytes of the recording since the last call. Who does not want the recording drops them after each
+    /// step, since they are kept in memory until then.
+    #[must_use]
+    pub fn take_bytes(&mut self) -> Vec<u8> {
+        self.world.take_bytes()
+    }
+
+    /// Ends the recording: the bytes since the last [`take_bytes`](Self::take_bytes).
+    #[must_use]
+    pub fn finish(self) -> Vec<u8> {
+        self.world.finish().bytes
+    }
+}
+
+impl<const D: usize> fmt::Debug for Running<D>
+where
+    f32: Recordable<D>,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Running")
+            .field("panel", &self.panel)
+            .field("step", &self.step)
+            .finish_non_exhaustive()
+    }
+}

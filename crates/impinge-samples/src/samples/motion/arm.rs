@@ -1,0 +1,159 @@
+//! A robot arm that watches for collisions with itself and with obstacles.
+
+use impinge::math::Real;
+use impinge::world::{BroadPhasePairFilter, CollisionObject};
+use impinge_record::Registry;
+
+use crate::prelude::*;
+
+/// Each link is a capsule, whose axis has length 1 from joint to joint.
+const LINKS: usize = 5;
+const RADIUS: f32 = 0.15;
+
+/// The arm, and what its links hit.
+#[derive(Debug, Default)]
+pub(crate) struct Arm<const D: usize> {
+    /// The links, from the base.
+    links: Vec<CollisionObjectHandle>,
+    /// The angles of all joints follow from this number.
+    phase: f32,
+    /// The phase decreases.
+    is_back: bool,
+    /// The labels of pairs that touch.
+    hits: Vec<[String; 2]>,
+}
+
+/// The number of a link, by its label; `None` for an obstacle.
+fn link(label: &str) -> Option<usize> {
+    label.strip_prefix("link ")?.parse().ok()
+}
+
+/// A pair filter: all pairs but those of links that share a joint, which always touch there.
+#[derive(Clone, Copy, Debug)]
+struct Joints;
+
+impl<const D: usize> BroadPhasePairFilter<f32, D, String> for Joints
+where
+    f32: Space<D>,
+{
+    fn is_pair_valid(
+        &self,
+        one: &CollisionObject<f32, D, String>,
+        two: &CollisionObject<f32, D, String>,
+    ) -> bool {
+        match [link(one.data()), link(two.data())] {
+            [Some(one), Some(two)] => one.abs_diff(two) > 1,
+            _ => true,
+        }
+    }
+}
+
+/// Where the links are at a phase: each joint swings at a pace of its own.
+fn poses<const D: usize>(phase: f32) -> [Pose<f32, D>; LINKS] {
+    // Each joint is placed in the frame of the one before.
+    let mut joint = Pose::<f32, D>::identity();
+    std::array::from_fn(|n| {
+        let angle = 1.4 * Real::sine_cosine(phase * (1.0 + 0.37 * number(n)) + number(n)).0;
+        let turned = Pose { rotation: turn([0, 1], angle), translation: vector([0.0; 3]) };
+        joint = joint.compose(&turned);
+        let middle = joint.compose(&Pose::from_translation(vector([0.0, 0.5, 0.0])));
+        joint = joint.compose(&Pose::from_translation(vector([0.0, 1.0, 0.0])));
+        middle
+    })
+}
+
+impl<const D: usize> Arm<D>
+where
+    f32: Dimension<D>,
+{
+    /// Whether the arm would hit something at a phase: an obstacle, by a query to the world, or itself.
+    fn would_hit(&self, world: &World<D>, phase: f32) -> bool {
+        let (capsule, poses) = (Capsule::new(0.5, RADIUS), poses::<D>(phase));
+        let is_obstacle = |object: &CollisionObject<f32, D, String>| link(object.data()).is_none();
+        let obstacles = QueryFilter::new().predicate(&is_obstacle);
+        let hits_obstacle =
+            poses.iter().any(|pose| world.overlaps_any(&f32::isometry(pose), &capsule, &obstacles));
+        // Links that share a joint are left out, as the filter does for the world.
+        let touch = |a: usize, b: usize| {
+            distance(&isometry(&poses[a]), &capsule, &isometry(&poses[b]), &capsule) <= 0.0
+        };
+        hits_obstacle || (0..LINKS).any(|a| (a + 2..LINKS).any(|b| touch(a, b)))
+    }
+}
+
+impl<const D: usize> Sample<D> for Arm<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new()
+            .choice("when", "Where it would hit", "it goes on", &["it goes on", "it turns back"])
+            .number("speed", "Speed", 1.0, [0.0, 5.0, 0.1])
+    }
+
+    fn registry(&self) -> Registry<f32, D, String> {
+        Registry::new().with_filter("joints", Joints)
+    }
+
+    fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        // The registry has the filter under this name, for the recording's replay too.
+        world.register_broad_phase_pair_filter("joints")?;
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+        for (n, place) in
+            [[2.2, 1.5, 0.0], [-2.4, 2.2, 0.0], [0.4, 4.6, 0.0]].into_iter().enumerate()
+        {
+            let shape = solid(f32::SOLIDS[n], 0.5);
+            world.add(at(place), shape, groups, query, format!("obstacle {n}"))?;
+        }
+        let capsule = ShapeHandle::new(Capsule::new(0.5, RADIUS));
+        for (n, pose) in poses::<D>(0.0).iter().enumerate() {
+            let (position, label) = (f32::isometry(pose), format!("link {n}"));
+            self.links.push(world.add(position, capsule.clone(), groups, query, label)?);
+        }
+        Ok(())
+    }
+
+    /// Queries are asked before the move; the contacts of the update confirm it afterwards.
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        let pace = panel.value("speed") / 60.0;
+        let next = self.phase + if self.is_back { -pace } else { pace };
+        if panel.chosen("when") == "it turns back" && self.would_hit(world, next) {
+            self.is_back = !self.is_back;
+            return Ok(());
+        }
+        self.phase = next;
+        let moved = self.links.iter().zip(poses(next));
+        let moved: Vec<_> = moved.map(|(link, pose)| (*link, f32::isometry(&pose))).collect();
+        Ok(world.set_positions(&moved)?)
+    }
+
+    /// All contacts but those between obstacles. A pair may have several manifolds.
+    fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
+        let hits = world.contact_views().map(|(one, two, _)| [one, two].map(|o| o.data().clone()));
+        self.hits =
+            hits.filter(|labels| labels.iter().any(|label| link(label).is_some())).collect();
+        self.hits.dedup();
+        Ok(())
+    }
+
+    /// The axis of each link, red where the link takes part in a collision.
+    fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
+        for handle in &self.links {
+            let found = world.collision_object(*handle);
+            let is_hit =
+                found.is_some_and(|link| self.hits.iter().flatten().any(|hit| hit == link.data()));
+            let pose = pose_of(world, *handle);
+            let ends = [-0.5, 0.5].map(|y| pose.point(&point([0.0, y, 0.0])));
+            canvas.line(ends, if is_hit { RED } else { GREEN });
+        }
+    }
+
+    fn readouts(&self, _: &World<D>, _: &Panel) -> Vec<Readout> {
+        let hits: Vec<_> = self.hits.iter().map(|[one, two]| format!("{one} and {two}")).collect();
+        vec![Readout::new(
+            "Collisions",
+            if hits.is_empty() { "none".to_owned() } else { hits.join(", ") },
+        )]
+    }
+}

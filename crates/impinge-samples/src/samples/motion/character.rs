@@ -1,0 +1,139 @@
+//! A character that slides along walls.
+
+use crate::bodies::TIME_STEP;
+use crate::prelude::*;
+
+/// The distance kept from everything: casts that stop short of contact never start in contact.
+const SKIN: f32 = 0.02;
+/// Of the capsule.
+const RADIUS: f32 = 0.3;
+
+/// How many places of the trail are kept.
+const TRAIL: usize = 300;
+
+/// A capsule in a yard with posts. Its heading turns slowly; casts limit how far it may go.
+#[derive(Debug, Default)]
+pub(crate) struct Character<const D: usize> {
+    /// The capsule.
+    body: Option<CollisionObjectHandle>,
+    /// The angle of the heading from x to y, in radians.
+    heading: f32,
+    /// Where it was after each step.
+    trail: Vec<Point<f32, D>>,
+    /// How often a cast was blocked.
+    slides: usize,
+}
+
+impl<const D: usize> Character<D>
+where
+    f32: Dimension<D>,
+{
+    /// Moves the capsule until it is `SKIN` away from an obstacle; slides on along it, at most along three.
+    fn slide(
+        &mut self,
+        world: &World<D>,
+        mut pose: Pose<f32, D>,
+        mut motion: Vector<f32, D>,
+    ) -> Pose<f32, D> {
+        let capsule = Capsule::new(0.3, RADIUS);
+        // The capsule is in the world as well: it is not in its own way.
+        let mut others = QueryFilter::new();
+        if let Some(body) = self.body {
+            others = others.exclude(body);
+        }
+        let options = ImpactOptions::new().with_max_time(1.0).with_target_distance(SKIN);
+        for _ in 0..4 {
+            // An impact before the end of the motion, at a distance of the skin, ends a part of it.
+            let from = f32::isometry(&pose);
+            let Some((_, hit)) = world.cast_shape(&from, &motion, &capsule, &options, &others)
+            else {
+                pose.translation += motion;
+                return pose;
+            };
+            self.slides += 1;
+            pose.translation += motion * hit.toi;
+            // The normal points from the obstacle or to it: what goes against the character is taken away.
+            motion *= 1.0 - hit.toi;
+            let normal = hit.normal.into_inner();
+            motion -= normal * motion.dot(&normal);
+        }
+        pose
+    }
+}
+
+impl<const D: usize> Sample<D> for Character<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new().number("speed", "Speed", 3.0, [0.0, 60.0, 0.5]).number(
+            "turn",
+            "Turn of the heading, radians per second",
+            0.5,
+            [-3.0, 3.0, 0.1],
+        )
+    }
+
+    fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+        // Four walls that meet at corners, and posts of all kinds.
+        for n in 0..4_u8 {
+            let rotation = turn::<D>([0, 1], TAU / 4.0 * f32::from(n));
+            let translation = rotation * vector::<D>([5.0, 0.0, 0.0]);
+            let wall = ShapeHandle::new(Cuboid::new(vector([0.25, 5.25, 1.0])));
+            let position = f32::isometry(&Pose { rotation, translation });
+            world.add(position, wall, groups, query, format!("wall {n}"))?;
+        }
+        for n in 0..8 {
+            let place = turn::<D>([0, 1], TAU / 8.0 * number(n)) * vector::<D>([3.0, 0.0, 0.0]);
+            let position =
+                f32::isometry(&Pose { rotation: turn([0, 1], number(n)), translation: place });
+            let post = solid(f32::SOLIDS[n % 5], 0.5);
+            world.add(position, post, groups, query, format!("post {n}"))?;
+        }
+        let capsule = ShapeHandle::new(Capsule::new(0.3, RADIUS));
+        let body = world.add(at([0.0; 3]), capsule, groups, query, "character".to_owned())?;
+        self.body = Some(body);
+        Ok(())
+    }
+
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        let Some(body) = self.body else { return Ok(()) };
+        self.heading += panel.value("turn") * TIME_STEP;
+        // As far as it would go without obstacles.
+        let ahead = vector([panel.value("speed") * TIME_STEP, 0.0, 0.0]);
+        let pose = pose_of(world, body);
+        let pose = self.slide(world, pose, turn::<D>([0, 1], self.heading) * ahead);
+        self.trail.push(Point::from(pose.translation));
+        let old = self.trail.len().saturating_sub(TRAIL);
+        self.trail.drain(..old);
+        Ok(world.set_position(body, f32::isometry(&pose))?)
+    }
+
+    /// The trail of the last five seconds, and the heading.
+    fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
+        canvas.path(&self.trail, BLUE);
+        if let Some(here) = self.trail.last() {
+            let ahead = turn::<D>([0, 1], self.heading) * vector::<D>([1.0, 0.0, 0.0]);
+            canvas.line([*here, here + ahead], GREEN);
+        }
+    }
+
+    /// The distance from the nearest object, the character itself left out by a predicate.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let pose = self.body.map(|body| f32::isometry(&pose_of(world, body)));
+        let capsule = Capsule::new(0.3, RADIUS);
+        let is_other = |object: &impinge::world::CollisionObject<f32, D, String>| {
+            Some(object.handle()) != self.body
+        };
+        let others = QueryFilter::new().predicate(&is_other);
+        let near = pose.and_then(|pose| {
+            world.closest_object(&pose, &capsule, 100.0, &others).map(|near| near.distance)
+        });
+        vec![
+            Readout::number("Distance from the nearest", near.unwrap_or(100.0)),
+            Readout::new("Slides", self.slides),
+        ]
+    }
+}

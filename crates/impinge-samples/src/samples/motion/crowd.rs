@@ -1,0 +1,121 @@
+//! Capsules that find their way past each other.
+
+use crate::bodies::TIME_STEP;
+use crate::prelude::*;
+
+/// Each looks so far, and gives way to so many.
+const SIGHT: f32 = 1.2;
+const NEIGHBORS: usize = 4;
+
+/// A person, who goes to the other side of a circle and back.
+#[derive(Debug)]
+struct Person<const D: usize> {
+    object: CollisionObjectHandle,
+    goal: Vector<f32, D>,
+}
+
+/// People on a circle, each with a goal on the opposite side.
+#[derive(Debug, Default)]
+pub(crate) struct Crowd<const D: usize> {
+    people: Vec<Person<D>>,
+    touching: usize,
+}
+
+impl<const D: usize> Person<D>
+where
+    f32: Dimension<D>,
+{
+    /// Towards the goal, and away from the nearest others, the more the nearer they are.
+    fn velocity(&self, world: &World<D>) -> Vector<f32, D> {
+        let none = Vector::<f32, D>::zeros();
+        let Some(own) = world.collision_object(self.object) else { return none };
+        let here = f32::pose(own.position()).translation;
+        let others = QueryFilter::new().exclude(self.object);
+        // Distances are between the capsules, not between their middles.
+        let near = world.nearest_objects(own.position(), &**own.shape(), NEIGHBORS, SIGHT, &others);
+        let ahead = unit_or(&(self.goal - here), none);
+        let steered = near.iter().fold(ahead, |velocity, near| {
+            let place = f32::pose(near.object.position()).translation;
+            let away = unit_or(&(here - place), none);
+            // Aside as well as away, so that two who meet head on pass each other.
+            let side = turn::<D>([0, 1], TAU / 4.0) * away;
+            let weight = 1.0 - near.distance / SIGHT;
+            velocity + (away * 1.5 + side * 0.5) * (weight * weight)
+        });
+        // Nobody runs: the sum is shortened to length 1, and never made longer.
+        let speed = max(steered.norm(), 1.0);
+        steered / speed
+    }
+}
+
+impl<const D: usize> Sample<D> for Crowd<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new().number("count", "People", 24.0, [2.0, 60.0, 1.0]).number(
+            "speed",
+            "Speed",
+            1.5,
+            [0.0, 5.0, 0.1],
+        )
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let capsule = ShapeHandle::new(Capsule::new(0.12, 0.18));
+        let (groups, query, count) =
+            (CollisionGroups::new(), ContactQuery::default(), panel.count("count"));
+        for n in 0..count {
+            let angle = TAU * number(n) / number(count);
+            // Evenly on the circle; the goal is the opposite place.
+            let place = turn::<D>([0, 1], angle) * vector::<D>([6.0, 0.0, 0.0]);
+            let position = f32::isometry(&Pose::from_translation(place));
+            let label = format!("person {n}");
+            let object = world.add(position, capsule.clone(), groups, query, label)?;
+            self.people.push(Person { object, goal: -place });
+        }
+        Ok(())
+    }
+
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        if panel.count("count") == self.people.len() {
+            return Ok(());
+        }
+        world.retain(|_| false);
+        self.build(world, panel)
+    }
+
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        let length = panel.value("speed") * TIME_STEP;
+        // All decide by where the others were, then all move at once.
+        let mut moved = Vec::with_capacity(self.people.len());
+        for person in &mut self.people {
+            let mut pose = pose_of(world, person.object);
+            pose.translation += person.velocity(world) * length;
+            // Who has arrived turns back.
+            if (person.goal - pose.translation).norm() < 0.5 {
+                person.goal = -person.goal;
+            }
+            moved.push((person.object, f32::isometry(&pose)));
+        }
+        Ok(world.set_positions(&moved)?)
+    }
+
+    fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
+        self.touching = world.contact_views().count();
+        Ok(())
+    }
+
+    /// The velocities, for one second.
+    fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
+        for person in &self.people {
+            let here = Point::from(pose_of(world, person.object).translation);
+            canvas.line([here, here + person.velocity(world)], GREEN);
+        }
+    }
+
+    fn readouts(&self, _: &World<D>, _: &Panel) -> Vec<Readout> {
+        vec![Readout::new("Pairs that bump into each other", self.touching)]
+    }
+}

@@ -1,0 +1,94 @@
+//! Solids that drop and come to rest.
+
+use crate::bodies::Bodies;
+use crate::prelude::*;
+
+/// Solids above a floor between walls.
+#[derive(Debug, Default)]
+pub(crate) struct Pile<const D: usize> {
+    /// All but the floor and the walls.
+    bodies: Bodies<D>,
+    /// How many were dropped: the number of the next.
+    dropped: usize,
+}
+
+/// The kinds that fall.
+const KINDS: [&str; 4] = ["box", "ball", "capsule", "rounded box"];
+/// Half the width of the room.
+const WALL: f32 = 3.0;
+
+impl<const D: usize> Pile<D>
+where
+    f32: Dimension<D>,
+{
+    /// Adds a solid somewhere above the floor. Its place and size follow from its number.
+    fn drop_one(&mut self, world: &mut World<D>, height: f32) -> Result<(), SampleError> {
+        let n = self.dropped;
+        self.dropped += 1;
+        let spread = |stream| (WALL - 1.0) * (2.0 * scattered(n, stream) - 1.0);
+        let position = turned([spread(0), height, spread(1)], TAU * scattered(n, 2));
+        let (kind, size) = (KINDS[n % KINDS.len()], 0.4 + 0.2 * scattered(n, 3));
+        // Contacts exist from a gap of 0.02 on, the sum of both predictions, so that the solver sees them in time.
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
+        let body = world.add(position, solid(kind, size), groups, query, format!("{kind} {n}"))?;
+        self.bodies.add(body, size);
+        Ok(())
+    }
+}
+
+impl<const D: usize> Sample<D> for Pile<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new()
+            .number("count", "Solids", 24.0, [1.0, 120.0, 1.0])
+            .button("drop", "Drop one more")
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
+        let floor = ShapeHandle::new(Plane::new(up()));
+        world.add(at([0.0; 3]), floor, groups, query, "floor".to_owned())?;
+        // A wall on each side, along every axis but the vertical one.
+        for axis in (0..D).filter(|axis| *axis != 1) {
+            for side in [-1.0, 1.0] {
+                let mut half = Vector::<f32, D>::repeat(WALL);
+                let mut place = vector([0.0, WALL, 0.0]);
+                (half[axis], place[axis]) = (0.25, side * (WALL + 0.25));
+                let position = f32::isometry(&Pose::from_translation(place));
+                let wall = ShapeHandle::new(Cuboid::new(half));
+                world.add(position, wall, groups, query, "wall".to_owned())?;
+            }
+        }
+        for n in 0..panel.count("count") {
+            self.drop_one(world, 1.0 + 0.6 * number(n))?;
+        }
+        Ok(())
+    }
+
+    /// Only the count can change; a press of the button is no change.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        world.retain(|_| false);
+        self.build(world, panel)
+    }
+
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        if panel.take_press("drop") {
+            self.drop_one(world, 8.0)?;
+        }
+        self.bodies.advance(world)
+    }
+
+    /// At rest the deepest contact is about as deep as the solver leaves alone.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
+        let depth = deepest.map(|point| point.contact.depth).reduce(max);
+        vec![
+            Readout::new("Manifolds", world.contact_views().count()),
+            Readout::number("Deepest contact", depth.unwrap_or(0.0)),
+            Readout::number("Fastest body", self.bodies.speed()),
+        ]
+    }
+}

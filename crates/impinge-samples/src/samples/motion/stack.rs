@@ -1,0 +1,75 @@
+//! A stack of boxes.
+
+use impinge::narrow_phase::{CollisionObjectHandle, ContactQuery};
+use impinge::shape::{Cuboid, Plane, ShapeHandle};
+use impinge::world::CollisionGroups;
+
+use crate::bodies::Bodies;
+use crate::dimension::Dimension;
+use crate::place::{at, number, up, vector};
+use crate::{Panel, Readout, Sample, SampleError, World};
+
+/// Boxes of size 1, each half a percent above the one below.
+#[derive(Debug, Default)]
+pub(crate) struct Stack<const D: usize> {
+    /// The boxes, which the solver moves.
+    bodies: Bodies<D>,
+    /// The box that can be pushed.
+    top: Option<CollisionObjectHandle>,
+}
+
+impl<const D: usize> Sample<D> for Stack<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new()
+            .number("count", "Boxes", 8.0, [1.0, 20.0, 1.0])
+            .number("shift", "Shift of each to the side", 0.02, [0.0, 0.2, 0.005])
+            .button("push", "Push the top box")
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
+        // A half-space has no end, so that nothing falls off its edge.
+        let floor = ShapeHandle::new(Plane::new(up()));
+        world.add(at([0.0; 3]), floor, groups, query, "floor".to_owned())?;
+        // One shape for all boxes: a handle is a counted reference.
+        let cube = ShapeHandle::new(Cuboid::new(vector([0.5; 3])));
+        for n in 0..panel.count("count") {
+            // Every other box is shifted to the other side.
+            let side = if n % 2 == 0 { 1.0 } else { -1.0 };
+            let position = at([side * panel.value("shift"), 0.505 + 1.005 * number(n), 0.0]);
+            let cube = world.add(position, cube.clone(), groups, query, format!("box {n}"))?;
+            self.bodies.add(cube, 0.5);
+            self.top = Some(cube);
+        }
+        Ok(())
+    }
+
+    /// The world is emptied and built again: handles of removed objects are stale from then on.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        world.retain(|_| false);
+        self.build(world, panel)
+    }
+
+    /// A push is a velocity; what follows from it is up to contacts and friction.
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        if panel.take_press("push")
+            && let Some(top) = self.top
+        {
+            self.bodies.push(top, vector([4.0, 0.0, 0.0]));
+        }
+        self.bodies.advance(world)
+    }
+
+    /// Views read the manifolds where the world keeps them, without a copy.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
+        vec![
+            Readout::new("Contact points", points),
+            Readout::number("Fastest box", self.bodies.speed()),
+        ]
+    }
+}

@@ -1,0 +1,117 @@
+//! Every two solids, touching.
+
+use crate::prelude::*;
+
+/// The distance of two cells of the grid.
+const CELL: f32 = 3.0;
+
+/// A grid with a cell for each pair of kinds: one solid stands, the other turns and is brought to touch it.
+#[derive(Debug, Default)]
+pub(crate) struct Grid {
+    /// The standing and the turning solid of each cell.
+    pairs: Vec<[CollisionObjectHandle; 2]>,
+    /// The turn of all second solids, in radians.
+    angle: f32,
+}
+
+impl Grid {
+    /// Where the second solid of a pair is: from the upper right towards the first until they touch, and on by the
+    /// depth. Parallel segments have no depth, so that they stay where they touch.
+    fn touching<const D: usize>(
+        &self,
+        world: &World<D>,
+        [first, second]: [CollisionObjectHandle; 2],
+        depth: f32,
+    ) -> Option<Isometry<D>>
+    where
+        f32: Dimension<D>,
+    {
+        let shape1 = &**world.collision_object(first)?.shape();
+        let shape2 = &**world.collision_object(second)?.shape();
+        let pose1 = pose_of(world, first);
+        let mut pose2 = Pose {
+            rotation: turn([0, 1], self.angle),
+            translation: pose1.translation + vector([CELL, CELL, 0.0]),
+        };
+        let velocity = vector([-1.0, -1.0, 0.0]);
+        // A cast needs no world: two shapes, two poses, a velocity.
+        let still = Moving::still(&isometry(&pose1), shape1);
+        let moving = Moving::new(&isometry(&pose2), &velocity, shape2);
+        let hit = impact(&still, &moving, &ImpactOptions::new())?;
+        // There they touch; the normal points from the first to the second.
+        pose2.translation += velocity * hit.toi;
+        let deeper = Pose { translation: pose2.translation - *hit.normal * depth, ..pose2 };
+        let gap = distance(&isometry(&pose1), shape1, &isometry(&deeper), shape2);
+        let has_depth = depth < 0.0 || gap <= 0.0;
+        Some(f32::isometry(if has_depth { &deeper } else { &pose2 }))
+    }
+
+    /// Moves all second solids at once.
+    fn place<const D: usize>(&self, world: &mut World<D>, depth: f32) -> Result<(), SampleError>
+    where
+        f32: Dimension<D>,
+    {
+        let moved = self
+            .pairs
+            .iter()
+            .filter_map(|pair| Some((pair[1], self.touching(world, *pair, depth)?)));
+        let moved: Vec<_> = moved.collect();
+        Ok(world.set_positions(&moved)?)
+    }
+}
+
+impl<const D: usize> Sample<D> for Grid
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new().number("depth", "Depth", 0.05, [-0.1, 0.3, 0.01]).number(
+            "speed",
+            "Turns per minute",
+            2.0,
+            [0.0, 20.0, 0.5],
+        )
+    }
+
+    /// A triangle of cells, since a pair is the same in both orders.
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
+        let kinds: Vec<_> = f32::BOUNDED.iter().collect();
+        for (row, first) in kinds.iter().enumerate() {
+            for (column, second) in kinds.iter().enumerate().take(row + 1) {
+                let center = at([CELL * number(column), -CELL * number(row), 0.0]);
+                let label = format!("{first} and {second}");
+                let shapes = [solid(first, 0.7), solid(second, 0.7)];
+                let [shape1, shape2] = shapes;
+                self.pairs.push([
+                    world.add(center, shape1, groups, query, label.clone())?,
+                    world.add(center, shape2, groups, query, label)?,
+                ]);
+            }
+        }
+        self.place(world, panel.value("depth"))
+    }
+
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        self.place(world, panel.value("depth"))
+    }
+
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        self.angle += panel.value("speed") * TAU / 3600.0;
+        self.place(world, panel.value("depth"))
+    }
+
+    /// A pair may be asked for by its handles, in either order.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let touching = self.pairs.iter().filter(|[a, b]| {
+            world.contact_pair(*a, *b).is_some_and(|pair| pair.num_contacts() > 0)
+        });
+        let most = world.contact_views().map(|(_, _, manifold)| manifold.len()).max();
+        vec![
+            Readout::new("Pairs of kinds", self.pairs.len()),
+            Readout::new("Pairs with contacts", touching.count()),
+            Readout::new("Most points of a manifold", most.unwrap_or(0)),
+        ]
+    }
+}

@@ -1,0 +1,7 @@
+//! Two shapes at a time.
+
+pub(crate) mod grid;
+pub(crate) mod own;
+pub(crate) mod playground;
+pub(crate) mod spinning;
+pub(crate) mod through;

@@ -1,0 +1,207 @@
+//! Two shapes of any kind, and all that can be asked about two shapes.
+
+use impinge::debug_render::SweptShape;
+use impinge::math::{Pose, Space, Vector};
+use impinge::narrow_phase::{CollisionObjectHandle, ContactQuery};
+use impinge::query::{
+    Contact, Impact, ImpactOptions, Moving, closest_points, contact, distance, impact, proximity,
+};
+use impinge::shape::ShapeHandle;
+use impinge::world::CollisionGroups;
+
+use crate::dimension::{Dimension, solid};
+use crate::place::{at, isometry, pose_of, to_and_fro, turn, turned, vector};
+use crate::{Canvas, Isometry, Panel, Readout, Sample, SampleError, World};
+
+/// Contacts are kept, and closest points shown, up to this distance.
+const MARGIN: f32 = 10.0;
+
+/// The second shape moves along the first until a person drags it.
+#[derive(Debug, Default)]
+pub(crate) struct Playground {
+    /// The first and the second shape.
+    objects: Vec<CollisionObjectHandle>,
+    /// Where the second is on its path: 1 is once to and fro.
+    phase: f32,
+    /// A person has taken over.
+    is_held: bool,
+}
+
+/// A shape and where it is.
+struct Placed<const D: usize> {
+    shape: ShapeHandle<f32, D>,
+    pose: Pose<f32, D>,
+}
+
+impl Playground {
+    /// Both shapes with their poses; handles of shapes are cheap to clone.
+    fn placed<const D: usize>(&self, world: &World<D>) -> Option<[Placed<D>; 2]>
+    where
+        f32: Dimension<D>,
+    {
+        let placed = |object: CollisionObjectHandle| {
+            let shape = world.collision_object(object)?.shape().clone();
+            Some(Placed { shape, pose: pose_of(world, object) })
+        };
+        let &[first, second] = self.objects.as_slice() else { return None };
+        Some([placed(first)?, placed(second)?])
+    }
+
+    /// A line above the first shape, low enough to touch it.
+    fn path<const D: usize>(&self, panel: &Panel) -> Isometry<D>
+    where
+        f32: Dimension<D>,
+    {
+        let x = 6.0 * to_and_fro(self.phase) - 3.0;
+        turned([x, 1.2, 0.0], panel.value("angle"))
+    }
+}
+
+/// How the second shape is cast towards.
+fn velocity<const D: usize>(panel: &Panel) -> Vector<f32, D>
+where
+    f32: Dimension<D>,
+{
+    turn::<D>([0, 1], panel.value("direction")) * vector::<D>([1.0, 0.0, 0.0])
+}
+
+/// When the second shape hits the first on its way, if it does.
+fn time_of_impact<const D: usize>(
+    [first, second]: &[Placed<D>; 2],
+    panel: &Panel,
+) -> Option<Impact<f32, D>>
+where
+    f32: Dimension<D>,
+{
+    let still = Moving::still(&isometry(&first.pose), &*first.shape);
+    let moving = Moving::new(&isometry(&second.pose), &velocity(panel), &*second.shape);
+    impact(&still, &moving, &ImpactOptions::new().with_max_time(MARGIN))
+}
+
+/// The contact of both shapes, which within the margin exists for shapes that are apart too: its depth is negative
+/// then.
+fn nearest_contact<const D: usize>([first, second]: &[Placed<D>; 2]) -> Option<Contact<f32, D>>
+where
+    f32: Dimension<D>,
+{
+    let poses = [&first.pose, &second.pose].map(isometry);
+    contact(&poses[0], &*first.shape, &poses[1], &*second.shape, MARGIN)
+}
+
+impl<const D: usize> Sample<D> for Playground
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        let angle = [-3.2, 3.2, 0.01];
+        Panel::new()
+            .choice("first", "First shape", "box", f32::SOLIDS)
+            .number("size", "Its size", 1.0, [0.25, 2.0, 0.01])
+            .choice("second", "Second shape", "capsule", f32::SOLIDS)
+            .number("size2", "Its size", 0.8, [0.25, 2.0, 0.01])
+            .number("angle", "Angle of the second", 0.4, angle)
+            .number("direction", "Direction of the cast", -1.6, angle)
+            .number("prediction", "Contacts up to", 0.1, [0.0, 1.0, 0.01])
+    }
+
+    /// The objects are in a world for the manifold; all other questions need no world.
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) =
+            (CollisionGroups::new(), ContactQuery::new(panel.value("prediction")));
+        let first = solid::<D>(panel.chosen("first"), panel.value("size"));
+        let second = solid::<D>(panel.chosen("second"), panel.value("size2"));
+        self.objects = vec![
+            world.add(at([0.0; 3]), first, groups, query, "first".to_owned())?,
+            world.add(self.path(panel), second, groups, query, "second".to_owned())?,
+        ];
+        Ok(())
+    }
+
+    /// Shapes and query types of objects can be exchanged; the handles stay.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let &[first, second] = self.objects.as_slice() else { return Ok(()) };
+        world.set_shape(first, solid(panel.chosen("first"), panel.value("size")))?;
+        world.set_shape(second, solid(panel.chosen("second"), panel.value("size2")))?;
+        let pose = Pose {
+            rotation: turn([0, 1], panel.value("angle")),
+            translation: pose_of(world, second).translation,
+        };
+        world.set_position(second, f32::isometry(&pose))?;
+        for object in [first, second] {
+            world.set_query_type(object, ContactQuery::new(panel.value("prediction")))?;
+        }
+        Ok(())
+    }
+
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        let &[_, second] = self.objects.as_slice() else { return Ok(()) };
+        if !self.is_held {
+            self.phase += 1.0 / 600.0;
+            world.set_position(second, self.path(panel))?;
+        }
+        Ok(())
+    }
+
+    /// The second shape stays where the person leaves it.
+    fn dragged(
+        &mut self,
+        world: &mut World<D>,
+        object: CollisionObjectHandle,
+        to: &Isometry<D>,
+    ) -> Result<(), SampleError> {
+        world.set_position(object, *to)?;
+        self.is_held = true;
+        Ok(())
+    }
+
+    /// Closest points, contact, and the way of the cast with its impact.
+    fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
+        let Some(pair) = self.placed(world) else { return };
+        let [first, second] = &pair;
+        let poses = [&first.pose, &second.pose].map(isometry);
+        let nearest = closest_points(&poses[0], &*first.shape, &poses[1], &*second.shape, MARGIN);
+        canvas.drawing.closest_points(&nearest, canvas.renderer);
+        canvas.drawing.contacts(nearest_contact(&pair), canvas.renderer);
+        // In 3D and in 2D alike: drawn are the start, the impact and the end.
+        let sweep = SweptShape {
+            shape: &second.shape,
+            position: f32::isometry(&second.pose),
+            velocity: velocity(panel),
+            max_time: 4.0,
+        };
+        canvas.drawing.cast(&sweep, time_of_impact(&pair, panel).as_ref(), canvas.renderer);
+    }
+
+    /// Every answer about the two shapes, computed here and now, and the manifold that the world keeps.
+    fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
+        let Some(pair) = self.placed(world) else { return Vec::new() };
+        let [first, second] = &pair;
+        let poses = [&first.pose, &second.pose].map(isometry);
+        let (shape1, shape2) = (&*first.shape, &*second.shape);
+        let margin = panel.value("prediction");
+        let mut readouts = vec![
+            Readout::number("Distance", distance(&poses[0], shape1, &poses[1], shape2)),
+            Readout::new(
+                "Proximity",
+                format!("{:?}", proximity(&poses[0], shape1, &poses[1], shape2, margin)),
+            ),
+        ];
+        if let Some(contact) = nearest_contact(&pair) {
+            readouts.push(Readout::number("Depth", contact.depth));
+            readouts.push(Readout::new("Normal", format!("{:.3?}", contact.normal.as_slice())));
+            let points = [contact.world1, contact.world2].map(|point| point.coords);
+            readouts.push(Readout::new("Point 1", format!("{:.3?}", points[0].as_slice())));
+            readouts.push(Readout::new("Point 2", format!("{:.3?}", points[1].as_slice())));
+        }
+        // The world's points: a flat side has several, a round one has one.
+        let contacts = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
+        readouts.push(Readout::new("Contact points", contacts));
+        let time = time_of_impact(&pair, panel).map(|hit| hit.toi);
+        readouts.push(Readout::new(
+            "Time of impact",
+            time.map_or_else(|| "none".to_owned(), |time| format!("{time:.4}")),
+        ));
+        readouts
+    }
+}

@@ -1,0 +1,115 @@
+//! When two spinning solids hit each other.
+
+use impinge::query::{RigidMotion, nonlinear_time_of_impact};
+
+use crate::bodies::TIME_STEP;
+use crate::prelude::*;
+
+/// The longest time looked ahead, and how long the picture stands still after an impact.
+const SECONDS: f32 = 4.0;
+const PAUSE: f32 = 1.0;
+
+/// Two bars that fly towards each other and turn. Their first touch is known from the start; they stop there.
+#[derive(Debug, Default)]
+pub(crate) struct Spinning<const D: usize> {
+    /// The left and the right bar.
+    bars: Vec<CollisionObjectHandle>,
+    /// Their first touch, if they touch within the longest time.
+    hit: Option<Impact<f32, D>>,
+    /// The time since the start, in seconds.
+    time: f32,
+}
+
+impl<const D: usize> Spinning<D>
+where
+    f32: Dimension<D>,
+{
+    /// Both motions as functions of the time, from which positions and the impact are computed alike.
+    fn motions(panel: &Panel) -> [Box<dyn RigidMotion<f32, D>>; 2] {
+        let linear = vector([0.6, 0.0, 0.0]);
+        let offset = panel.value("offset");
+        let left = turned([-2.0, -0.5 * offset, 0.0], 0.3);
+        let right = turned([2.0, 0.5 * offset, 0.0], 1.9);
+        [
+            f32::spinning(left, linear, panel.value("spin")),
+            f32::spinning(right, -linear, panel.value("spin2")),
+        ]
+    }
+
+    /// The longest time without a touch: that of the impact, if there is one.
+    fn end(&self) -> f32 {
+        self.hit.map_or(SECONDS, |hit| hit.toi)
+    }
+}
+
+/// A thin bar, 2.4 long.
+fn bar<const D: usize>() -> Cuboid<f32, D> {
+    Cuboid::new(vector([1.2, 0.04, 0.3]))
+}
+
+impl<const D: usize> Sample<D> for Spinning<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new()
+            .number("spin", "Turn of the left, radians per second", 4.0, [-30.0, 30.0, 0.1])
+            .number("spin2", "Turn of the right", -7.0, [-30.0, 30.0, 0.1])
+            .number("offset", "How far they pass each other", 0.8, [-3.0, 3.0, 0.05])
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
+        let (shape, motions) = (ShapeHandle::new(bar()), Self::motions(panel));
+        self.bars.clear();
+        for (motion, label) in motions.iter().zip(["left", "right"]) {
+            let start = motion.position_at(0.0);
+            self.bars.push(world.add(start, shape.clone(), groups, query, label.to_owned())?);
+        }
+        self.changed(world, panel)
+    }
+
+    /// The impact is found without a step of the motion: nothing is missed, however thin or fast the bars are.
+    fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let (bar, [left, right]) = (bar(), Self::motions(panel));
+        let options = ImpactOptions::new().with_max_time(SECONDS);
+        self.hit = nonlinear_time_of_impact(&*left, &bar, &*right, &bar, &options);
+        self.time = 0.0;
+        Ok(())
+    }
+
+    /// The bars stop at the impact, and begin again after a pause.
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        self.time += TIME_STEP;
+        if self.time > self.end() + PAUSE {
+            self.time = 0.0;
+        }
+        let (motions, time) = (Self::motions(panel), min(self.time, self.end()));
+        for (bar, motion) in self.bars.iter().zip(&motions) {
+            world.set_position(*bar, motion.position_at(time))?;
+        }
+        Ok(())
+    }
+
+    /// Where they will touch, known before they do.
+    fn draw(&self, _: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
+        if let Some(hit) = &self.hit {
+            canvas.point(&hit.world1, 0.15, RED);
+            canvas.line([hit.world1, hit.world1 + hit.normal.into_inner()], RED);
+        }
+    }
+
+    /// The distance falls to zero at the time of impact, and not before.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let &[left, right] = self.bars.as_slice() else { return Vec::new() };
+        let poses = [left, right].map(|object| isometry(&pose_of(world, object)));
+        vec![
+            Readout::new(
+                "Time of impact",
+                self.hit.map_or_else(|| "none".to_owned(), |hit| format!("{:.5}", hit.toi)),
+            ),
+            Readout::number("Time", min(self.time, self.end())),
+            Readout::number("Distance", distance(&poses[0], &bar(), &poses[1], &bar())),
+        ]
+    }
+}

@@ -1,0 +1,123 @@
+//! A solid on its way, and what it hits first.
+
+use impinge_record::{CastQuestion, Detail, PlacedShape, Query, Question};
+
+use crate::prelude::*;
+
+/// How far the solid would fly.
+const LENGTH: f32 = 9.0;
+
+/// Posts around the origin, and a solid that is cast from there in a direction that turns.
+#[derive(Debug)]
+pub(crate) struct Casts<const D: usize>
+where
+    f32: Space<D>,
+{
+    /// The direction of the cast.
+    angle: f32,
+    /// The impacts of the last cast, the first one first.
+    hits: Vec<Impact<f32, D>>,
+}
+
+impl<const D: usize> Default for Casts<D>
+where
+    f32: Space<D>,
+{
+    fn default() -> Self {
+        Self { angle: 0.0, hits: Vec::new() }
+    }
+}
+
+impl<const D: usize> Casts<D>
+where
+    f32: Dimension<D>,
+{
+    /// The solid at the origin, turned, with the whole way as its velocity.
+    fn question(&self, panel: &Panel) -> CastQuestion<f32, D> {
+        let velocity = turn::<D>([0, 1], self.angle) * vector::<D>([LENGTH, 0.0, 0.0]);
+        let shape = solid(panel.chosen("solid"), panel.value("size"));
+        CastQuestion {
+            start: PlacedShape { position: turned([0.0; 3], 3.0 * self.angle), shape },
+            velocity,
+            // At time 1 the whole way is made.
+            options: ImpactOptions::new()
+                .with_max_time(1.0)
+                .with_target_distance(panel.value("gap")),
+        }
+    }
+}
+
+impl<const D: usize> Sample<D> for Casts<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new()
+            .choice("solid", "Solid", "box", f32::BOUNDED)
+            .number("size", "Its size", 0.5, [0.05, 1.0, 0.05])
+            .number("gap", "Distance at which it stops", 0.0, [0.0, 0.5, 0.01])
+            .flag("all", "All it would hit", false)
+    }
+
+    /// Solids of all kinds around the origin, at different distances.
+    fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+        for n in 0..14 {
+            let direction = turn::<D>([0, 1], TAU * number(n) / 14.0);
+            let place = direction * vector::<D>([3.5 + 4.0 * scattered(n, 0), 0.0, 0.0]);
+            let kind = f32::BOUNDED[n % f32::BOUNDED.len()];
+            let position = f32::isometry(&Pose { rotation: direction, translation: place });
+            let shape = solid(kind, 0.5 + 0.4 * scattered(n, 1));
+            world.add(position, shape, groups, query, kind.to_owned())?;
+        }
+        Ok(())
+    }
+
+    /// Nothing moves but the direction: a cast is a question, and changes no object.
+    fn advance(&mut self, _: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
+        self.angle += TAU / 720.0;
+        Ok(())
+    }
+
+    /// The first impact alone is found faster than all of them.
+    fn updated(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let cast = self.question(panel);
+        let question = if panel.is_set("all") {
+            Question::CastShapeAll(cast)
+        } else {
+            Question::CastShape(cast)
+        };
+        let answer = world.ask(&Query::new(question))?;
+        let impacts = answer.into_iter().filter_map(|found| match found.detail {
+            Detail::Impact(hit) => Some(hit),
+            _ => None,
+        });
+        self.hits = impacts.collect();
+        Ok(())
+    }
+
+    /// Start, impact and end of the way.
+    fn draw(&self, _: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
+        let CastQuestion { start, velocity, .. } = self.question(panel);
+        let (shape, position) = (&start.shape, start.position);
+        let sweep = SweptShape { shape, position, velocity, max_time: 1.0 };
+        if self.hits.is_empty() {
+            canvas.drawing.cast(&sweep, None, canvas.renderer);
+        }
+        for hit in &self.hits {
+            canvas.drawing.cast(&sweep, Some(hit), canvas.renderer);
+        }
+    }
+
+    fn readouts(&self, _: &World<D>, _: &Panel) -> Vec<Readout> {
+        let first = self.hits.first().map(|hit| hit.toi * LENGTH);
+        vec![
+            Readout::new("Objects hit", self.hits.len()),
+            Readout::new(
+                "Way to the first",
+                first.map_or_else(|| "free".to_owned(), |way| format!("{way:.4}")),
+            ),
+        ]
+    }
+}

@@ -1,0 +1,6 @@
+//! Questions to a world.
+
+pub(crate) mod casts;
+pub(crate) mod clearance;
+pub(crate) mod nearest;
+pub(crate) mod rays;

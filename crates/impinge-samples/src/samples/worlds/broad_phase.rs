@@ -1,0 +1,69 @@
+//! What the broad phase sees: boxes and a tree of boxes.
+
+use impinge::debug_render::{DebugDrawing, DebugOptions};
+use impinge_scenes::few_moving;
+
+use crate::prelude::*;
+use crate::scene::Play;
+
+/// Drifting boxes, of which one in a hundred moves.
+#[derive(Debug, Default)]
+pub(crate) struct BroadPhase<const D: usize> {
+    /// The boxes in the world.
+    play: Option<Play<D>>,
+}
+
+impl<const D: usize> Sample<D> for BroadPhase<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new()
+            .number("count", "Objects", 200.0, [10.0, 1000.0, 10.0])
+            .flag("tree", "Nodes of the tree", true)
+            .flag("loosened", "Loosened boxes", true)
+    }
+
+    /// Large enough to be seen: boxes stay as they are while objects move by so much.
+    fn margin(&self) -> f32 {
+        0.15
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        self.play = Some(Play::start(few_moving(panel.count("count")), world)?);
+        Ok(())
+    }
+
+    /// Only another count makes another scene; the flags are read while drawing.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        if world.len() == panel.count("count") {
+            return Ok(());
+        }
+        world.retain(|_| false);
+        self.build(world, panel)
+    }
+
+    fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
+        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+    }
+
+    /// The boxes of objects and nodes are among what a drawing of a world can have.
+    fn draw(&self, world: &World<D>, panel: &Panel, canvas: &mut Canvas<'_, D>) {
+        let DebugOptions { tree_node, loosened_box, .. } = DebugOptions::all();
+        let options = DebugOptions {
+            tree_node: tree_node.filter(|_| panel.is_set("tree")),
+            loosened_box: loosened_box.filter(|_| panel.is_set("loosened")),
+            ..DebugOptions::none()
+        };
+        DebugDrawing::new(options).world(world, canvas.renderer);
+    }
+
+    /// What all pairs would be, and what is left of them.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let all = world.len() * world.len().saturating_sub(1) / 2;
+        vec![
+            Readout::new("Pairs of objects", all),
+            Readout::new("Pairs whose boxes overlap", world.contact_pairs().count()),
+        ]
+    }
+}

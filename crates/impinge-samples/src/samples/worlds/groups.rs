@@ -1,0 +1,118 @@
+//! Groups and pair filters: who may touch whom.
+
+use impinge::world::{BroadPhasePairFilter, CollisionObject};
+use impinge_record::Registry;
+use impinge_scenes::sparse_drift;
+
+use crate::prelude::*;
+use crate::scene::Play;
+
+/// Three teams of drifting boxes, by the number of the object.
+const TEAMS: usize = 3;
+
+/// Drifting boxes that are members of one group of three.
+#[derive(Debug, Default)]
+pub(crate) struct Groups<const D: usize> {
+    /// The boxes in the world.
+    play: Option<Play<D>>,
+}
+
+impl<const D: usize> Groups<D>
+where
+    f32: Dimension<D>,
+{
+    /// Each object is a member of its team's group, and whitelists what the rule says.
+    fn assign(&self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let handles = self.play.iter().flat_map(Play::handles);
+        for (index, object) in handles.enumerate() {
+            // Two objects may touch if each is in a group that the other lists, and none that it forbids.
+            let team = index % TEAMS;
+            let mut groups = CollisionGroups::new();
+            groups.set_membership(&[team]);
+            match panel.chosen("rule") {
+                "own team" => groups.set_whitelist(&[team]),
+                "other teams" => groups.set_blacklist(&[team]),
+                "nobody" => groups.set_whitelist(&[]),
+                _ => {}
+            }
+            world.set_collision_groups(*object, groups)?;
+        }
+        // A filter is code: the recording has its name, and the registry the function.
+        if panel.is_set("filter") {
+            world.register_broad_phase_pair_filter("same first digit")?;
+        } else {
+            world.unregister_broad_phase_pair_filter("same first digit");
+        }
+        Ok(())
+    }
+}
+
+/// The team of an object, by its label.
+fn team(label: &str) -> Option<usize> {
+    let index: usize = label.strip_prefix("object ")?.parse().ok()?;
+    Some(index % TEAMS)
+}
+
+/// A pair filter: only pairs whose numbers begin with the same digit.
+#[derive(Clone, Copy, Debug)]
+struct SameFirstDigit;
+
+impl<const D: usize> BroadPhasePairFilter<f32, D, String> for SameFirstDigit
+where
+    f32: Space<D>,
+{
+    fn is_pair_valid(
+        &self,
+        one: &CollisionObject<f32, D, String>,
+        two: &CollisionObject<f32, D, String>,
+    ) -> bool {
+        let digit = |label: &str| label.chars().find(char::is_ascii_digit);
+        digit(one.data()) == digit(two.data())
+    }
+}
+
+impl<const D: usize> Sample<D> for Groups<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        let rules = &["everybody", "own team", "other teams", "nobody"];
+        Panel::new().choice("rule", "Each touches", "own team", rules).flag(
+            "filter",
+            "Only numbers with the same first digit",
+            false,
+        )
+    }
+
+    fn registry(&self) -> Registry<f32, D, String> {
+        Registry::new().with_filter("same first digit", SameFirstDigit)
+    }
+
+    /// The scene lets all touch each other; the groups are given afterwards.
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        self.play = Some(Play::start(sparse_drift(90), world)?);
+        self.assign(world, panel)
+    }
+
+    /// Groups can change at any time; pairs begin and end at the next update.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        self.assign(world, panel)
+    }
+
+    fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
+        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+    }
+
+    /// Counted by the labels of both objects, not by their groups: so the numbers test the rule.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let is_within: Vec<_> = world
+            .contact_views()
+            .map(|(one, two, _)| team(one.data()) == team(two.data()))
+            .collect();
+        let within = is_within.iter().filter(|is_within| **is_within).count();
+        vec![
+            Readout::new("Contacts within a team", within),
+            Readout::new("Contacts between teams", is_within.len() - within),
+        ]
+    }
+}

@@ -1,0 +1,9 @@
+//! Worlds of many objects, and surfaces.
+
+pub(crate) mod broad_phase;
+pub(crate) mod groups;
+pub(crate) mod one_sided;
+pub(crate) mod scaling;
+pub(crate) mod scenery;
+pub(crate) mod slide;
+pub(crate) mod waves;

@@ -1,0 +1,80 @@
+//! A surface that is solid from above and open from below.
+
+use crate::prelude::*;
+
+/// A ball that goes up through a hill and comes down on it.
+#[derive(Debug, Default)]
+pub(crate) struct OneSided {
+    /// The hill and the ball.
+    objects: Vec<CollisionObjectHandle>,
+    /// Where the ball is in its motion.
+    step: usize,
+}
+
+/// The same triangles with one side or with two.
+fn hill<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
+where
+    f32: Dimension<D>,
+{
+    let kind =
+        if panel.is_set("one sided") { SurfaceKind::OneSidedMesh } else { SurfaceKind::Mesh };
+    f32::surface(8, kind, &|x, z| 1.0 - 0.06 * (x * x + z * z))
+}
+
+impl OneSided {
+    /// Up through the hill, and down again.
+    fn position<const D: usize>(&self) -> Isometry<D>
+    where
+        f32: Dimension<D>,
+    {
+        let phase = number(self.step) / 240.0;
+        at([1.0, -2.0 + 5.0 * to_and_fro(phase), 0.5])
+    }
+}
+
+impl<const D: usize> Sample<D> for OneSided
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new().flag("one sided", "One side", true)
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+        let ball = ShapeHandle::new(Ball::new(0.5));
+        self.objects = vec![
+            world.add(at([0.0; 3]), hill(panel), groups, query, "hill".to_owned())?,
+            world.add(self.position(), ball, groups, query, "ball".to_owned())?,
+        ];
+        Ok(())
+    }
+
+    /// The shape is exchanged while the ball goes on.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let &[surface, _] = self.objects.as_slice() else { return Ok(()) };
+        Ok(world.set_shape(surface, hill(panel))?)
+    }
+
+    fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
+        self.step += 1;
+        let &[_, ball] = self.objects.as_slice() else { return Ok(()) };
+        Ok(world.set_position(ball, self.position())?)
+    }
+
+    /// The normal points from the hill to the ball, which was added later.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
+        let deepest = deepest.map(|point| point.contact).next();
+        vec![Readout::new(
+            "Contact",
+            deepest.map_or_else(
+                || "none".to_owned(),
+                |contact| {
+                    format!("{:.4} deep, normal {:.2?}", contact.depth, contact.normal.as_slice())
+                },
+            ),
+        )]
+    }
+}

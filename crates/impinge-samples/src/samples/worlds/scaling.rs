@@ -1,0 +1,105 @@
+//! One scene at many sizes, near the origin and far from it.
+
+use crate::prelude::*;
+
+/// The number of solids in the row.
+const COUNT: usize = 6;
+
+/// Solids that bob on a slab. All lengths are multiplied by a power of two, so that the answers scale exactly.
+#[derive(Debug, Default)]
+pub(crate) struct Scaling {
+    /// The solids on the slab.
+    solids: Vec<CollisionObjectHandle>,
+    /// Where they are in their motion.
+    step: usize,
+}
+
+/// The factor of all lengths.
+fn scale(panel: &Panel) -> f32 {
+    let exponent = panel.value("exponent").floor();
+    // Powers of two are exact, so that all lengths have the same digits at every size.
+    let factor = if exponent < 0.0 { 0.5 } else { 2.0 };
+    (0..).take_while(|n| number(*n) < exponent.abs()).fold(1.0, |scale, _| scale * factor)
+}
+
+impl Scaling {
+    /// Where a solid is: over the slab, in it, and over it again.
+    fn position<const D: usize>(&self, index: usize, panel: &Panel) -> Isometry<D>
+    where
+        f32: Dimension<D>,
+    {
+        let (scale, far) = (scale(panel), panel.value("far"));
+        let phase = number(self.step) / 240.0 + number(index) / number(COUNT);
+        let height = 0.4 + 0.5 * to_and_fro(phase);
+        let x = far + 1.5 * number(index) - 3.75;
+        turned([x * scale, height * scale, 0.0], 0.3 * number(index))
+    }
+
+    /// The deepest contact.
+    fn depth<const D: usize>(world: &World<D>) -> Option<f32>
+    where
+        f32: Dimension<D>,
+    {
+        let manifolds = world.contact_views().map(|(_, _, manifold)| manifold);
+        manifolds.map(|manifold| manifold.deepest_contact().contact.depth).reduce(max)
+    }
+}
+
+impl<const D: usize> Sample<D> for Scaling
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new().number("exponent", "Size as a power of 2", 0.0, [-10.0, 20.0, 1.0]).number(
+            "far",
+            "Distance from the origin in sizes",
+            0.0,
+            [0.0, 1000.0, 10.0],
+        )
+    }
+
+    /// Shapes and positions are scaled; margins and predictions of zero need not be.
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let (scale, groups, query) =
+            (scale(panel), CollisionGroups::new(), ContactQuery::default());
+        self.step = 0;
+        let slab = ShapeHandle::new(Cuboid::new(vector([6.0, 0.25, 2.0]) * scale));
+        let below = at([panel.value("far") * scale, -0.25 * scale, 0.0]);
+        world.add(below, slab, groups, query, "slab".to_owned())?;
+        self.solids.clear();
+        for (index, kind) in f32::SOLIDS.iter().take(COUNT).enumerate() {
+            let (shape, position) = (solid(kind, 0.5 * scale), self.position(index, panel));
+            self.solids.push(world.add(position, shape, groups, query, (*kind).to_owned())?);
+        }
+        Ok(())
+    }
+
+    /// The motion goes on from where it was, at another size.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        let step = self.step;
+        world.retain(|_| false);
+        self.build(world, panel)?;
+        self.step = step;
+        Ok(())
+    }
+
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        self.step += 1;
+        for (index, object) in self.solids.iter().enumerate() {
+            world.set_position(*object, self.position(index, panel))?;
+        }
+        Ok(())
+    }
+
+    /// The depth in units of the size has all its digits at every size near the origin.
+    fn readouts(&self, world: &World<D>, panel: &Panel) -> Vec<Readout> {
+        let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
+        let (depth, scale) = (Self::depth(world).unwrap_or(0.0), scale(panel));
+        vec![
+            Readout::new("Contact points", points),
+            Readout::number("Size", scale),
+            Readout::number("Deepest contact", depth),
+            Readout::new("The same in sizes", format!("{:.9}", depth / scale)),
+        ]
+    }
+}

@@ -1,0 +1,88 @@
+//! The scenes of `impinge-scenes`: rain, asteroids, a crowd, thousands of boxes.
+
+use impinge::narrow_phase::ContactEvent;
+use impinge_scenes::Scene;
+
+use crate::prelude::*;
+use crate::scene::Play;
+
+/// Makes a scene of a number of objects.
+type MakeScene<const D: usize> = fn(usize) -> Scene<D>;
+
+/// A scene whose motions are functions of the step.
+#[derive(Debug)]
+pub(crate) struct Scenery<const D: usize> {
+    /// Makes the scene of a count.
+    make: MakeScene<D>,
+    /// How many objects there are at first, and at most.
+    counts: [u32; 2],
+    /// The scene in the world.
+    play: Option<Play<D>>,
+    /// Pairs that came to touch since the start.
+    started: usize,
+    /// Pairs that parted since the start.
+    stopped: usize,
+}
+
+impl<const D: usize> Scenery<D> {
+    /// With the number of objects at first, and the most.
+    pub(crate) fn new(make: MakeScene<D>, counts: [u32; 2]) -> Self {
+        Self { make, counts, play: None, started: 0, stopped: 0 }
+    }
+}
+
+impl<const D: usize> Sample<D> for Scenery<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        let [first, most] = self.counts.map(f64::from);
+        Panel::new().number("count", "Objects", first, [10.0, most, 10.0])
+    }
+
+    /// Suits objects of size 1 that move by a few percent of it in a step.
+    fn margin(&self) -> f32 {
+        0.04
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        (self.started, self.stopped) = (0, 0);
+        self.play = Some(Play::start((self.make)(panel.count("count")), world)?);
+        Ok(())
+    }
+
+    /// A scene of another count is another scene.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        world.retain(|_| false);
+        self.build(world, panel)
+    }
+
+    fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
+        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+    }
+
+    /// Events of contacts and of proximities are counted alike: something came to touch, or parted.
+    fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
+        let contacts =
+            world.contact_events().iter().map(|event| matches!(event, ContactEvent::Started(..)));
+        let proximities = world.proximity_events().iter().filter_map(|event| {
+            let [before, after] = [event.prev_status, event.new_status]
+                .map(|status| status == Proximity::Intersecting);
+            (before != after).then_some(after)
+        });
+        for began in contacts.chain(proximities) {
+            *(if began { &mut self.started } else { &mut self.stopped }) += 1;
+        }
+        Ok(())
+    }
+
+    /// Pairs are kept while the loosened boxes overlap, with contacts or without.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        vec![
+            Readout::new("Pairs with contacts kept", world.contact_pairs().count()),
+            Readout::new("Pairs with proximity kept", world.proximity_pairs().count()),
+            Readout::new("Came to touch", self.started),
+            Readout::new("Parted", self.stopped),
+        ]
+    }
+}

@@ -1,0 +1,118 @@
+//! A box that slides over a floor of triangles.
+
+use crate::prelude::*;
+
+/// So many normals that lean are kept for the picture.
+const SHOWN: usize = 100;
+
+/// The box goes to and fro over the floor, a bit sunk in, as a body under gravity is.
+#[derive(Debug, Default)]
+pub(crate) struct Slide<const D: usize> {
+    /// The box.
+    slider: Option<CollisionObjectHandle>,
+    /// The surface.
+    floor: Option<CollisionObjectHandle>,
+    step: usize,
+    /// How many normals were not vertical since the start.
+    count: usize,
+    /// The last of them: from the contact point on by the normal.
+    bumps: Vec<[Point<f32, D>; 2]>,
+}
+
+/// The flat floor, and what its contacts are like.
+/// Both kinds have the same triangles; they differ in what their contacts take for granted.
+fn floor<const D: usize>(panel: &Panel) -> ShapeHandle<f32, D>
+where
+    f32: Dimension<D>,
+{
+    let kind = match panel.chosen("contacts") {
+        "of each triangle" => SurfaceKind::MeshWithEdges,
+        _ => SurfaceKind::Mesh,
+    };
+    f32::surface(12, kind, &|_, _| 0.0)
+}
+
+impl<const D: usize> Slide<D>
+where
+    f32: Dimension<D>,
+{
+    /// Across the edges at an angle that is none of theirs.
+    fn position(&self, panel: &Panel) -> Isometry<D> {
+        let way = 8.0 * to_and_fro(number(self.step) / 600.0) - 4.0;
+        turned([way, 0.4 - panel.value("sunk"), 0.37 * way], 0.0)
+    }
+}
+
+impl<const D: usize> Sample<D> for Slide<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new()
+            .choice(
+                "contacts",
+                "Contacts",
+                "of the surface",
+                &["of the surface", "of each triangle"],
+            )
+            .number("sunk", "How far it is sunk in", 0.02, [0.0, 0.1, 0.005])
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.02));
+        let slider = ShapeHandle::new(Cuboid::new(vector([0.7, 0.4, 0.6])));
+        let floor = world.add(at([0.0; 3]), floor(panel), groups, query, "floor".to_owned())?;
+        let slider = world.add(self.position(panel), slider, groups, query, "box".to_owned())?;
+        (self.floor, self.slider) = (Some(floor), Some(slider));
+        Ok(())
+    }
+
+    /// The surface is exchanged under the box, and the count begins anew.
+    fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        self.bumps.clear();
+        self.count = 0;
+        let Some(object) = self.floor else { return Ok(()) };
+        Ok(world.set_shape(object, floor(panel))?)
+    }
+
+    fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
+        self.step += 1;
+        let Some(slider) = self.slider else { return Ok(()) };
+        Ok(world.set_position(slider, self.position(panel))?)
+    }
+
+    /// A normal that leans would stop a body, as if it had hit a bump that is not there.
+    fn updated(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
+        let points = world.contact_views().flat_map(|(_, _, manifold)| manifold.contacts());
+        let leaning =
+            points.map(|point| point.contact).filter(|contact| contact.normal[1].abs() < 0.999);
+        let bumps: Vec<_> = leaning
+            .map(|contact| [contact.world1, contact.world1 + contact.normal.into_inner()])
+            .collect();
+        self.count += bumps.len();
+        self.bumps.extend(bumps);
+        let old = self.bumps.len().saturating_sub(SHOWN);
+        self.bumps.drain(..old);
+        Ok(())
+    }
+
+    /// The contacts of now, and in red the last normals that leaned.
+    fn draw(&self, world: &World<D>, _: &Panel, canvas: &mut Canvas<'_, D>) {
+        let points = world.contact_views().flat_map(|(_, _, manifold)| manifold.contacts());
+        let contacts: Vec<_> = points.map(|point| point.contact).collect();
+        canvas.drawing.contacts(contacts, canvas.renderer);
+        for bump in &self.bumps {
+            canvas.line(*bump, RED);
+        }
+    }
+
+    /// Zero for a surface, many for triangles by themselves.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let points = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
+        vec![
+            Readout::new("Contact points", points),
+            Readout::new("Normals that were not vertical", self.count),
+        ]
+    }
+}

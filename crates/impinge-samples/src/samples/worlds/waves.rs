@@ -1,0 +1,121 @@
+//! A surface that changes its shape at each step, and balls that ride on it.
+
+use impinge::math::Real;
+
+use crate::prelude::*;
+
+/// The wave repeats after so many steps: its shapes are made once.
+const PERIOD: usize = 60;
+/// The surface has so many cells along each axis.
+const CELLS: usize = 16;
+
+/// The shapes of one period, and where the balls are.
+#[derive(Debug)]
+pub(crate) struct Waves<const D: usize>
+where
+    f32: Space<D>,
+{
+    /// The shapes of a period.
+    surfaces: Vec<ShapeHandle<f32, D>>,
+    /// The object whose shape is exchanged.
+    surface: Option<CollisionObjectHandle>,
+    /// The balls, from left to right.
+    balls: Vec<CollisionObjectHandle>,
+    step: usize,
+}
+
+impl<const D: usize> Default for Waves<D>
+where
+    f32: Space<D>,
+{
+    fn default() -> Self {
+        Self { surfaces: Vec::new(), surface: None, balls: Vec::new(), step: 0 }
+    }
+}
+
+/// The height of the wave at a point and a phase from 0 to 1.
+fn height(x: f32, z: f32, phase: f32, amplitude: f32) -> f32 {
+    let along = 0.7 * x + 0.4 * z;
+    amplitude * Real::sine_cosine(along - TAU * phase).0
+}
+
+impl<const D: usize> Waves<D>
+where
+    f32: Dimension<D>,
+{
+    /// A height field for each step of a period.
+    fn make_surfaces(&mut self, panel: &Panel) {
+        let amplitude = panel.value("amplitude");
+        let surface = |n: usize| {
+            let phase = number(n) / number(PERIOD);
+            f32::surface(CELLS, SurfaceKind::Field, &|x, z| height(x, z, phase, amplitude))
+        };
+        self.surfaces = (0..PERIOD).map(surface).collect();
+    }
+
+    /// Where a ball of radius 0.4 comes to lie that falls straight down: a cast against the surface alone.
+    fn fallen(&self, ball: usize) -> Isometry<D> {
+        let above = [2.0 * number(ball) - 6.0, 10.0, scattered(ball, 0) * 8.0 - 4.0];
+        let (shape, here) = (Ball::new(0.4), isometry(&Pose::identity()));
+        let surface = &self.surfaces[self.step % PERIOD];
+        // No world is asked: it has still the surface of the step before.
+        let still = Moving::still(&here, &**surface);
+        let start = isometry(&Pose::from_translation(vector::<D>(above)));
+        let falling = Moving::new(&start, &vector([0.0, -1.0, 0.0]), &shape);
+        let hit = impact(&still, &falling, &ImpactOptions::new());
+        // As deep as a body would sink in.
+        let fall = hit.map_or(0.0, |hit| hit.toi + 0.005);
+        at([above[0], above[1] - fall, above[2]])
+    }
+}
+
+impl<const D: usize> Sample<D> for Waves<D>
+where
+    f32: Dimension<D>,
+{
+    fn panel(&self) -> Panel {
+        Panel::new().number("amplitude", "Height of the waves", 0.6, [0.0, 1.5, 0.05])
+    }
+
+    fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        *self = Self::default();
+        self.make_surfaces(panel);
+        let (groups, query) = (CollisionGroups::new(), ContactQuery::new(0.01));
+        let surface = self.surfaces[0].clone();
+        self.surface = Some(world.add(at([0.0; 3]), surface, groups, query, "sea".to_owned())?);
+        let shape = ShapeHandle::new(Ball::new(0.4));
+        for ball in 0..7 {
+            let (position, label) = (self.fallen(ball), format!("ball {ball}"));
+            self.balls.push(world.add(position, shape.clone(), groups, query, label)?);
+        }
+        Ok(())
+    }
+
+    /// New heights are seen from the next step on.
+    fn changed(&mut self, _: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        self.make_surfaces(panel);
+        Ok(())
+    }
+
+    /// The surface first, then the balls; the update sees both.
+    fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
+        self.step += 1;
+        if let Some(surface) = self.surface {
+            world.set_shape(surface, self.surfaces[self.step % PERIOD].clone())?;
+        }
+        for (index, ball) in self.balls.iter().enumerate() {
+            world.set_position(*ball, self.fallen(index))?;
+        }
+        Ok(())
+    }
+
+    /// A normal of a flat place has a y of 1.
+    fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        let deepest = world.contact_views().map(|(_, _, manifold)| manifold.deepest_contact());
+        let steepest = deepest.map(|point| 1.0 - point.contact.normal[1].abs()).reduce(max);
+        vec![
+            Readout::new("Balls on the surface", world.contact_views().count()),
+            Readout::number("Steepest normal, 1 − |y|", steepest.unwrap_or(0.0)),
+        ]
+    }
+}

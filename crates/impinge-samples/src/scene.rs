@@ -1,0 +1,99 @@
+//! The scenes of `impinge-scenes` in a world.
+
+use impinge::math::{Point, Real, Unit, Vector};
+use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::shape::{Ball, Capsule, Cuboid, Plane, Segment, ShapeHandle, Triangle};
+use impinge::world::CollisionGroups;
+use impinge_scenes::{Scene, SceneObject, SceneQuery, SceneShape};
+
+use crate::dimension::Dimension;
+use crate::{SampleError, World};
+
+/// A scene that is played: each object is a function of the step.
+#[derive(Clone, Debug)]
+pub(crate) struct Play<const D: usize> {
+    /// The objects with their motions.
+    scene: Scene<D>,
+    /// In the order of the scene.
+    handles: Vec<CollisionObjectHandle>,
+    /// Of the positions that the world has.
+    step: u32,
+}
+
+impl<const D: usize> Play<D>
+where
+    f32: Dimension<D>,
+{
+    /// Adds the objects of a scene, as they are at step 0.
+    pub(crate) fn start(scene: Scene<D>, world: &mut World<D>) -> Result<Self, SampleError> {
+        let mut handles = Vec::with_capacity(scene.objects.len());
+        for (index, object) in scene.objects.iter().enumerate() {
+            let position = f32::placed(&scene.placement(index, 0));
+            let (shape, label) = (shape_of(&object.shape), format!("object {index}"));
+            let (groups, query) = (groups_of(object), query_of(object.query));
+            handles.push(world.add(position, shape, groups, query, label)?);
+        }
+        Ok(Self { scene, handles, step: 0 })
+    }
+
+    /// Moves the objects to where they are at the next step. Those at rest are left alone.
+    pub(crate) fn advance(&mut self, world: &mut World<D>) -> Result<(), SampleError> {
+        self.step += 1;
+        let (scene, step) = (&self.scene, self.step);
+        let moved = self.handles.iter().enumerate().filter_map(|(index, handle)| {
+            let (before, now) = (scene.placement(index, step - 1), scene.placement(index, step));
+            // What stays where it is needs no call.
+            (before != now).then(|| (*handle, f32::placed(&now)))
+        });
+        Ok(world.set_positions(&moved.collect::<Vec<_>>())?)
+    }
+
+    /// The objects, in the order of the scene.
+    pub(crate) fn handles(&self) -> &[CollisionObjectHandle] {
+        &self.handles
+    }
+}
+
+/// A shape of a scene has plain numbers, which the library's constructors take as they are.
+fn shape_of<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D>
+where
+    f32: Dimension<D>,
+{
+    let vector = |xyz: &[f64; D]| Vector::<f32, D>::from_fn(|axis, _| f32::lit(xyz[axis]));
+    let point = |xyz: &[f64; D]| Point::from(vector(xyz));
+    match shape {
+        SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(f32::lit(*radius))),
+        SceneShape::Cuboid { half_extents } => ShapeHandle::new(Cuboid::new(vector(half_extents))),
+        SceneShape::Plane { normal } => {
+            ShapeHandle::new(Plane::new(Unit::new_normalize(vector(normal))))
+        }
+        SceneShape::Capsule { half_height, radius } => {
+            ShapeHandle::new(Capsule::new(f32::lit(*half_height), f32::lit(*radius)))
+        }
+        SceneShape::Segment { ends: [a, b] } => ShapeHandle::new(Segment::new(point(a), point(b))),
+        SceneShape::Triangle { corners: [a, b, c] } => {
+            ShapeHandle::new(Triangle::new(point(a), point(b), point(c)))
+        }
+        SceneShape::Convex { points } => f32::hull(&points.iter().map(point).collect::<Vec<_>>()),
+        other => f32::scene_shape(other),
+    }
+}
+
+/// Groups of a scene are lists of numbers.
+fn groups_of<const D: usize>(object: &SceneObject<D>) -> CollisionGroups {
+    let mut groups = CollisionGroups::new();
+    groups.set_membership(object.groups.membership);
+    groups.set_whitelist(object.groups.whitelist);
+    groups.set_blacklist(object.groups.blacklist);
+    groups
+}
+
+/// Predictions and margins are those of the scene: lengths, but for the angle.
+fn query_of(query: SceneQuery) -> GeometricQueryType<f32> {
+    match query {
+        SceneQuery::Contacts { linear, angular } => {
+            GeometricQueryType::Contacts(f32::lit(linear), f32::lit(angular))
+        }
+        SceneQuery::Proximity { margin } => GeometricQueryType::Proximity(f32::lit(margin)),
+    }
+}
