@@ -1,0 +1,273 @@
+//! Objects in a scene file: where they are, whom they meet, how they move.
+
+use core::fmt;
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::de::{Deserializer, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+use super::{MeshKind, ScaleFile, ShapeRef};
+
+/// An object, or a grid of objects.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjectFile {
+    /// The name; no two objects have the same. With `repeat`, indices in brackets follow: `box[2,0,1]`.
+    pub name: String,
+    /// The shape.
+    pub shape: ShapeRef,
+    /// Where it is at the beginning.
+    #[serde(default)]
+    pub position: PoseFile,
+    /// Whom it may meet.
+    #[serde(default)]
+    pub groups: GroupsFile,
+    /// What is computed for its pairs.
+    #[serde(default)]
+    pub query: QueryTypeFile,
+    /// How it moves.
+    #[serde(default)]
+    pub motion: MotionFile,
+    /// Makes a grid of such objects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub repeat: Option<RepeatFile>,
+}
+
+/// A mesh file, each of whose parts (groups and objects of an OBJ file, meshes of the nodes of a glTF file) becomes
+/// an object named `NAME/PART`. 3D only.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MeshesFile {
+    /// What the names of the objects begin with; without, they are those of the parts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The file: .obj, .stl, .ply, .gltf or .glb, relative to the folder of the scene.
+    pub path: PathBuf,
+    /// A factor for all coordinates, or one for each axis; not 0.
+    #[serde(default)]
+    pub scale: ScaleFile,
+    /// What the triangles stand for.
+    #[serde(default, rename = "as")]
+    pub kind: MeshKind,
+    /// Where the frame of the file is.
+    #[serde(default)]
+    pub position: PoseFile,
+    /// Whom the objects may meet.
+    #[serde(default)]
+    pub groups: GroupsFile,
+    /// What is computed for their pairs.
+    #[serde(default)]
+    pub query: QueryTypeFile,
+    /// How they move.
+    #[serde(default)]
+    pub motion: MotionFile,
+}
+
+/// A position: first the rotation, then the translation.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PoseFile {
+    /// Where the origin goes; without, it stays.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub translation: Option<Vec<f64>>,
+    /// The rotation; without, there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<RotationFile>,
+}
+
+/// A rotation: an object with one member. `degrees` and `radians` are of 2D, the others of 3D.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum RotationFile {
+    /// A quaternion x, y, z, w of any length but 0.
+    Quaternion([f64; 4]),
+    /// Three turns about the axes.
+    Euler {
+        /// The axes in the order of the turns: lower case about the fixed axes of the parent, upper case about the
+        /// axes that turn along. Roll, pitch and yaw are `xyz`.
+        order: RotationOrder,
+        /// The angles, in that order.
+        degrees: [f64; 3],
+    },
+    /// A turn about an axis.
+    AxisAngle {
+        /// The axis, of any length but 0.
+        axis: [f64; 3],
+        /// The angle, counter-clockwise seen against the axis.
+        degrees: f64,
+    },
+    /// In 2D, counter-clockwise.
+    Degrees(f64),
+    /// In 2D, counter-clockwise.
+    Radians(f64),
+}
+
+/// An order of turns about axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[expect(missing_docs, reason = "the names are the axes")]
+pub enum RotationOrder {
+    Xyz,
+    Xzy,
+    Yxz,
+    Yzx,
+    Zxy,
+    Zyx,
+    #[serde(rename = "XYZ")]
+    OwnXyz,
+    #[serde(rename = "XZY")]
+    OwnXzy,
+    #[serde(rename = "YXZ")]
+    OwnYxz,
+    #[serde(rename = "YZX")]
+    OwnYzx,
+    #[serde(rename = "ZXY")]
+    OwnZxy,
+    #[serde(rename = "ZYX")]
+    OwnZyx,
+}
+
+impl RotationOrder {
+    /// The axes in the order in which fixed axes are turned about, and whether that is the reverse of the order
+    /// written.
+    #[must_use]
+    pub const fn fixed_axes(self) -> ([usize; 3], bool) {
+        match self {
+            Self::Xyz => ([0, 1, 2], false),
+            Self::Xzy => ([0, 2, 1], false),
+            Self::Yxz => ([1, 0, 2], false),
+            Self::Yzx => ([1, 2, 0], false),
+            Self::Zxy => ([2, 0, 1], false),
+            Self::Zyx => ([2, 1, 0], false),
+            Self::OwnXyz => ([2, 1, 0], true),
+            Self::OwnXzy => ([1, 2, 0], true),
+            Self::OwnYxz => ([2, 0, 1], true),
+            Self::OwnYzx => ([0, 2, 1], true),
+            Self::OwnZxy => ([1, 0, 2], true),
+            Self::OwnZyx => ([0, 1, 2], true),
+        }
+    }
+}
+
+/// Whom an object may meet: groups are numbered 0 to 29. Two objects interact if each is a member of a group that
+/// the other whitelists, and neither of one that the other blacklists.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct GroupsFile {
+    /// The groups that it is a member of; without, all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub membership: Option<Vec<usize>>,
+    /// The groups that it accepts; without, all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub whitelist: Option<Vec<usize>>,
+    /// The groups that it refuses.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blacklist: Vec<usize>,
+    /// It is tested against itself.
+    #[serde(default)]
+    pub self_collision: bool,
+}
+
+/// What is computed for the pairs of an object.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum QueryTypeFile {
+    /// Contacts.
+    Contacts {
+        /// The object's share of the distance up to which there are contact points.
+        #[serde(default)]
+        linear: f64,
+        /// Its share of the angle, in radians, by which the solids may turn until they are that near.
+        #[serde(default)]
+        angular: f64,
+    },
+    /// Whether others are near: the object's share of the distance up to which they are.
+    Proximity(f64),
+}
+
+impl Default for QueryTypeFile {
+    fn default() -> Self {
+        Self::Contacts { linear: 0.0, angular: 0.0 }
+    }
+}
+
+/// Constant velocities, in the frame of the world.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MotionFile {
+    /// The velocity of the origin of the object, in lengths a second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<Vec<f64>>,
+    /// The angular velocity about the origin of the object, in radians a second.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub angular_velocity: Option<AngularVelocity>,
+}
+
+/// An angular velocity in radians a second: a number in 2D, a vector along the axis in 3D.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum AngularVelocity {
+    /// In 2D, counter-clockwise.
+    Plane(f64),
+    /// In 3D.
+    Space([f64; 3]),
+}
+
+impl<'de> Deserialize<'de> for AngularVelocity {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let numbers = one_or_more(deserializer)?;
+        match numbers.as_slice() {
+            &[speed] => Ok(Self::Plane(speed)),
+            &[x, y, z] => Ok(Self::Space([x, y, z])),
+            other => Err(serde::de::Error::invalid_length(other.len(), &"one number or three")),
+        }
+    }
+}
+
+/// A grid of objects.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RepeatFile {
+    /// How many along each axis, 1 or more.
+    pub count: Vec<usize>,
+    /// The distance from one to the next along each axis of the world.
+    pub spacing: Vec<f64>,
+}
+
+/// A number, or a list of numbers. By hand, since an untagged enum loses the place of an error.
+pub(super) fn one_or_more<'de, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Vec<f64>, D::Error> {
+    deserializer.deserialize_any(NumbersVisitor)
+}
+
+struct NumbersVisitor;
+
+impl<'de> Visitor<'de> for NumbersVisitor {
+    type Value = Vec<f64>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a number or a list of numbers")
+    }
+
+    fn visit_f64<E>(self, number: f64) -> Result<Self::Value, E> {
+        Ok(vec![number])
+    }
+
+    fn visit_u64<E>(self, number: u64) -> Result<Self::Value, E> {
+        Ok(vec![number as f64])
+    }
+
+    fn visit_i64<E>(self, number: i64) -> Result<Self::Value, E> {
+        Ok(vec![number as f64])
+    }
+
+    fn visit_seq<S: SeqAccess<'de>>(self, mut list: S) -> Result<Self::Value, S::Error> {
+        let mut numbers = Vec::new();
+        while let Some(number) = list.next_element()? {
+            numbers.push(number);
+        }
+        Ok(numbers)
+    }
+}

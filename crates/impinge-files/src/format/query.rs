@@ -1,0 +1,51 @@
+//! Queries in a scene file.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{PoseFile, ShapeRef};
+
+/// A query: an object with one member, whose name is the kind.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum QueryFile {
+    /// The objects on a half-line.
+    Ray(RayFile),
+    /// The objects that a moving shape meets.
+    Cast(CastFile),
+}
+
+/// A ray.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RayFile {
+    /// Where it begins.
+    pub origin: Vec<f64>,
+    /// Its direction; times are multiples of its length.
+    pub direction: Vec<f64>,
+    /// The largest time of a hit; without, there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_time: Option<f64>,
+    /// All hits are wanted, not the first alone.
+    #[serde(default)]
+    pub all: bool,
+}
+
+/// A shape that moves along a straight line.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CastFile {
+    /// The shape.
+    pub shape: ShapeRef,
+    /// Where it starts.
+    #[serde(default)]
+    pub position: PoseFile,
+    /// Its velocity.
+    pub velocity: Vec<f64>,
+    /// The largest time of an impact; without, there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max_time: Option<f64>,
+    /// All impacts are wanted, not the first alone.
+    #[serde(default)]
+    pub all: bool,
+}

@@ -1,0 +1,42 @@
+//! Robots in a scene file.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::map::unique_keys;
+use super::{GroupsFile, MeshKind, PoseFile, QueryTypeFile};
+
+/// A robot from a URDF file: each link with collision elements becomes an object named `NAME/LINK`. 3D only.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RobotFile {
+    /// What the names of the objects begin with; without, the name of the robot in the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// The URDF file, relative to the folder of the scene.
+    pub urdf: PathBuf,
+    /// An SRDF file whose disabled pairs of links do not meet, beside those that a joint connects.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub srdf: Option<PathBuf>,
+    /// Folders in which the packages of `package://` paths are looked for, relative to the folder of the scene.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub packages: Vec<PathBuf>,
+    /// The values of joints by name: radians or lengths, others are 0.
+    #[serde(default, deserialize_with = "unique_keys", skip_serializing_if = "BTreeMap::is_empty")]
+    pub joints: BTreeMap<String, f64>,
+    /// Where the root link is.
+    #[serde(default)]
+    pub position: PoseFile,
+    /// What the triangles of its meshes stand for.
+    #[serde(default, rename = "as")]
+    pub kind: MeshKind,
+    /// Whom the links may meet beside each other.
+    #[serde(default)]
+    pub groups: GroupsFile,
+    /// What is computed for their pairs.
+    #[serde(default)]
+    pub query: QueryTypeFile,
+}

@@ -1,0 +1,44 @@
+//! Files of collision worlds: scenes in JSON, meshes in OBJ, STL, PLY and glTF, robots in URDF.
+//!
+//! [`load`] reads any of them as a [`Scene`]: objects with names, shapes and motions. [`Scene::world`] makes a
+//! recorded world of it in the scalar and dimension of one's choice, [`Scene::collision_world`] a plain one.
+//! `SCENE.md` describes the scene files, `scene.schema.json` is their schema. [`MeshFile`] reads a mesh alone, with
+//! a [`MeshReport`] of what is wrong with it.
+//!
+//! ```
+//! use impinge_files::Scene;
+//!
+//! let text = r#"{"dimension": 3, "objects": [
+//!     {"name": "floor", "shape": {"half_space": {"normal": [0, 1, 0]}}},
+//!     {"name": "box", "shape": {"cuboid": {"half_extents": [0.5, 0.5, 0.5]}},
+//!      "position": {"translation": [0, 0.5, 0]},
+//!      "repeat": {"count": [2, 3, 2], "spacing": [2, 1, 2]}}
+//! ]}"#;
+//! let scene = Scene::from_json("boxes.json", text)?;
+//! assert_eq!(scene.names().len(), 13);
+//! let mut world = scene.collision_world::<f64, 3>()?;
+//! world.update();
+//! assert_eq!(world.contact_events().len(), 12, "each box stands on the floor or on another");
+//! # Ok::<(), impinge_files::FileError>(())
+//! ```
+//!
+//! Files are read as untrusted input: errors are typed and name the file, the line, the path in the document and the
+//! value; memory is bounded by the size of the files, grids of objects by [`MAX_OBJECTS`].
+#![forbid(unsafe_code)]
+
+mod error;
+mod format;
+mod mesh;
+mod robot;
+mod scene;
+mod source;
+
+pub use error::{FileError, Problem};
+pub use format::{
+    AngularVelocity, CastFile, ChildFile, DiagonalsFile, Dimension, GroupsFile, MeshKind,
+    MeshSource, MeshesFile, MotionFile, ObjectFile, PoseFile, QueryFile, QueryTypeFile, RayFile,
+    RepeatFile, RobotFile, RotationFile, RotationOrder, ScalarFile, ScaleFile, SceneFile,
+    ShapeFile, ShapeRef, UpAxis,
+};
+pub use mesh::{Finding, Findings, MAX_FINDINGS, MeshFile, MeshPart, MeshReport};
+pub use scene::{MAX_OBJECTS, NamedQuery, Scene, SceneSpace, SceneWorld, load};

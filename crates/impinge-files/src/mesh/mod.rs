@@ -1,0 +1,140 @@
+//! Mesh files: their parts, and what is wrong with them.
+
+mod gltf;
+mod lines;
+mod obj;
+mod ply;
+mod raw;
+mod repair;
+mod report;
+mod stl;
+mod topology;
+mod triangulate;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+pub use report::{Finding, Findings, MAX_FINDINGS, MeshReport};
+
+use self::raw::RawPart;
+use crate::{FileError, Problem};
+
+/// The parts of a mesh file: groups and objects of an OBJ file, meshes of the nodes of a glTF file, solids of an STL
+/// file; one part of a PLY file.
+///
+/// ```
+/// use impinge_files::MeshFile;
+///
+/// let square = "o square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+/// let file = MeshFile::parse("square.obj".as_ref(), square.as_bytes())?;
+/// let [part] = file.parts() else { panic!("one object") };
+/// assert_eq!((part.name.as_str(), part.triangles.len()), ("square", 2));
+/// assert_eq!((part.report.polygons, part.report.boundary_edges.count), (1, 4));
+/// assert!(!part.report.is_closed());
+/// # Ok::<(), impinge_files::FileError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MeshFile {
+    parts: Vec<MeshPart>,
+    /// Which part has a name.
+    names: BTreeMap<String, usize>,
+}
+
+/// A part of a mesh file: triangles with finite vertices, which neighbors share.
+#[derive(Clone, Debug)]
+pub struct MeshPart {
+    /// The name in the file; `part`, with a number from the second on, without one or where it occurs before.
+    pub name: String,
+    /// The vertices, in the frame of the file. No two are equal.
+    pub vertices: Vec<[f64; 3]>,
+    /// The vertices of each triangle, counter-clockwise seen from the front; none without area.
+    pub triangles: Vec<[u32; 3]>,
+    /// What is wrong with it, and what was done.
+    pub report: MeshReport,
+}
+
+impl MeshFile {
+    /// Reads a file by the ending of its name: .obj, .stl, .ply, .gltf or .glb. Buffers of a glTF file are read
+    /// from its folder.
+    ///
+    /// Vertices at one position are welded, polygons triangulated, and triangles dropped that are degenerate,
+    /// double or without vertices; [`MeshPart::report`] counts these. Numbers are those of the file: meters,
+    /// mostly, and y or z upwards. Time and memory are O(n log n) and O(n) in the bytes of the file.
+    ///
+    /// # Errors
+    /// If the file cannot be read or is not of its format, with the line where the format has lines, and if no
+    /// triangle is left.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let bytes = fs::read(path).map_err(|error| error_of(path, None, Problem::io(&error)))?;
+        Self::parse(path, &bytes)
+    }
+
+    /// Reads the bytes of a file with this name: its ending gives the format, its folder holds the buffers of a
+    /// glTF file.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, FileError> {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let extension = extension.unwrap_or_default().to_ascii_lowercase();
+        let raw = match extension.as_str() {
+            "obj" => obj::read(bytes),
+            "stl" => stl::read(bytes),
+            "ply" => ply::read(bytes),
+            "gltf" | "glb" => gltf::read(path, bytes),
+            _ => Err(Problem::UnknownFormat { extension }.into()),
+        };
+        let raw = raw.map_err(|error| error_of(path, error.line, error.problem))?;
+        let parts = raw.into_iter().map(repair::repaired).filter(|part| !part.is_empty());
+        let mut parts: Vec<MeshPart> = parts.collect();
+        if parts.iter().all(|part| part.triangles.is_empty()) {
+            return Err(error_of(path, None, Problem::EmptyMesh));
+        }
+        let names = name_apart(&mut parts);
+        Ok(Self { parts, names })
+    }
+
+    /// The parts, in the order of the file; at least one has a triangle.
+    #[must_use]
+    pub fn parts(&self) -> &[MeshPart] {
+        &self.parts
+    }
+
+    /// The part of a name.
+    #[must_use]
+    pub fn part(&self, name: &str) -> Option<&MeshPart> {
+        self.names.get(name).map(|index| &self.parts[*index])
+    }
+}
+
+impl MeshPart {
+    /// Neither triangles nor anything that a report would say.
+    fn is_empty(&self) -> bool {
+        self.triangles.is_empty() && self.report.is_clean()
+    }
+}
+
+/// Gives each part a name of its own, and says whose each is.
+fn name_apart(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
+    let mut names = BTreeMap::new();
+    for (index, part) in parts.iter_mut().enumerate() {
+        let stem = if part.name.is_empty() { "part" } else { &part.name };
+        let mut name = stem.to_owned();
+        let mut number = 1;
+        // Ends: there are fewer names taken than numbers.
+        while names.contains_key(&name) {
+            number += 1;
+            name = format!("{stem}.{number}");
+        }
+        names.insert(name.clone(), index);
+        part.name = name;
+    }
+    names
+}
+
+/// The error of a file at a line.
+fn error_of(path: &Path, line: Option<usize>, problem: Problem) -> FileError {
+    let (file, problem) = (path.to_owned(), Box::new(problem));
+    FileError { file, line, column: None, path: String::new(), value: None, problem }
+}

@@ -1,0 +1,95 @@
+//! PLY, ASCII and binary, by `ply-rs-bw`.
+
+use std::io::Cursor;
+
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
+
+use super::RawPart;
+use super::raw::FormatError;
+use crate::Problem;
+
+/// An element of any kind: a vertex, a face, or one that is skipped.
+#[derive(Debug, Default)]
+struct Element {
+    position: [f64; 3],
+    corners: Vec<u32>,
+}
+
+impl PropertyAccess for Element {
+    fn new() -> Self {
+        Self::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let axis = ["x", "y", "z"].iter().position(|axis| *axis == name);
+        if let Some(axis) = axis {
+            let number = number_of(&value);
+            self.position[axis] = number.unwrap_or(f64::NAN);
+            return PropertyAccessResult::Set;
+        }
+        if name == "vertex_indices" || name == "vertex_index" {
+            // A negative index is out of range, as this one is.
+            self.corners = value.to_u32_list().unwrap_or_else(|| vec![u32::MAX]);
+            return PropertyAccessResult::Set;
+        }
+        PropertyAccessResult::Ignored
+    }
+}
+
+/// A scalar of any type.
+fn number_of(value: &Property) -> Option<f64> {
+    Some(match value {
+        Property::Char(x) => f64::from(*x),
+        Property::UChar(x) => f64::from(*x),
+        Property::Short(x) => f64::from(*x),
+        Property::UShort(x) => f64::from(*x),
+        Property::Int(x) => f64::from(*x),
+        Property::UInt(x) => f64::from(*x),
+        Property::Float(x) => f64::from(*x),
+        Property::Double(x) => *x,
+        _ => return None,
+    })
+}
+
+/// The one part of a PLY file.
+pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
+    let parser = Parser::<Element>::new();
+    let mut reader = Reader::new(Cursor::new(bytes));
+    let wrong = |error: ParseError| FormatError::syntax(error.line(), error.to_string());
+    let header = parser.read_header(&mut reader).map_err(wrong)?;
+    check_counts(&header, bytes.len())?;
+    let first_line = reader.line() + 1;
+    let mut part = RawPart::default();
+    let mut line = first_line;
+    for (name, element) in &header.elements {
+        let elements = parser.read_payload_for_element(&mut reader, element, &header);
+        let elements = elements.map_err(wrong)?;
+        let count = elements.len();
+        match name.as_str() {
+            "vertex" => {
+                part.vertices = elements.into_iter().map(|vertex| vertex.position).collect();
+            }
+            "face" => {
+                elements.into_iter().for_each(|face| part.face(face.corners));
+                if header.encoding == Encoding::Ascii {
+                    part.lines = (line..).take(count).collect();
+                }
+            }
+            _ => {}
+        }
+        line += count;
+    }
+    Ok(vec![part])
+}
+
+/// Each element takes a byte at least, so that a header cannot ask for more memory than the file explains.
+fn check_counts(header: &Header, bytes: usize) -> Result<(), FormatError> {
+    for (_, element) in &header.elements {
+        if element.count > bytes {
+            let (what, given) = ("elements in the header", element.count);
+            return Err(Problem::TooMany { what, given, limit: bytes }.into());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! Faces as a file has them, before anything is checked.
+
+use crate::Problem;
+
+/// Why a format cannot be read.
+#[derive(Debug)]
+pub(super) struct FormatError {
+    pub(super) line: Option<usize>,
+    pub(super) problem: Problem,
+}
+
+impl FormatError {
+    /// An error in the words of a parser.
+    pub(super) fn syntax(line: Option<usize>, message: impl Into<String>) -> Self {
+        Self { line, problem: Problem::Syntax(message.into()) }
+    }
+}
+
+impl From<Problem> for FormatError {
+    fn from(problem: Problem) -> Self {
+        Self { line: None, problem }
+    }
+}
+
+/// A part of a file: polygons, whose corners may be out of range.
+#[derive(Debug, Default)]
+pub(super) struct RawPart {
+    pub(super) name: String,
+    pub(super) vertices: Vec<[f64; 3]>,
+    /// The corners of all faces, face by face.
+    pub(super) corners: Vec<u32>,
+    /// Where the corners of each face end.
+    ends: Vec<usize>,
+    /// The line of each face; empty for binary formats.
+    pub(super) lines: Vec<usize>,
+    /// The lines of faces that the parser could not take over, since they name vertices that do not exist.
+    pub(super) out_of_range: Vec<usize>,
+    /// The format has no indices: each triangle brings vertices of its own.
+    pub(super) is_soup: bool,
+}
+
+impl RawPart {
+    /// A part without faces.
+    pub(super) fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..Self::default() }
+    }
+
+    /// A part of a format without indices.
+    pub(super) fn soup(name: impl Into<String>) -> Self {
+        Self { is_soup: true, ..Self::new(name) }
+    }
+
+    /// Adds a face.
+    pub(super) fn face(&mut self, corners: impl IntoIterator<Item = u32>) {
+        self.corners.extend(corners);
+        self.ends.push(self.corners.len());
+    }
+
+    /// Adds a triangle with vertices of its own.
+    pub(super) fn triangle(&mut self, vertices: [[f64; 3]; 3]) {
+        let first = u32::try_from(self.vertices.len()).unwrap_or(u32::MAX);
+        self.vertices.extend(vertices);
+        self.face((0..3).map(|corner| first.saturating_add(corner)));
+    }
+
+    /// The corners of each face.
+    pub(super) fn faces(&self) -> impl Iterator<Item = &[u32]> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, end)| &self.corners[start..*end])
+    }
+
+    /// The line of a face.
+    pub(super) fn line(&self, face: usize) -> Option<usize> {
+        self.lines.get(face).copied()
+    }
+}

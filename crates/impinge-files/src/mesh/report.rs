@@ -1,0 +1,138 @@
+//! What is wrong with a mesh, and where.
+
+use core::fmt;
+
+/// So many findings of each kind are listed; all are counted.
+pub const MAX_FINDINGS: usize = 8;
+
+/// What is wrong with the triangles of a part, and what was done about it.
+///
+/// Vertices are welded first: edges and triangles are compared by the positions of their corners. Indices count
+/// from 0 in the order of the file, within the part.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MeshReport {
+    /// How many vertices there are, as loaded.
+    pub vertices: usize,
+    /// How many triangles there are, as loaded.
+    pub triangles: usize,
+    /// How many faces with more than three corners were triangulated.
+    pub polygons: usize,
+    /// Vertices with a coordinate that is NaN or infinite; the faces at them were dropped.
+    pub non_finite_vertices: Findings,
+    /// Faces that name a vertex that does not exist; they were dropped.
+    pub out_of_range: Findings,
+    /// Faces without area, or with fewer than three corners; they were dropped. A polygon is one if it has no
+    /// triangle with an area.
+    pub degenerate: Findings,
+    /// Vertices at the position of an earlier one; they were welded. In formats without indices there are none, as
+    /// each triangle brings its vertices.
+    pub duplicate_vertices: Findings,
+    /// Triangles with the corners of an earlier one, in the same direction; they were dropped.
+    pub duplicate_triangles: Findings,
+    /// Edges of one triangle: the surface is open there. They are named by the face.
+    pub boundary_edges: Findings,
+    /// Edges of more than two triangles, named by the first face.
+    pub non_manifold_edges: Findings,
+    /// Edges whose two triangles disagree about the front, named by the first face.
+    pub inconsistent_edges: Findings,
+    /// How many pieces do not hang together by edges.
+    pub components: usize,
+    /// The volume enclosed by a surface that is closed and consistent; negative if it is inside out.
+    pub volume: Option<f64>,
+}
+
+/// Things of one kind.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Findings {
+    /// How many there are.
+    pub count: usize,
+    /// The first, [`MAX_FINDINGS`] at most.
+    pub first: Vec<Finding>,
+}
+
+/// Something in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Finding {
+    /// The index of the vertex or face, in the order of the file.
+    pub index: usize,
+    /// The line of the face, counted from 1; `None` in binary formats, and for vertices.
+    pub line: Option<usize>,
+}
+
+impl Findings {
+    pub(super) fn add(&mut self, index: usize, line: Option<usize>) {
+        self.count += 1;
+        if self.first.len() < MAX_FINDINGS {
+            self.first.push(Finding { index, line });
+        }
+    }
+}
+
+impl MeshReport {
+    /// Each edge has two triangles or more: no boundary.
+    #[must_use]
+    pub const fn is_closed(&self) -> bool {
+        self.triangles > 0 && self.boundary_edges.count == 0
+    }
+
+    /// Closed, of triangles two of which meet at each edge and agree about the front: the boundary of a volume.
+    #[must_use]
+    pub const fn is_solid(&self) -> bool {
+        self.is_closed() && self.non_manifold_edges.count == 0 && self.inconsistent_edges.count == 0
+    }
+
+    /// All faces of the file were taken over as they are, and the edges are those of a surface, open or closed.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.problems().iter().all(|(_, findings)| findings.count == 0)
+    }
+
+    /// What is wrong, by name. Boundaries are not: an open surface is one.
+    fn problems(&self) -> [(&'static str, &Findings); 7] {
+        [
+            ("vertices that are not finite", &self.non_finite_vertices),
+            ("faces with vertices that do not exist, dropped", &self.out_of_range),
+            ("degenerate faces, dropped", &self.degenerate),
+            ("vertices at the position of another, welded", &self.duplicate_vertices),
+            ("triangles that occur before, dropped", &self.duplicate_triangles),
+            ("edges of more than two triangles", &self.non_manifold_edges),
+            ("edges whose triangles disagree about the front", &self.inconsistent_edges),
+        ]
+    }
+}
+
+impl fmt::Display for MeshReport {
+    /// One line of numbers, and one for each thing that is wrong.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { vertices, triangles, components, .. } = self;
+        write!(f, "{vertices} vertices, {triangles} triangles, {components} pieces, ")?;
+        match (self.volume, self.is_closed()) {
+            (Some(volume), _) if volume < 0.0 => {
+                write!(f, "closed, inside out, volume {}", -volume)?;
+            }
+            (Some(volume), _) => write!(f, "closed, volume {volume}")?,
+            (None, true) => write!(f, "closed, without a volume")?,
+            (None, false) => write!(f, "open, {} boundary edges", self.boundary_edges.count)?,
+        }
+        for (what, findings) in self.problems() {
+            if findings.count > 0 {
+                write!(f, "\n{} {what}: {findings}", findings.count)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Findings {
+    /// Such as `4 (line 12), 9 (line 31), ...`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (position, Finding { index, line }) in self.first.iter().enumerate() {
+            let separator = if position == 0 { "" } else { ", " };
+            write!(f, "{separator}{index}")?;
+            if let Some(line) = line {
+                write!(f, " (line {line})")?;
+            }
+        }
+        if self.count > self.first.len() { write!(f, ", ...") } else { Ok(()) }
+    }
+}

@@ -1,0 +1,191 @@
+//! The tree of joints: from joint values to the frames of links.
+
+use std::collections::BTreeMap;
+
+use impinge::math::na::{Isometry3, Translation3, Vector3};
+use urdf_rs::{Joint, JointType, Mimic};
+
+use super::geometry::isometry;
+use super::xml::XmlFile;
+use crate::error::{Fault, Within};
+use crate::scene::{about, unit};
+use crate::{FileError, Problem};
+
+/// Links, and the joints between them.
+#[derive(Debug)]
+pub(super) struct Tree {
+    /// The names of the links, in the order of the file.
+    pub(super) links: Vec<String>,
+    index: BTreeMap<String, usize>,
+    joints: BTreeMap<String, TreeJoint>,
+    /// By link: the joint above it, none for the root.
+    above: Vec<Option<String>>,
+    /// The links, each after the one above it.
+    order: Vec<usize>,
+}
+
+#[derive(Debug)]
+struct TreeJoint {
+    parent: usize,
+    /// The frame of the joint in that of its parent.
+    origin: Isometry3<f64>,
+    motion: JointMotion,
+    mimic: Option<Mimic>,
+}
+
+/// What a joint value does; axes are unit vectors.
+#[derive(Clone, Copy, Debug)]
+enum JointMotion {
+    Turn(Vector3<f64>),
+    Slide(Vector3<f64>),
+    /// Fixed, or of several degrees of freedom, which stay as they are.
+    None,
+}
+
+impl Tree {
+    /// The tree of a robot.
+    pub(super) fn new(robot: &urdf_rs::Robot, xml: &XmlFile) -> Result<Self, FileError> {
+        let links: Vec<String> = robot.links.iter().map(|link| link.name.clone()).collect();
+        let index: BTreeMap<String, usize> = links.iter().cloned().zip(0..).collect();
+        let mut above = vec![None; links.len()];
+        let mut joints = BTreeMap::new();
+        for joint in &robot.joints {
+            let wrong = |problem| xml.error("joint", &joint.name, problem);
+            let link = |name: &String| {
+                let found = index.get(name).copied();
+                found.ok_or_else(|| wrong(Problem::UnknownLink(name.clone())))
+            };
+            let (parent, child) = (link(&joint.parent.link)?, link(&joint.child.link)?);
+            if above[child].replace(joint.name.clone()).is_some() {
+                return Err(wrong(Problem::NotATree { link: joint.child.link.clone() }));
+            }
+            let read = tree_joint(joint, parent).map_err(wrong)?;
+            if joints.insert(joint.name.clone(), read).is_some() {
+                return Err(wrong(Problem::DuplicateName(joint.name.clone())));
+            }
+        }
+        let mut tree = Self { links, index, joints, above, order: Vec::new() };
+        tree.order = tree
+            .sorted()
+            .map_err(|link| xml.error("link", &link.clone(), Problem::NotATree { link }))?;
+        tree.check_mimics(xml)?;
+        Ok(tree)
+    }
+
+    /// The links, each after the one above it; the name of a link if that leads to no root, or there are several.
+    fn sorted(&self) -> Result<Vec<usize>, String> {
+        let mut below = vec![Vec::new(); self.links.len()];
+        let mut open = Vec::new();
+        for (link, above) in self.above.iter().enumerate() {
+            match above {
+                Some(joint) => below[self.joints[joint].parent].push(link),
+                None => open.push(link),
+            }
+        }
+        if let Some(second) = open.get(1) {
+            return Err(self.links[*second].clone());
+        }
+        let mut order = Vec::new();
+        // Ends: each link is below one other at most.
+        while let Some(link) = open.pop() {
+            order.push(link);
+            open.append(&mut below[link]);
+        }
+        let is_missing = |link: &usize| !order.contains(link);
+        match (0..self.links.len()).find(is_missing) {
+            Some(link) => Err(self.links[link].clone()),
+            None => Ok(order),
+        }
+    }
+
+    /// Joints mimic joints that exist, and none by way of others itself.
+    fn check_mimics(&self, xml: &XmlFile) -> Result<(), FileError> {
+        for name in self.joints.keys() {
+            let wrong = |problem| xml.error("joint", name, problem);
+            let mut current = name;
+            let mut steps = 0;
+            while let Some(mimic) = &self.joints[current].mimic {
+                current = &mimic.joint;
+                if !self.joints.contains_key(current) {
+                    return Err(wrong(Problem::UnknownJoint(current.clone())));
+                }
+                steps += 1;
+                if steps > self.joints.len() {
+                    return Err(wrong(Problem::MimicCycle(name.clone())));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The frames of the links for joint values, those of others being 0, and a frame of the root.
+    pub(super) fn frames(
+        &self,
+        values: &BTreeMap<String, f64>,
+        base: &Isometry3<f64>,
+    ) -> Result<Vec<Isometry3<f64>>, Fault> {
+        for name in values.keys() {
+            let joint = self.joints.get(name);
+            let moves = joint.is_some_and(|joint| {
+                joint.mimic.is_none() && !matches!(joint.motion, JointMotion::None)
+            });
+            if !moves {
+                return Err(Problem::UnknownJoint(name.clone())).within(name).within("joints");
+            }
+        }
+        let mut frames = vec![*base; self.links.len()];
+        for &link in &self.order {
+            if let Some(name) = &self.above[link] {
+                let joint = &self.joints[name];
+                let motion = joint.motion.at(self.value(name, values));
+                frames[link] = frames[joint.parent] * joint.origin * motion;
+            }
+        }
+        Ok(frames)
+    }
+
+    /// The value of a joint, which may follow another.
+    fn value(&self, name: &str, values: &BTreeMap<String, f64>) -> f64 {
+        let (mut factor, mut offset, mut name) = (1.0, 0.0, name);
+        // Ends: no joint mimics itself.
+        while let Some(mimic) = &self.joints[name].mimic {
+            offset += factor * mimic.offset.unwrap_or(0.0);
+            factor *= mimic.multiplier.unwrap_or(1.0);
+            name = &mimic.joint;
+        }
+        factor * values.get(name).copied().unwrap_or(0.0) + offset
+    }
+
+    /// The links above a link, the nearest first.
+    pub(super) fn ancestors(&self, link: &str) -> impl Iterator<Item = &str> {
+        let mut current = self.index.get(link).copied();
+        core::iter::from_fn(move || {
+            let joint = self.above[current?].as_ref();
+            current = joint.map(|joint| self.joints[joint].parent);
+            current.map(|link| self.links[link].as_str())
+        })
+    }
+}
+
+fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
+    let axis = || unit(Vector3::from(joint.axis.xyz.0));
+    let motion = match joint.joint_type {
+        JointType::Revolute | JointType::Continuous => JointMotion::Turn(axis()?),
+        JointType::Prismatic => JointMotion::Slide(axis()?),
+        JointType::Fixed | JointType::Floating | JointType::Planar | JointType::Spherical => {
+            JointMotion::None
+        }
+    };
+    let (origin, mimic) = (isometry(&joint.origin)?, joint.mimic.clone());
+    Ok(TreeJoint { parent, origin, motion, mimic })
+}
+
+impl JointMotion {
+    fn at(self, value: f64) -> Isometry3<f64> {
+        match self {
+            Self::Turn(axis) => Isometry3::from_parts(Translation3::identity(), about(axis, value)),
+            Self::Slide(axis) => Translation3::from(axis * value).into(),
+            Self::None => Isometry3::identity(),
+        }
+    }
+}

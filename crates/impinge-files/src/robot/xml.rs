@@ -1,0 +1,105 @@
+//! XML files with the lines of their elements.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use roxmltree::{Document, Node};
+
+use crate::{FileError, Problem};
+
+/// So deep may elements nest: parsers that call themselves are given no more.
+const MAX_DEPTH: usize = 32;
+
+/// The text of an XML file, which is well-formed and not nested deeply.
+#[derive(Debug)]
+pub(super) struct XmlFile {
+    path: PathBuf,
+    pub(super) text: String,
+}
+
+impl XmlFile {
+    /// Reads and checks a file.
+    pub(super) fn read(path: &Path) -> Result<Self, FileError> {
+        let bytes = fs::read(path);
+        let text = bytes.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        let file =
+            Self { path: path.to_owned(), text: text.as_deref().unwrap_or_default().to_owned() };
+        text.map_err(|error| file.whole(Problem::io(&error)))?;
+        let document = file.parse()?;
+        let too_deep = document
+            .descendants()
+            .find(|node| node.ancestors().take(MAX_DEPTH + 1).count() > MAX_DEPTH);
+        if let Some(node) = too_deep {
+            let (what, given, limit) = ("nested elements", MAX_DEPTH + 1, MAX_DEPTH);
+            return Err(file.at(&document, node, Problem::TooMany { what, given, limit }));
+        }
+        Ok(file)
+    }
+
+    /// The text with blanks for what only says how a robot looks, so that a mistake there refuses none. Lines keep
+    /// their numbers.
+    pub(super) fn without_looks(&self) -> Result<String, FileError> {
+        let document = self.parse()?;
+        let is_look =
+            |node: &Node<'_, '_>| ["material", "visual"].iter().any(|tag| node.has_tag_name(*tag));
+        let mut bytes = self.text.clone().into_bytes();
+        for node in document.descendants().filter(is_look) {
+            bytes[node.range()]
+                .iter_mut()
+                .filter(|byte| **byte != b'\n')
+                .for_each(|byte| *byte = b' ');
+        }
+        // Whole elements were replaced: what is left is UTF-8 as before.
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
+    fn parse(&self) -> Result<Document<'_>, FileError> {
+        Document::parse(&self.text).map_err(|error| {
+            let place = error.pos();
+            let error = self.whole(Problem::Syntax(error.to_string()));
+            let (line, column) = (Some(place.row as usize), Some(place.col as usize));
+            FileError { line, column, ..error }
+        })
+    }
+
+    /// An error of the whole file.
+    pub(super) fn whole(&self, problem: Problem) -> FileError {
+        let (file, path, problem) = (self.path.clone(), String::new(), Box::new(problem));
+        FileError { file, line: None, column: None, path, value: None, problem }
+    }
+
+    /// An error of the element with this tag and name.
+    pub(super) fn error(&self, tag: &str, name: &str, problem: Problem) -> FileError {
+        let path = format!("{tag} {name:?}");
+        let Ok(document) = self.parse() else { return self.whole(problem) };
+        let is_it =
+            |node: &Node<'_, '_>| node.has_tag_name(tag) && node.attribute("name") == Some(name);
+        let error = match document.descendants().find(is_it) {
+            Some(node) => self.at(&document, node, problem),
+            None => self.whole(problem),
+        };
+        FileError { path, ..error }
+    }
+
+    fn at(&self, document: &Document<'_>, node: Node<'_, '_>, problem: Problem) -> FileError {
+        let place = document.text_pos_at(node.range().start);
+        let (line, column) = (Some(place.row as usize), Some(place.col as usize));
+        FileError { line, column, ..self.whole(problem) }
+    }
+
+    /// Two attributes of all elements with a tag, and the line of each.
+    pub(super) fn attributes(
+        &self,
+        tag: &str,
+        names: [&str; 2],
+    ) -> Result<Vec<(usize, [String; 2])>, FileError> {
+        let document = self.parse()?;
+        let elements = document.descendants().filter(|node| node.has_tag_name(tag));
+        let values = elements.map(|node| {
+            let value = |name: &str| node.attribute(name).unwrap_or_default().to_owned();
+            let line = document.text_pos_at(node.range().start).row as usize;
+            (line, names.map(value))
+        });
+        Ok(values.collect())
+    }
+}

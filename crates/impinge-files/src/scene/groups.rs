@@ -1,0 +1,111 @@
+//! Groups of objects, and groups that keep the disabled pairs of links apart.
+
+use std::collections::BTreeSet;
+
+use impinge::world::CollisionGroups;
+
+use crate::Problem;
+use crate::error::{Fault, Within};
+use crate::format::{GroupsFile, SceneFile};
+
+/// There are so many groups.
+const GROUPS: usize = 30;
+
+/// Which groups mean what in a scene.
+///
+/// Two links that must not meet are told by groups, so that a recording needs no filter: of each such pair one link is
+/// the only member of a group that the other refuses. These groups are among those that the document does not name,
+/// and objects that are members of all groups are not of these.
+#[derive(Debug)]
+pub(super) struct GroupPlan {
+    /// The groups that no document names, the highest first.
+    free: Vec<usize>,
+    taken: BTreeSet<usize>,
+}
+
+/// Two objects, by index, that must not meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct DisabledPair(pub(super) [usize; 2]);
+
+impl DisabledPair {
+    /// The other object of a pair with this one.
+    fn partner(self, object: usize) -> Option<usize> {
+        let [a, b] = self.0;
+        if a == object { Some(b) } else { (b == object).then_some(a) }
+    }
+}
+
+/// What the disabled pairs add to the groups of an object.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OwnGroups {
+    member: Option<usize>,
+    refused: Vec<usize>,
+}
+
+impl GroupPlan {
+    /// All groups are free that the document does not name.
+    pub(super) fn new(file: &SceneFile) -> Self {
+        let objects = file.objects.iter().map(|object| &object.groups);
+        let meshes = file.meshes.iter().map(|meshes| &meshes.groups);
+        let robots = file.robots.iter().map(|robot| &robot.groups);
+        let all = objects.chain(meshes).chain(robots);
+        let named: BTreeSet<usize> = all.flat_map(named).collect();
+        let free = (0..GROUPS).filter(|group| !named.contains(group)).collect();
+        Self { free, taken: BTreeSet::new() }
+    }
+
+    /// Gives groups to objects until each pair is kept apart. The object with the most pairs left gets the next
+    /// group (a greedy vertex cover).
+    pub(super) fn separate(
+        &mut self,
+        objects: usize,
+        pairs: &BTreeSet<DisabledPair>,
+    ) -> Result<Vec<OwnGroups>, Problem> {
+        let mut own = vec![OwnGroups::default(); objects];
+        let mut left: Vec<DisabledPair> = pairs.iter().copied().collect();
+        while !left.is_empty() {
+            let mut counts = vec![0_usize; objects];
+            left.iter().flat_map(|pair| pair.0).for_each(|object| counts[object] += 1);
+            let most = (0..objects).rev().max_by_key(|object| counts[*object]).unwrap_or_default();
+            let free = self.taken.len() + self.free.len();
+            let what = "groups to keep links apart";
+            let none = Problem::TooMany { what, given: free + 1, limit: free };
+            let group = self.free.pop().ok_or(none)?;
+            self.taken.insert(group);
+            own[most].member = Some(group);
+            let partners = left.iter().filter_map(|pair| pair.partner(most));
+            partners.for_each(|partner| own[partner].refused.push(group));
+            left.retain(|pair| !pair.0.contains(&most));
+        }
+        Ok(own)
+    }
+
+    /// The groups of an object.
+    pub(super) fn groups(
+        &self,
+        file: &GroupsFile,
+        own: &OwnGroups,
+    ) -> Result<CollisionGroups, Fault> {
+        let mut groups = CollisionGroups::new();
+        let all = || (0..GROUPS).filter(|group| !self.taken.contains(group)).collect();
+        let mut membership: Vec<usize> = file.membership.clone().unwrap_or_else(all);
+        membership.extend(own.member);
+        groups.try_set_membership(&membership).within("membership")?;
+        if let Some(whitelist) = &file.whitelist {
+            groups.try_set_whitelist(whitelist).within("whitelist")?;
+        }
+        groups.try_set_blacklist(&file.blacklist).within("blacklist")?;
+        for group in &own.refused {
+            groups.try_modify_blacklist(*group, true)?;
+        }
+        if file.self_collision {
+            groups.enable_self_collision();
+        }
+        Ok(groups)
+    }
+}
+
+fn named(groups: &GroupsFile) -> impl Iterator<Item = usize> {
+    let lists = [groups.membership.as_ref(), groups.whitelist.as_ref(), Some(&groups.blacklist)];
+    lists.into_iter().flatten().flatten().copied()
+}

@@ -1,0 +1,195 @@
+//! Scenes: documents whose files are read and whose objects are placed.
+
+mod groups;
+mod meshes;
+mod placed;
+mod pose;
+mod queries;
+mod read;
+mod shapes;
+mod space;
+mod world;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use impinge::world::CollisionGroups;
+
+pub use queries::NamedQuery;
+pub use space::SceneSpace;
+pub use world::SceneWorld;
+
+pub(crate) use meshes::MeshTable;
+pub(crate) use pose::{Placement, about, unit};
+
+use self::pose::Motion;
+use crate::format::{QueryTypeFile, ShapeRef};
+use crate::source::Source;
+use crate::{
+    Dimension, FileError, MeshFile, MeshesFile, Problem, RobotFile, ScalarFile, SceneFile, UpAxis,
+};
+
+/// So many objects may a scene have.
+pub const MAX_OBJECTS: usize = 1 << 20;
+
+/// A scene: its objects by name, and the files that they are made of. The library has not seen its numbers yet;
+/// [`Self::world`] and [`Self::collision_world`] refuse those that make no shape.
+///
+/// ```
+/// use impinge_files::Scene;
+///
+/// let text = r#"{"dimension": 2, "objects": [
+///     {"name": "floor", "shape": {"half_space": {"normal": [0, 1]}}},
+///     {"name": "ball", "shape": {"ball": {"radius": 0.5}}, "position": {"translation": [0, 0.4]}}
+/// ]}"#;
+/// let scene = Scene::from_json("pile.json", text)?;
+/// assert_eq!(scene.names().collect::<Vec<_>>(), ["floor", "ball"]);
+///
+/// let mut world = scene.world::<f64, 2>()?;
+/// world.step(0.0)?;
+/// let (_, ball, manifold) = world.contact_manifolds().next().expect("they touch");
+/// assert_eq!(ball.data(), "ball");
+/// assert!((manifold.deepest_contact().expect("a contact").contact.depth - 0.1).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Scene {
+    source: Source,
+    file: SceneFile,
+    /// The shapes of objects; those of a grid share one.
+    forms: Vec<Form>,
+    objects: Vec<SceneObject>,
+    meshes: MeshTable,
+}
+
+/// A shape, and the path of what has it.
+#[derive(Clone, Debug)]
+struct Form {
+    shape: ShapeRef,
+    path: String,
+    /// The member of it that is the shape; empty for meshes and robots.
+    member: &'static str,
+}
+
+/// An object before its world is made.
+#[derive(Clone, Debug)]
+struct SceneObject {
+    name: String,
+    /// Its shape in `forms`.
+    form: usize,
+    start: Placement,
+    motion: Option<Motion>,
+    groups: CollisionGroups,
+    query: QueryTypeFile,
+}
+
+/// Reads a file as a scene: a scene file (.json), a mesh file (.obj, .stl, .ply, .gltf, .glb), each of whose parts
+/// becomes an object, or a robot (.urdf) with all joints at 0, each of whose links becomes one.
+///
+/// ```
+/// let error = impinge_files::load("pile.scene".as_ref()).expect_err("no such format");
+/// assert_eq!(error.to_string(), "pile.scene: no format with the ending \"scene\" can be read");
+/// ```
+///
+/// # Errors
+/// As [`Scene::read`], and for another ending of the name.
+pub fn load(path: &Path) -> Result<Scene, FileError> {
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let extension = extension.unwrap_or_default().to_ascii_lowercase();
+    let mut file = SceneFile::new(Dimension::Three);
+    match extension.as_str() {
+        "json" => return Scene::read(path),
+        "obj" | "stl" | "ply" | "gltf" | "glb" => file.meshes.push(MeshesFile::new(path)),
+        "urdf" => file.robots.push(RobotFile::new(path)),
+        _ => {
+            let (file, problem) = (path.to_owned(), Box::new(Problem::UnknownFormat { extension }));
+            let path = String::new();
+            return Err(FileError { file, line: None, column: None, path, value: None, problem });
+        }
+    }
+    Scene::resolve(Source::without_text(path.to_owned()), file, Path::new(""))
+}
+
+impl SceneFile {
+    /// Reads a scene file: [`Scene::read`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn read(path: &Path) -> Result<Scene, FileError> {
+        Scene::read(path)
+    }
+
+    /// The scene, with the files that it names; their paths are relative to the folder.
+    ///
+    /// # Errors
+    /// As [`Scene::read`], without lines.
+    pub fn resolve(self, folder: &Path) -> Result<Scene, FileError> {
+        Scene::resolve(Source::without_text(folder.join("scene")), self, folder)
+    }
+}
+
+impl Scene {
+    /// Reads a scene file, and the mesh and robot files that it names.
+    ///
+    /// # Errors
+    /// With the line, the column and the path in the document: if a file cannot be read or is not of its format,
+    /// has unknown members, or gives two objects the same name.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        let text = fs::read(path).map_err(|error| {
+            let (file, problem) = (path.to_owned(), Box::new(Problem::io(&error)));
+            FileError { file, line: None, column: None, path: String::new(), value: None, problem }
+        })?;
+        Self::from_json(path, &String::from_utf8_lossy(&text))
+    }
+
+    /// The scene of a document. The path names it in errors, and its folder holds the files that it names.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_json(path: impl Into<PathBuf>, text: &str) -> Result<Self, FileError> {
+        let source = Source::new(path.into(), text.to_owned());
+        let file = source.parse()?;
+        let folder = source.folder().to_owned();
+        Self::resolve(source, file, &folder)
+    }
+
+    /// The document.
+    #[must_use]
+    pub const fn file(&self) -> &SceneFile {
+        &self.file
+    }
+
+    /// The number of dimensions.
+    #[must_use]
+    pub const fn dimension(&self) -> Dimension {
+        self.file.dimension
+    }
+
+    /// The scalar that the document asks for; a world may have another.
+    #[must_use]
+    pub const fn scalar(&self) -> ScalarFile {
+        self.file.scalar
+    }
+
+    /// The axis that points up in pictures.
+    #[must_use]
+    pub const fn up(&self) -> UpAxis {
+        self.file.up
+    }
+
+    /// The names of the objects, in the order in which worlds have them: objects, parts of meshes, links of robots.
+    pub fn names(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.objects.iter().map(|object| object.name.as_str())
+    }
+
+    /// The mesh files that were read, by path, with the reports of their parts.
+    pub fn mesh_files(&self) -> impl Iterator<Item = (&Path, &MeshFile)> {
+        self.meshes.iter()
+    }
+
+    /// An object moves.
+    #[must_use]
+    pub fn has_motion(&self) -> bool {
+        self.objects.iter().any(|object| object.motion.is_some())
+    }
+}

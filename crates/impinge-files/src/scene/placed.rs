@@ -1,0 +1,157 @@
+//! The objects of a scene in the scalar and dimension of a world.
+
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::shape::ShapeHandle;
+use impinge::world::{CollisionGroups, CollisionWorld, WorldError};
+
+use super::shapes::Builder;
+use super::{Scene, SceneObject, SceneSpace};
+use crate::error::{Fault, Within};
+use crate::format::{QueryTypeFile, ShapeFile, ShapeRef};
+use crate::{FileError, Problem};
+
+/// What a world takes of an object.
+pub(super) struct PlacedObject<'a, N: SceneSpace<D>, const D: usize> {
+    pub(super) object: &'a SceneObject,
+    pub(super) position: N::Isometry,
+    pub(super) shape: ShapeHandle<N, D>,
+    pub(super) groups: CollisionGroups,
+    pub(super) query: GeometricQueryType<N>,
+}
+
+impl Scene {
+    /// A collision world with the objects, in their order, not updated yet. The data of an object is its name.
+    ///
+    /// Objects that share a shape in the document share its handle. Costs as much as making the shapes, and
+    /// O(log n) for each object.
+    ///
+    /// # Errors
+    /// If the dimension is another than the scene's, and with the line of the value if the library refuses a shape,
+    /// a position, a query type or the margin.
+    pub fn collision_world<N: SceneSpace<D>, const D: usize>(
+        &self,
+    ) -> Result<CollisionWorld<N, D, String>, FileError> {
+        let world = CollisionWorld::try_new(N::lit(self.file.margin)).within("margin");
+        let mut world = world.map_err(|fault| self.source.error(fault))?;
+        for placed in self.placed::<N, D>()? {
+            let PlacedObject { object, position, shape, groups, query } = placed;
+            let added = world.try_add(position, shape, groups, query, object.name.clone());
+            added.map_err(|error| self.refused(object, error.into()))?;
+        }
+        Ok(world)
+    }
+
+    /// A shape for queries: by its name in the document, or in JSON as a scene file has it.
+    ///
+    /// ```
+    /// use impinge_files::Scene;
+    ///
+    /// let text = r#"{"dimension": 3, "shapes": {"wheel": {"cylinder": {"half_height": 0.1, "radius": 0.3}}}}"#;
+    /// let scene = Scene::from_json("car.json", text)?;
+    /// assert!(scene.shape::<f64, 3>("wheel").is_ok());
+    /// assert!(scene.shape::<f64, 3>(r#"{"ball": {"radius": 1}}"#).is_ok());
+    /// assert!(scene.shape::<f64, 3>("whel").is_err());
+    /// # Ok::<(), impinge_files::FileError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If there is no such shape, the JSON is of none, or the library refuses its numbers.
+    pub fn shape<N: SceneSpace<D>, const D: usize>(
+        &self,
+        shape: &str,
+    ) -> Result<ShapeHandle<N, D>, FileError> {
+        self.check_dimension(D)?;
+        let shape = shape.trim();
+        let file = match shape.starts_with('{') {
+            false => ShapeRef::Name(shape.to_owned()),
+            true => {
+                let parsed = serde_json::from_str::<ShapeFile>(shape);
+                let wrong =
+                    |error: serde_json::Error| self.plain(Problem::Syntax(error.to_string()));
+                ShapeRef::Inline(Box::new(parsed.map_err(wrong)?))
+            }
+        };
+        self.builder().make(&file).map_err(|fault| match fault.is_absolute {
+            true => self.source.error(fault),
+            false => FileError { path: fault.path, ..self.plain(fault.problem) },
+        })
+    }
+
+    /// The objects of a world of this scalar and dimension.
+    pub(super) fn placed<N: SceneSpace<D>, const D: usize>(
+        &self,
+    ) -> Result<Vec<PlacedObject<'_, N, D>>, FileError> {
+        self.check_dimension(D)?;
+        let placed = self.shapes().and_then(|shapes: Vec<ShapeHandle<N, D>>| {
+            let objects = self.objects.iter();
+            objects.map(|object| self.place(object, shapes[object.form].clone())).collect()
+        });
+        placed.map_err(|fault| self.source.error(fault))
+    }
+
+    /// The shape of each form; those with names are made even if nothing has them, and refused with their own path.
+    fn shapes<N: SceneSpace<D>, const D: usize>(&self) -> Result<Vec<ShapeHandle<N, D>>, Fault> {
+        let mut builder = self.builder();
+        for name in self.file.shapes.keys() {
+            builder.make(&ShapeRef::Name(name.clone()))?;
+        }
+        let forms = self.forms.iter().map(|form| {
+            let made = builder.make(&form.shape);
+            if form.member.is_empty() {
+                // Of a part or link only the problem is of interest: the document has no path to it.
+                return made.map_err(|fault| Fault::from(fault.problem).within(&form.path));
+            }
+            made.within(form.member).within(&form.path)
+        });
+        forms.collect()
+    }
+
+    pub(super) fn builder<N: SceneSpace<D>, const D: usize>(&self) -> Builder<'_, N, D> {
+        Builder::new(self.file.dimension, &self.file.shapes, &self.meshes)
+    }
+
+    fn place<'a, N: SceneSpace<D>, const D: usize>(
+        &self,
+        object: &'a SceneObject,
+        shape: ShapeHandle<N, D>,
+    ) -> Result<PlacedObject<'a, N, D>, Fault> {
+        let other = Problem::OtherWorld { scene: self.file.dimension, asked: D };
+        let position = object.start.isometry::<N, D>().ok_or(other)?;
+        let query = match object.query {
+            QueryTypeFile::Contacts { linear, angular } => {
+                GeometricQueryType::Contacts(N::lit(linear), N::lit(angular))
+            }
+            QueryTypeFile::Proximity(margin) => GeometricQueryType::Proximity(N::lit(margin)),
+        };
+        Ok(PlacedObject { object, position, shape, groups: object.groups, query })
+    }
+
+    /// The world refuses an object.
+    pub(super) fn refused(&self, object: &SceneObject, problem: Problem) -> FileError {
+        let member = match &problem {
+            Problem::World(WorldError::Position { .. }) => "position",
+            Problem::World(WorldError::QueryType { .. }) => "query",
+            _ => "",
+        };
+        let mut fault = Fault::from(problem);
+        if !member.is_empty() {
+            fault = fault.within(member);
+        }
+        self.source.error(fault.within(&self.forms[object.form].path))
+    }
+
+    pub(super) fn check_dimension(&self, asked: usize) -> Result<(), FileError> {
+        let scene = self.file.dimension;
+        if scene.number() == asked {
+            Ok(())
+        } else {
+            Err(self.plain(Problem::OtherWorld { scene, asked }))
+        }
+    }
+
+    /// An error of the whole scene.
+    fn plain(&self, problem: Problem) -> FileError {
+        let (file, path, problem) = (self.source.file.clone(), String::new(), Box::new(problem));
+        FileError { file, line: None, column: None, path, value: None, problem }
+    }
+}

@@ -1,0 +1,217 @@
+//! Positions and motions of scenes, in `f64`, before a world's scalar is known.
+
+use impinge::math::na::{
+    Isometry2, Isometry3, Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion,
+    Vector3,
+};
+use impinge_record::Recordable;
+
+use crate::error::{Fault, Within};
+use crate::format::{AngularVelocity, MotionFile, PoseFile, RotationFile};
+use crate::{Dimension, Problem};
+
+/// A position of either dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Placement {
+    Plane(Isometry2<f64>),
+    Space(Isometry3<f64>),
+}
+
+/// Constant velocities; angular ones in radians a second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Motion {
+    velocity: Vector3<f64>,
+    /// Along the axis of the turn: along z in 2D.
+    angular: Vector3<f64>,
+}
+
+impl Placement {
+    /// At the origin, not turned.
+    pub(crate) fn identity(dimension: Dimension) -> Self {
+        match dimension {
+            Dimension::Two => Self::Plane(Isometry2::identity()),
+            Dimension::Three => Self::Space(Isometry3::identity()),
+        }
+    }
+
+    /// The position that a file gives.
+    pub(crate) fn read(pose: &PoseFile, dimension: Dimension) -> Result<Self, Fault> {
+        let translation = pose.translation.as_ref();
+        let translation = translation.map_or(Ok(Vector3::zeros()), |numbers| {
+            vector(numbers, dimension).within("translation")
+        })?;
+        let rotation = pose.rotation.as_ref();
+        match dimension {
+            Dimension::Two => {
+                let turn = rotation.map_or(Ok(UnitComplex::identity()), turn2);
+                let to = Translation2::new(translation.x, translation.y);
+                Ok(Self::Plane(Isometry2::from_parts(to, turn.within("rotation")?)))
+            }
+            Dimension::Three => {
+                let turn = rotation.map_or(Ok(UnitQuaternion::identity()), turn3);
+                let to = Translation3::from(translation);
+                Ok(Self::Space(Isometry3::from_parts(to, turn.within("rotation")?)))
+            }
+        }
+    }
+
+    /// The position in a world. Numbers beyond the range of `N` become infinite, which the world refuses.
+    pub(crate) fn isometry<N: Recordable<D>, const D: usize>(&self) -> Option<N::Isometry> {
+        let numbers = match self {
+            Self::Plane(at) => {
+                let (to, turn) = (at.translation.vector, at.rotation);
+                vec![to.x, to.y, turn.re, turn.im]
+            }
+            Self::Space(at) => {
+                [at.translation.vector.as_slice(), at.rotation.coords.as_slice()].concat()
+            }
+        };
+        N::isometry_of(&numbers.into_iter().map(N::lit).collect::<Vec<_>>())
+    }
+
+    /// The same, moved in the frame of the world.
+    pub(crate) fn translated(mut self, by: Vector3<f64>) -> Self {
+        match &mut self {
+            Self::Plane(at) => at.translation.vector += by.xy(),
+            Self::Space(at) => at.translation.vector += by,
+        }
+        self
+    }
+
+    /// Where a motion leads in some seconds: computed from the start, so that no error accumulates.
+    pub(crate) fn after(self, motion: &Motion, seconds: f64) -> Self {
+        let mut moved = self.translated(motion.velocity * seconds);
+        let angle = motion.angular * seconds;
+        match &mut moved {
+            Self::Plane(at) => at.rotation = turn_by(angle.z) * at.rotation,
+            Self::Space(at) => at.rotation = about(angle, angle.norm()) * at.rotation,
+        }
+        moved
+    }
+}
+
+impl Motion {
+    /// The motion that a file gives; `None` at rest.
+    pub(crate) fn read(motion: &MotionFile, dimension: Dimension) -> Result<Option<Self>, Fault> {
+        let velocity = motion.velocity.as_ref();
+        let velocity = velocity.map_or(Ok(Vector3::zeros()), |numbers| {
+            vector(numbers, dimension).within("velocity")
+        })?;
+        let wrong = |needed, given| {
+            Fault::from(Problem::WrongLength { needed, given }).within("angular_velocity")
+        };
+        let angular = match (&motion.angular_velocity, dimension) {
+            (None, _) => Vector3::zeros(),
+            (Some(AngularVelocity::Plane(speed)), Dimension::Two) => Vector3::new(0.0, 0.0, *speed),
+            (Some(AngularVelocity::Space(speed)), Dimension::Three) => Vector3::from(*speed),
+            (Some(AngularVelocity::Plane(_)), Dimension::Three) => return Err(wrong(3, 1)),
+            (Some(AngularVelocity::Space(_)), Dimension::Two) => return Err(wrong(1, 3)),
+        };
+        let is_at_rest = velocity == Vector3::zeros() && angular == Vector3::zeros();
+        Ok((!is_at_rest).then_some(Self { velocity, angular }))
+    }
+}
+
+/// Coordinates as a vector, whose z is 0 in 2D.
+pub(crate) fn vector(numbers: &[f64], dimension: Dimension) -> Result<Vector3<f64>, Problem> {
+    match (numbers, dimension) {
+        (&[x, y], Dimension::Two) => Ok(Vector3::new(x, y, 0.0)),
+        (&[x, y, z], Dimension::Three) => Ok(Vector3::new(x, y, z)),
+        _ => Err(Problem::WrongLength { needed: dimension.number(), given: numbers.len() }),
+    }
+}
+
+fn turn2(rotation: &RotationFile) -> Result<UnitComplex<f64>, Fault> {
+    match rotation {
+        RotationFile::Degrees(degrees) => {
+            let (sine, cosine) = sine_cosine(*degrees);
+            Ok(UnitComplex::from_cos_sin_unchecked(cosine, sine))
+        }
+        RotationFile::Radians(radians) => Ok(turn_by(*radians)),
+        _ => {
+            let what = "a rotation in space";
+            Err(Problem::WrongDimension { what, dimension: Dimension::Two }.into())
+        }
+    }
+}
+
+fn turn3(rotation: &RotationFile) -> Result<UnitQuaternion<f64>, Fault> {
+    match rotation {
+        RotationFile::Quaternion([x, y, z, w]) => {
+            let quaternion = Quaternion::new(*w, *x, *y, *z);
+            let unit = UnitQuaternion::try_new(quaternion, 0.0);
+            let unit = unit.filter(|unit| unit.coords.iter().all(|x| x.is_finite()));
+            unit.ok_or_else(|| not_a_direction(quaternion.norm())).within("quaternion")
+        }
+        RotationFile::Euler { order, degrees } => {
+            let (axes, is_reversed) = order.fixed_axes();
+            let mut angles = *degrees;
+            if is_reversed {
+                angles.reverse();
+            }
+            let turns = axes.into_iter().zip(angles);
+            let turns = turns.map(|(axis, angle)| by_degrees(Vector3::ith(axis, 1.0), angle));
+            Ok(turns.fold(UnitQuaternion::identity(), |before, turn| turn * before))
+        }
+        RotationFile::AxisAngle { axis, degrees } => {
+            let axis = Vector3::from(*axis);
+            let unit = unit(axis).within("axis_angle.axis")?;
+            Ok(by_degrees(unit, *degrees))
+        }
+        RotationFile::Degrees(_) | RotationFile::Radians(_) => {
+            let what = "a rotation by one angle";
+            Err(Problem::WrongDimension { what, dimension: Dimension::Three }.into())
+        }
+    }
+}
+
+/// The vector at length 1.
+pub(crate) fn unit(vector: Vector3<f64>) -> Result<Vector3<f64>, Problem> {
+    // Dividing by the largest component first keeps squares from overflowing and vanishing.
+    let scaled = vector / vector.amax();
+    let unit = scaled.normalize();
+    let is_usable = unit.iter().all(|x| x.is_finite());
+    if is_usable { Ok(unit) } else { Err(not_a_direction(vector.norm())) }
+}
+
+const fn not_a_direction(length: f64) -> Problem {
+    Problem::BadValue { what: "the length must be finite and not zero", value: length }
+}
+
+/// A turn in 2D. `libm` gives the same bits on every platform.
+fn turn_by(radians: f64) -> UnitComplex<f64> {
+    UnitComplex::from_cos_sin_unchecked(libm::cos(radians), libm::sin(radians))
+}
+
+/// The turn by an angle in radians about a vector of any length; none about the zero vector.
+pub(crate) fn about(axis: Vector3<f64>, radians: f64) -> UnitQuaternion<f64> {
+    let Ok(axis) = unit(axis) else { return UnitQuaternion::identity() };
+    let half = 0.5 * radians;
+    let vector = axis * libm::sin(half);
+    let turn = Quaternion::new(libm::cos(half), vector.x, vector.y, vector.z);
+    UnitQuaternion::new_normalize(turn)
+}
+
+fn by_degrees(axis: Vector3<f64>, degrees: f64) -> UnitQuaternion<f64> {
+    let (sine, cosine) = sine_cosine(0.5 * degrees);
+    let vector = axis * sine;
+    UnitQuaternion::new_normalize(Quaternion::new(cosine, vector.x, vector.y, vector.z))
+}
+
+/// Sine and cosine, exact for multiples of a quarter turn.
+fn sine_cosine(degrees: f64) -> (f64, f64) {
+    let rest = degrees % 360.0;
+    let quarters = libm::round(rest / 90.0);
+    let angle = (rest - quarters * 90.0).to_radians();
+    let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
+    let quarter = (quarters + 4.0) % 4.0;
+    if quarter == 1.0 {
+        (cosine, -sine)
+    } else if quarter == 2.0 {
+        (-sine, -cosine)
+    } else if quarter == 3.0 {
+        (-cosine, sine)
+    } else {
+        (sine, cosine)
+    }
+}

@@ -1,0 +1,366 @@
+//! From the shapes of a document to those of the library.
+
+use std::collections::BTreeMap;
+
+use impinge::math::{Point, Unit, Vector};
+use impinge::shape::{
+    Ball, Capsule, Compound, Cuboid, Ellipsoid, Plane, Polyline, Rounded, Segment, ShapeHandle,
+    TaperedCapsule, TriMesh, Triangle,
+};
+use impinge_record::{Field, MAX_DEPTH, MAX_PARTS, Problem as RecordProblem, ShapeData};
+
+use super::pose::{Placement, unit, vector};
+use super::{MeshTable, SceneSpace};
+use crate::error::{Fault, Within};
+use crate::format::{ChildFile, DiagonalsFile, ShapeFile, ShapeRef};
+use crate::{Dimension, Problem};
+
+/// Makes shapes; one of a name is made once.
+pub(super) struct Builder<'a, N: SceneSpace<D>, const D: usize> {
+    dimension: Dimension,
+    shapes: &'a BTreeMap<String, ShapeFile>,
+    meshes: &'a MeshTable,
+    made: BTreeMap<&'a str, ShapeHandle<N, D>>,
+    /// The names of the shapes that hold the one that is being made.
+    holders: Vec<&'a str>,
+    depth: u32,
+}
+
+impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
+    /// Nothing is made yet.
+    pub(super) const fn new(
+        dimension: Dimension,
+        shapes: &'a BTreeMap<String, ShapeFile>,
+        meshes: &'a MeshTable,
+    ) -> Self {
+        Self { dimension, shapes, meshes, made: BTreeMap::new(), holders: Vec::new(), depth: 0 }
+    }
+
+    /// The shape of a reference.
+    pub(super) fn make(&mut self, shape: &ShapeRef) -> Result<ShapeHandle<N, D>, Fault> {
+        let limit = MAX_DEPTH as usize;
+        if self.depth > MAX_DEPTH {
+            return Err(Problem::TooMany { what: "nested shapes", given: limit + 1, limit }.into());
+        }
+        self.depth += 1;
+        let made = match shape {
+            ShapeRef::Name(name) => self.named(name),
+            ShapeRef::Inline(shape) => self.inline(shape),
+        };
+        self.depth -= 1;
+        made
+    }
+
+    fn named(&mut self, name: &str) -> Result<ShapeHandle<N, D>, Fault> {
+        let shapes = self.shapes;
+        let (name, shape) =
+            shapes.get_key_value(name).ok_or_else(|| Problem::UnknownShape(name.to_owned()))?;
+        if let Some(made) = self.made.get(name.as_str()) {
+            return Ok(made.clone());
+        }
+        if let Some(first) = self.holders.iter().position(|holder| holder == name) {
+            let names = self.holders[first..].iter().copied().chain([name.as_str()]);
+            return Err(Problem::ShapeCycle(names.map(str::to_owned).collect()).into());
+        }
+        self.holders.push(name);
+        let made = self.inline(shape);
+        self.holders.pop();
+        let made = made.map_err(|fault| fault.within(name).within("shapes").absolute())?;
+        self.made.insert(name, made.clone());
+        Ok(made)
+    }
+
+    /// The shape; a fault in it has the kind of the shape as the first step of its path.
+    fn inline(&mut self, shape: &ShapeFile) -> Result<ShapeHandle<N, D>, Fault> {
+        self.shape(shape).within(kind_of(shape))
+    }
+
+    fn shape(&mut self, shape: &ShapeFile) -> Result<ShapeHandle<N, D>, Fault> {
+        match shape {
+            ShapeFile::Rounded { shape, radius } => {
+                let inner = self.make(shape).within("shape")?;
+                let rounded = Rounded::try_from_handle(inner, N::lit(*radius));
+                Ok(ShapeHandle::new(rounded.map_err(|error| sized(error.into()))?))
+            }
+            ShapeFile::Compound { children } => self.compound(children),
+            ShapeFile::Polyline { vertices, segments, closed, one_sided } => {
+                let line = line(points(vertices, "vertices")?, segments.as_deref(), *closed)?;
+                Ok(ShapeHandle::new(if *one_sided { N::one_sided_line(line) } else { line }))
+            }
+            ShapeFile::Mesh { vertices, triangles, one_sided } => {
+                let mesh = TriMesh::try_new(points(vertices, "vertices")?, triangles.clone())?;
+                Ok(ShapeHandle::new(if *one_sided { N::one_sided_mesh(mesh) } else { mesh }))
+            }
+            ShapeFile::HeightField { .. } => {
+                self.own(&field(shape, self.dimension)?, "a height field")
+            }
+            ShapeFile::MeshFile(source) => self.meshes.shape(source),
+            _ => self.solid(shape),
+        }
+    }
+
+    /// The convex shapes and the half-space.
+    fn solid(&self, shape: &ShapeFile) -> Result<ShapeHandle<N, D>, Fault> {
+        let make = self.round_solid(shape)?;
+        if let Some(made) = make {
+            return Ok(made);
+        }
+        match shape {
+            ShapeFile::Cuboid { half_extents } => {
+                let half_extents = coordinates(half_extents).within("half_extents")?;
+                Ok(ShapeHandle::new(Cuboid::try_new(half_extents).within("half_extents")?))
+            }
+            ShapeFile::Ellipsoid { half_axes } => {
+                let half_axes = coordinates(half_axes).within("half_axes")?;
+                Ok(ShapeHandle::new(Ellipsoid::try_new(half_axes).within("half_axes")?))
+            }
+            ShapeFile::Segment { ends } => {
+                let [a, b] = corners(ends, "ends")?;
+                Ok(ShapeHandle::new(Segment::try_new(a, b)?))
+            }
+            ShapeFile::Triangle { corners: given } => {
+                let [a, b, c] = corners(given, "corners")?;
+                Ok(ShapeHandle::new(Triangle::try_new(a, b, c)?))
+            }
+            ShapeFile::HalfSpace { normal } => {
+                let normal = vector(normal, self.dimension).and_then(unit).within("normal")?;
+                let normal = Vector::from_fn(|axis, _| N::lit(normal[axis]));
+                Ok(ShapeHandle::new(Plane::<N, D>::new(Unit::new_normalize(normal))))
+            }
+            ShapeFile::ConvexHull { points: given } => {
+                Ok(N::convex_hull(&points(given, "points")?).within("points")?)
+            }
+            ShapeFile::ConvexPolygon { points: given } => {
+                let outline = ShapeData::Outline(points(given, "points")?);
+                self.own(&outline, "a convex polygon").within("points")
+            }
+            ShapeFile::Tetrahedron { corners: given } => {
+                let tetrahedron = ShapeData::Tetrahedron(corners(given, "corners")?);
+                self.own(&tetrahedron, "a tetrahedron").within("corners")
+            }
+            _ => Err(Problem::Members("the shape has no kind").into()),
+        }
+    }
+
+    /// Shapes with a radius.
+    fn round_solid(&self, shape: &ShapeFile) -> Result<Option<ShapeHandle<N, D>>, Fault> {
+        Ok(Some(match shape {
+            ShapeFile::Ball { radius } => {
+                ShapeHandle::new(Ball::try_new(N::lit(*radius)).within("radius")?)
+            }
+            ShapeFile::Capsule { radius, half_height, ends } => {
+                let radius = N::lit(*radius);
+                let made = match ends_of::<N, D>(*half_height, ends.as_ref())? {
+                    EndsOf::HalfHeight(half_height) => Capsule::try_new(half_height, radius),
+                    EndsOf::Points([a, b]) => Capsule::try_from_ends(a, b, radius),
+                };
+                ShapeHandle::new(made.map_err(|error| sized(error.into()))?)
+            }
+            ShapeFile::TaperedCapsule { radii, half_height, ends } => {
+                let [lower, upper] = radii.map(N::lit);
+                let made = match ends_of::<N, D>(*half_height, ends.as_ref())? {
+                    EndsOf::HalfHeight(height) => TaperedCapsule::try_new(height, lower, upper),
+                    EndsOf::Points([a, b]) => TaperedCapsule::try_from_ends(a, b, [lower, upper]),
+                };
+                ShapeHandle::new(made.map_err(|error| sized(error.into()))?)
+            }
+            ShapeFile::Cylinder { half_height, radius } => {
+                let sizes = ShapeData::Cylinder([*half_height, *radius].map(N::lit));
+                self.own(&sizes, "a cylinder")?
+            }
+            ShapeFile::Cone { half_height, radius } => {
+                let sizes = ShapeData::Cone([*half_height, *radius].map(N::lit));
+                self.own(&sizes, "a cone")?
+            }
+            _ => return Ok(None),
+        }))
+    }
+
+    /// A shape of one dimension alone.
+    fn own(&self, data: &ShapeData<N, D>, what: &'static str) -> Result<ShapeHandle<N, D>, Fault> {
+        N::own_shape(data).map_err(|problem| match problem {
+            RecordProblem::Shape(error) => sized(error.into()),
+            RecordProblem::Mesh(error) => error.into(),
+            _ => Problem::WrongDimension { what, dimension: self.dimension }.into(),
+        })
+    }
+
+    fn compound(&mut self, children: &[ChildFile]) -> Result<ShapeHandle<N, D>, Fault> {
+        let mut made = Vec::with_capacity(children.len());
+        let mut parts = 0;
+        for (index, child) in children.iter().enumerate() {
+            let child = self.child(child).within(&format!("children[{index}]"))?;
+            parts += num_parts(&child.1);
+            if parts > MAX_PARTS {
+                return Err(
+                    Problem::TooMany { what: "parts", given: parts, limit: MAX_PARTS }.into()
+                );
+            }
+            made.push(child);
+        }
+        Ok(ShapeHandle::new(Compound::try_new(made).within("children")?))
+    }
+
+    fn child(&mut self, child: &ChildFile) -> Result<(N::Isometry, ShapeHandle<N, D>), Fault> {
+        let shape = self.make(&child.shape).within("shape")?;
+        let at = Placement::read(&child.position, self.dimension).within("position")?;
+        let at =
+            at.isometry::<N, D>().ok_or(Problem::OtherWorld { scene: self.dimension, asked: D })?;
+        Ok((at, shape))
+    }
+}
+
+/// The member that names the kind of a shape.
+const fn kind_of(shape: &ShapeFile) -> &'static str {
+    match shape {
+        ShapeFile::Ball { .. } => "ball",
+        ShapeFile::Cuboid { .. } => "cuboid",
+        ShapeFile::Capsule { .. } => "capsule",
+        ShapeFile::TaperedCapsule { .. } => "tapered_capsule",
+        ShapeFile::Segment { .. } => "segment",
+        ShapeFile::Triangle { .. } => "triangle",
+        ShapeFile::Ellipsoid { .. } => "ellipsoid",
+        ShapeFile::HalfSpace { .. } => "half_space",
+        ShapeFile::Rounded { .. } => "rounded",
+        ShapeFile::Cylinder { .. } => "cylinder",
+        ShapeFile::Cone { .. } => "cone",
+        ShapeFile::Tetrahedron { .. } => "tetrahedron",
+        ShapeFile::ConvexHull { .. } => "convex_hull",
+        ShapeFile::ConvexPolygon { .. } => "convex_polygon",
+        ShapeFile::Polyline { .. } => "polyline",
+        ShapeFile::Mesh { .. } => "mesh",
+        ShapeFile::HeightField { .. } => "height_field",
+        ShapeFile::Compound { .. } => "compound",
+        ShapeFile::MeshFile(_) => "mesh_file",
+    }
+}
+
+/// The fault at the member that a size was given by.
+fn sized(problem: Problem) -> Fault {
+    use impinge::shape::ShapeError::{Negative, NotFinite};
+    let member = match &problem {
+        Problem::Shape(Negative { what, .. } | NotFinite { what, .. }) => match *what {
+            "the radius" => "radius",
+            "the half height" => "half_height",
+            "the first radius" => "radii[0]",
+            "the second radius" => "radii[1]",
+            _ => return problem.into(),
+        },
+        _ => return problem.into(),
+    };
+    Fault::from(problem).within(member)
+}
+
+/// As many numbers as the dimension has.
+fn coordinates<N: SceneSpace<D>, const D: usize>(numbers: &[f64]) -> Result<Vector<N, D>, Problem> {
+    if numbers.len() != D {
+        return Err(Problem::WrongLength { needed: D, given: numbers.len() });
+    }
+    Ok(Vector::from_fn(|axis, _| N::lit(numbers[axis])))
+}
+
+/// Points of a member.
+fn points<N: SceneSpace<D>, const D: usize>(
+    given: &[Vec<f64>],
+    member: &str,
+) -> Result<Vec<Point<N, D>>, Fault> {
+    let read = |(index, numbers): (usize, &Vec<f64>)| {
+        coordinates(numbers).map(Point::from).within(&format!("{member}[{index}]"))
+    };
+    given.iter().enumerate().map(read).collect()
+}
+
+/// So many points of a member.
+fn corners<N: SceneSpace<D>, const D: usize, const COUNT: usize>(
+    given: &[Vec<f64>; COUNT],
+    member: &str,
+) -> Result<[Point<N, D>; COUNT], Fault> {
+    let read: Vec<Point<N, D>> = points(given, member)?;
+    Ok(core::array::from_fn(|index| read[index]))
+}
+
+/// The segment of a capsule.
+enum EndsOf<N: SceneSpace<D>, const D: usize> {
+    HalfHeight(N),
+    Points([Point<N, D>; 2]),
+}
+
+fn ends_of<N: SceneSpace<D>, const D: usize>(
+    half_height: Option<f64>,
+    ends: Option<&[Vec<f64>; 2]>,
+) -> Result<EndsOf<N, D>, Fault> {
+    match (half_height, ends) {
+        (Some(half_height), None) => Ok(EndsOf::HalfHeight(N::lit(half_height))),
+        (None, Some(ends)) => Ok(EndsOf::Points(corners(ends, "ends")?)),
+        _ => Err(Problem::Members("one of half_height and ends is needed").into()),
+    }
+}
+
+fn line<N: SceneSpace<D>, const D: usize>(
+    vertices: Vec<Point<N, D>>,
+    segments: Option<&[[u32; 2]]>,
+    is_closed: bool,
+) -> Result<Polyline<N, D>, Fault> {
+    Ok(match segments {
+        Some(_) if is_closed => {
+            return Err(Problem::Members("segments and closed exclude each other").into());
+        }
+        Some(segments) => Polyline::try_new(vertices, segments.to_vec())?,
+        None if is_closed => Polyline::try_closed(vertices)?,
+        None => Polyline::try_open(vertices)?,
+    })
+}
+
+/// The mark of a removed cell: both its triangles, or in 2D its segment.
+const HOLE: [u8; 2] = [1, 3];
+/// The mark of a cell cut the other way.
+const BACKWARD: u8 = 4;
+
+/// The arguments of a height field.
+fn field<N: SceneSpace<D>, const D: usize>(
+    shape: &ShapeFile,
+    dimension: Dimension,
+) -> Result<ShapeData<N, D>, Fault> {
+    let ShapeFile::HeightField { heights, columns, scale, holes, diagonals, one_sided } = shape
+    else {
+        return Err(Problem::Members("the shape has no kind").into());
+    };
+    let columns = match (dimension, columns) {
+        (Dimension::Two, None) => heights.len(),
+        (Dimension::Three, Some(columns)) => *columns,
+        _ => {
+            return Err(
+                Problem::Members("columns is needed in 3D, and does not exist in 2D").into()
+            );
+        }
+    };
+    let is_plane = dimension == Dimension::Two;
+    let row = columns.saturating_sub(1);
+    let rows = if is_plane { 1 } else { (heights.len() / columns.max(1)).saturating_sub(1) };
+    let is_backward = |cell: usize| match diagonals {
+        DiagonalsFile::Forward => false,
+        DiagonalsFile::Backward => true,
+        DiagonalsFile::Alternating => (cell / row + cell % row) % 2 == 1,
+    };
+    let cells = 0..rows * row;
+    let mut marks: Vec<u8> =
+        cells.map(|cell| if !is_plane && is_backward(cell) { BACKWARD } else { 0 }).collect();
+    for (index, &cell) in holes.iter().enumerate() {
+        let (what, given, limit) = ("cells", cell.saturating_add(1), marks.len());
+        let mark = marks.get_mut(cell).ok_or(Problem::TooMany { what, given, limit });
+        *mark.within(&format!("holes[{index}]"))? |= HOLE[usize::from(!is_plane)];
+    }
+    Ok(ShapeData::HeightField(Field {
+        columns,
+        heights: heights.iter().copied().map(N::lit).collect(),
+        scale: coordinates(scale).within("scale")?,
+        marks,
+        is_one_sided: *one_sided,
+        keeps_internal_edges: false,
+    }))
+}
+
+/// How many parts a shape has.
+fn num_parts<N: SceneSpace<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> usize {
+    shape.geometry().as_composite().map_or(1, |composite| composite.num_parts() as usize)
+}

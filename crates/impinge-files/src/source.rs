@@ -1,0 +1,157 @@
+//! The text of a scene file, and the lines of its values.
+
+use std::path::{Path, PathBuf};
+
+use jsonc_parser::ast::Value;
+use jsonc_parser::common::Ranged;
+use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+
+use crate::error::Fault;
+use crate::{FileError, Problem, SceneFile};
+
+/// So many characters of a value are given in errors.
+const MAX_VALUE: usize = 60;
+
+/// A document and the file that it is from.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    pub(crate) file: PathBuf,
+    /// `None` for scenes that are made and not read: their errors have paths only.
+    text: Option<String>,
+}
+
+impl Source {
+    /// The document as it was read.
+    pub(crate) const fn new(file: PathBuf, text: String) -> Self {
+        Self { file, text: Some(text) }
+    }
+
+    /// A scene that no document describes.
+    pub(crate) const fn without_text(file: PathBuf) -> Self {
+        Self { file, text: None }
+    }
+
+    /// The folder that paths in the document are relative to.
+    pub(crate) fn folder(&self) -> &Path {
+        self.file.parent().unwrap_or_else(|| Path::new(""))
+    }
+
+    /// The members of the document.
+    pub(crate) fn parse(&self) -> Result<SceneFile, FileError> {
+        let text = self.text.as_deref().unwrap_or_default();
+        let mut reader = serde_json::Deserializer::from_str(text);
+        let scene = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+            let path = error.path().to_string();
+            // A value that is no JSON has the path of the one around it: its own step is "?", and "." alone is the
+            // whole document.
+            let path = path.trim_end_matches('?').trim_end_matches('.').to_owned();
+            self.syntax_error(path, error.inner())
+        })?;
+        reader.end().map_err(|error| self.syntax_error(String::new(), &error))?;
+        Ok(scene)
+    }
+
+    fn syntax_error(&self, path: String, error: &serde_json::Error) -> FileError {
+        let (line, column) = (error.line(), error.column());
+        let message = error.to_string();
+        // The place is given apart from the words.
+        let place = format!(" at line {line} column {column}");
+        let message = message.strip_suffix(&place).unwrap_or(&message).to_owned();
+        FileError {
+            file: self.file.clone(),
+            line: (line > 0).then_some(line),
+            column: (line > 0).then_some(column.max(1)),
+            path,
+            value: None,
+            problem: Box::new(Problem::Syntax(message)),
+        }
+    }
+
+    /// The error with its line, column and value. Of a path whose end the document does not have, since a member
+    /// has its default, the part counts that it has.
+    pub(crate) fn error(&self, fault: Fault) -> FileError {
+        let Fault { path, problem, .. } = fault;
+        let text = self.text.as_deref();
+        let found = text.and_then(|text| find(text, &path));
+        let (line, column) = found.as_ref().map(|found| found.place).unzip();
+        let value = found.as_ref().map(|found| found.value.clone());
+        let path = found.map_or(path, |found| found.path);
+        // The whole document is no value to quote.
+        let value = value.filter(|_| !path.is_empty());
+        let (file, problem) = (self.file.clone(), Box::new(problem));
+        FileError { file, line, column, path, value, problem }
+    }
+}
+
+/// The value at a path. The document was accepted by `parse`, so that its nesting is bounded.
+fn find(text: &str, path: &str) -> Option<Found> {
+    let tree = parse_to_ast(text, &CollectOptions::default(), &ParseOptions::default());
+    let tree = tree.ok()?.value?;
+    let mut value = &tree;
+    let mut taken = String::new();
+    for step in steps(path) {
+        let Some(next) = member(value, &step) else { break };
+        value = next;
+        match step {
+            Step::Index(index) => taken.push_str(&format!("[{index}]")),
+            Step::Name(name) if taken.is_empty() => taken.push_str(name),
+            Step::Name(name) => taken.push_str(&format!(".{name}")),
+        }
+    }
+    let range = value.range();
+    let value = shortened(&text[range.start..range.end]);
+    Some(Found { path: taken, place: place(text, range.start), value })
+}
+
+/// The line and the column of a byte, counted from 1.
+fn place(text: &str, byte: usize) -> (usize, usize) {
+    let before = &text[..byte];
+    let line = before.matches('\n').count() + 1;
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    (line, before[start..].chars().count() + 1)
+}
+
+/// The text of a value in one line.
+fn shortened(text: &str) -> String {
+    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    match words.char_indices().nth(MAX_VALUE) {
+        Some((end, _)) => format!("{}...", &words[..end]),
+        None => words,
+    }
+}
+
+/// A value of a document.
+struct Found {
+    /// The part of the path that the document has.
+    path: String,
+    /// Line and column.
+    place: (usize, usize),
+    value: String,
+}
+
+/// A step of a path.
+enum Step<'a> {
+    Name(&'a str),
+    Index(usize),
+}
+
+/// The steps of a path such as `objects[3].shape`. A name with a dot or bracket in it, of a shape, is not found:
+/// then the error has the place of the value around it.
+fn steps(path: &str) -> impl Iterator<Item = Step<'_>> {
+    let parts = path.split(['.', '[']).filter(|part| !part.is_empty());
+    parts.map(|part| {
+        let index = part.strip_suffix(']').and_then(|index| index.parse().ok());
+        index.map_or(Step::Name(part), Step::Index)
+    })
+}
+
+fn member<'a>(value: &'a Value<'a>, step: &Step<'_>) -> Option<&'a Value<'a>> {
+    match (value, step) {
+        (Value::Array(array), Step::Index(index)) => array.elements.get(*index),
+        (Value::Object(object), Step::Name(name)) => {
+            let mut members = object.properties.iter();
+            members.find(|member| member.name.as_str() == *name).map(|member| &member.value)
+        }
+        _ => None,
+    }
+}
