@@ -1,0 +1,190 @@
+//! Arguments of the verbs that ask about one object, shape or ray.
+
+use core::str::FromStr;
+
+use clap::Args;
+
+use super::{Format, NumberError, Numbers, Positive, SceneArgs};
+
+/// How far apart two objects are, and where.
+///
+/// Groups do not matter here. Where the objects overlap, the depth is the length of the shortest translation
+/// that parts them, and the normal its direction for the second.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge distance balls.json left right
+  impinge distance balls.json left right --json
+
+Fields of --json: file, first, second, state (\"touch\", \"near\" or \"apart\"), distance, depth, point1, point2,
+normal (from the first to the second), part1, part2. Exit code 1 if they touch.")]
+pub(crate) struct DistanceArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The name of an object
+    pub(crate) first: String,
+    /// The name of another
+    pub(crate) second: String,
+    /// Objects that are so far apart or nearer are called near
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
+    pub(crate) margin: Positive,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// What a moving shape or object hits first.
+///
+/// It moves along a straight line and does not turn. An object of the scene interacts by its groups, a shape with
+/// everything. Time 0 is the start and time 1 the end of the way.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge cast balls.json --shape ball:0.25 --from -5,0,0 --to 5,0,0
+  impinge cast balls.json --object left --by 2,0,0
+  impinge cast boxes.json --shape box:1,1,1 --from 0,9,0 --to 0,0,0 --all
+  impinge cast boxes.json --shape box --from 0,9,0 --to 0,0,0
+
+Shapes: ball:RADIUS, box:HALF_EXTENTS, capsule:HALF_HEIGHT,RADIUS, the name of a shape of the scene, or a shape
+in JSON as a scene file has it.
+
+Fields of --json: file, dimension, scalar, hits with object, time, moved (the length of the way), position, point (on the moving
+shape), normal (from it to the object), part. Exit code 1 if something is hit.")]
+pub(crate) struct CastArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// A shape to move
+    #[arg(
+        long,
+        value_name = "SHAPE",
+        requires = "from",
+        requires = "to",
+        required_unless_present = "object"
+    )]
+    pub(crate) shape: Option<ShapeSpec>,
+    /// Where the shape starts
+    #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
+    pub(crate) from: Option<Numbers>,
+    /// Where its way ends
+    #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
+    pub(crate) to: Option<Numbers>,
+    /// An object of the scene to move, by its name
+    #[arg(long, value_name = "NAME", conflicts_with = "shape", requires = "by")]
+    pub(crate) object: Option<String>,
+    /// The way of the object
+    #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, requires = "object")]
+    pub(crate) by: Option<Numbers>,
+    /// Objects count as hit when they are so near
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
+    pub(crate) distance: Positive,
+    /// Print everything on the way, not the first alone
+    #[arg(long)]
+    pub(crate) all: bool,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// What a ray hits.
+///
+/// A ray that starts inside a solid hits it at once, unless it is hollow.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge ray balls.json --from -5,0,0 --to 5,0,0
+  impinge ray balls.json --from -5,0,0 --direction 1,0,0 --all
+
+Fields of --json: file, dimension, scalar, hits with object, time (in units of the direction), length, point, normal (out of the
+object), part. Exit code 1 if something is hit.")]
+pub(crate) struct RayArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Where the ray starts
+    #[arg(long, value_name = "POINT", allow_hyphen_values = true)]
+    pub(crate) from: Numbers,
+    /// Where it ends
+    #[arg(
+        long,
+        value_name = "POINT",
+        allow_hyphen_values = true,
+        required_unless_present = "direction"
+    )]
+    pub(crate) to: Option<Numbers>,
+    /// Its direction, if it has no end
+    #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, conflicts_with = "to")]
+    pub(crate) direction: Option<Numbers>,
+    /// Solids are hollow: a ray that starts inside hits where it leaves
+    #[arg(long)]
+    pub(crate) hollow: bool,
+    /// Print everything that is hit, not the first alone
+    #[arg(long)]
+    pub(crate) all: bool,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// A shape: `ball:0.5`, `box:1,2,3`, `capsule:1,0.5`, the name of one in the scene, or JSON.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum ShapeSpec {
+    /// In a few characters.
+    Sizes {
+        /// What it is.
+        kind: ShapeKind,
+        /// Its sizes.
+        sizes: Vec<f64>,
+    },
+    /// By its name in the scene, or in JSON as a scene has it.
+    Scene(String),
+}
+
+/// The shapes that have a short form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ShapeKind {
+    /// A radius.
+    Ball,
+    /// Half extents along the axes.
+    Cuboid,
+    /// Half the height of the axis along y, and a radius.
+    Capsule,
+}
+
+impl ShapeKind {
+    const ALL: [Self; 3] = [Self::Ball, Self::Cuboid, Self::Capsule];
+
+    /// The name before the colon.
+    pub(crate) const fn name(self) -> &'static str {
+        match self {
+            Self::Ball => "ball",
+            Self::Cuboid => "box",
+            Self::Capsule => "capsule",
+        }
+    }
+}
+
+impl FromStr for ShapeSpec {
+    type Err = NumberError;
+
+    fn from_str(text: &str) -> Result<Self, NumberError> {
+        let short = text.split_once(':').and_then(|(name, sizes)| {
+            let kind = ShapeKind::ALL.into_iter().find(|kind| kind.name() == name)?;
+            Some((kind, sizes))
+        });
+        let Some((kind, sizes)) = short else { return Ok(Self::Scene(text.to_owned())) };
+        let Numbers(sizes) = sizes.parse()?;
+        Ok(Self::Sizes { kind, sizes })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_by_hand() {
+        let cuboid = ShapeSpec::Sizes { kind: ShapeKind::Cuboid, sizes: vec![1.0, 2.0, 3.0] };
+        assert_eq!("box:1,2,3".parse(), Ok(cuboid));
+        for text in ["wheel", "cube:1", "{\"ball\": {\"radius\": 1}}"] {
+            assert_eq!(text.parse(), Ok(ShapeSpec::Scene(text.into())));
+        }
+        let infinite = NumberError::NotFinite("inf".into());
+        assert_eq!("ball:inf".parse::<ShapeSpec>(), Err(infinite));
+    }
+}

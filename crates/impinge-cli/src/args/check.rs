@@ -1,0 +1,96 @@
+//! Arguments of the verbs about whole scenes.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint};
+
+use super::{Format, Positive, ScalarName, SceneArgs};
+
+/// Which objects touch, or come within a clearance.
+///
+/// Every pair of objects that may interact by their groups is looked at; pairs that are far apart are culled by
+/// the broad phase. `touch` means that the distance is zero: the depth is the length of the shortest
+/// translation that parts the two. `near` means that they are apart, by the clearance at most.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge check boxes.json                      the pairs that touch
+  impinge check parts.obj --clearance 0.01      the groups of a mesh, nearer than a hundredth
+  impinge check boxes.json --json               for programs
+  impinge check - < boxes.json                  from standard input
+
+Fields of --json: file, dimension, scalar, clearance, objects, touching, near, omitted, and pairs with first,
+second, state (\"touch\" or \"near\"), distance, depth, point1, point2, normal (from the first to the second),
+part1, part2. Exit code 1 if a pair is reported.")]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// Report pairs that are so far apart or nearer; 0 reports those that touch
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
+    pub(crate) clearance: Positive,
+    /// Print all pairs
+    #[arg(long, conflicts_with = "limit")]
+    pub(crate) all: bool,
+    /// Print so many pairs at most, the deepest first
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub(crate) limit: usize,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// What is in a file, and what is wrong with its meshes.
+///
+/// Of a scene or mesh: the objects with their shapes, and a report of each mesh. Of a recording: its version,
+/// its numbers and its steps.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge inspect parts.obj
+  impinge inspect boxes.json --json
+
+Fields of --json: file, kind (\"scene\" or \"recording\"), dimension, scalar; of scenes objects (name, shape,
+low, high) and meshes (file, name, vertices, triangles, pieces, closed, solid, volume, boundary_edges, problems);
+of recordings version, writer, steps. Exit code 1 if a mesh has a problem; an open surface is none.")]
+pub(crate) struct InspectArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// How long updates of a scene take.
+///
+/// Objects move by their motions. Each run makes the world anew; times of updates are medians over all runs,
+/// with the quartiles. Times depend on the machine and its load: compare those of one machine.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge bench boxes.json --steps 20
+  impinge bench --steps 5 --runs 1
+
+Fields of --json: scenes with name, objects, dimension, scalar, steps, runs, build_ms, first_update_ms, median_ms,
+lower_quartile_ms, upper_quartile_ms, pairs.")]
+pub(crate) struct BenchArgs {
+    /// A scene; without, a few that the command has
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) scene: Option<PathBuf>,
+    /// Compute with numbers of this type, whatever the scene says
+    #[arg(long, value_enum)]
+    pub(crate) scalar: Option<ScalarName>,
+    /// Updates of each run
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) steps: u32,
+    /// Runs of each scene
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) runs: u32,
+    /// Seconds from one step to the next
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_negative_numbers = true,
+        default_value = "0.016666666666666666"
+    )]
+    pub(crate) dt: Positive,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}

@@ -1,0 +1,63 @@
+//! Arguments of pictures.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum, ValueHint};
+
+use super::{Numbers, SceneArgs, Size};
+
+/// Draw a scene or a step of a recording.
+///
+/// 2D scenes are drawn to scale with y upwards. 3D scenes are seen from everything's front, above and right, or
+/// along a direction of yours; the camera frames itself. No GPU is asked: the same file gives the same bytes.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge render boxes.json -o boxes.png
+  impinge render boxes.json -o boxes.svg --size 900x600 --look -1,-1,-2
+  impinge render boxes.json -o layers.png --layers object,contacts,tight-boxes
+  impinge render balls.implog -o step.png --step 20")]
+pub(crate) struct RenderArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The file to write: .png for surfaces, .svg for lines
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+    /// Width and height in pixels, 8192 at most; the height of an SVG follows from the scene
+    #[arg(long, value_name = "WxH", default_value = "1200x900")]
+    pub(crate) size: Size,
+    /// The direction of view, in 3D
+    #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, default_value = "-2,-1.5,-3")]
+    pub(crate) look: Numbers,
+    /// The upper side of the picture, in 3D; what the scene says by default
+    #[arg(long, value_name = "VECTOR", allow_hyphen_values = true)]
+    pub(crate) up: Option<Numbers>,
+    /// The angle of view in degrees, in 3D; 0 is without perspective
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0)]
+    pub(crate) angle: f64,
+    /// The step of a recording; the last by default
+    #[arg(long, value_name = "N")]
+    pub(crate) step: Option<usize>,
+    /// What is drawn
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "object,contacts")]
+    pub(crate) layers: Vec<LayerName>,
+}
+
+/// Things that can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum LayerName {
+    /// The shapes of objects
+    Object,
+    /// Contact points and normals
+    Contacts,
+    /// Areas between contact points
+    Manifolds,
+    /// Lines between objects that are near each other
+    Proximities,
+    /// Boxes around objects
+    TightBoxes,
+    /// Boxes of the broad phase
+    LoosenedBoxes,
+    /// Boxes of the nodes of its trees
+    TreeNodes,
+}

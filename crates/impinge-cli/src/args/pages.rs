@@ -1,0 +1,111 @@
+//! Arguments of the verbs that make pages for browsers.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint};
+
+use super::{Format, Positive, SceneArgs, Size};
+
+/// Where the page comes from.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct PageArgs {
+    /// A folder with `page.html`, `page.css`, `page.js` and `page.wasm.gz`, instead of the page that the command has
+    #[arg(
+        long = "page",
+        value_name = "FOLDER",
+        env = "IMPINGE_PAGE",
+        hide_env = true,
+        value_hint = ValueHint::DirPath
+    )]
+    pub(crate) folder: Option<PathBuf>,
+}
+
+/// One HTML file that shows a recording and answers questions about it.
+///
+/// The file carries the recording and the library: it opens from disk, without a network. A reader plays it, selects
+/// objects, asks why two of them touch or do not, shoots rays and moves objects. A scene is recorded first.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge export balls.implog -o balls.html
+  impinge export boxes.json -o boxes.html --steps 60 --title \"Boxes\"
+
+Fields of --json: file, output, bytes, recording (its bytes, packed).")]
+pub(crate) struct ExportArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The page to write
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+    /// The heading of the page; without it the name of the file
+    #[arg(long)]
+    pub(crate) title: Option<String>,
+    /// How many updates of a scene are recorded
+    #[arg(long, value_name = "N", default_value_t = 120)]
+    pub(crate) steps: u32,
+    /// Seconds from one step of a scene to the next
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_negative_numbers = true,
+        default_value = "0.016666666666666666"
+    )]
+    pub(crate) dt: Positive,
+    #[command(flatten)]
+    pub(crate) page: PageArgs,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// Show a scene that runs, or a recording, in a browser on this machine.
+///
+/// The address that is printed is of a port of this machine alone. The objects of a scene move by its motions until the
+/// command is interrupted; the page follows, and keeps all steps to go back to.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge view balls.json --steps 30
+  impinge view balls.json --steps 30 --port 0 --dt 0.001")]
+pub(crate) struct ViewArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The port; 0 takes one that is free
+    #[arg(long, default_value_t = 0)]
+    pub(crate) port: u16,
+    /// End after so many updates of a scene
+    #[arg(long, value_name = "N")]
+    pub(crate) steps: Option<u64>,
+    /// Seconds from one step to the next, of the scene and of the clock
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_negative_numbers = true,
+        default_value = "0.016666666666666666"
+    )]
+    pub(crate) dt: Positive,
+    #[command(flatten)]
+    pub(crate) page: PageArgs,
+}
+
+/// The samples: a list, or a folder that any web server can serve.
+///
+/// `index.html` in the folder has all of them, with controls; it opens from disk too. Beside it are small pictures.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge samples
+  impinge samples -o gallery --size 96x64
+
+Fields of --json: output, samples with name, title, about, dimension.")]
+pub(crate) struct SamplesArgs {
+    /// The folder to write
+    #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) output: Option<PathBuf>,
+    /// The size of the small pictures in pixels
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "320x200")]
+    pub(crate) size: Size,
+    #[command(flatten)]
+    pub(crate) page: PageArgs,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}

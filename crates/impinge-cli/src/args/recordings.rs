@@ -1,0 +1,83 @@
+//! Arguments of the verbs about recordings.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueHint};
+
+use super::{Format, Positive, SceneArgs};
+
+/// Move the objects of a scene and record every step.
+///
+/// Objects move by the motions of the scene. A recording holds each call that changed the world and the hashes
+/// of what came of it: `replay` and `validate` read it, on any machine.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge record balls.json -o balls.implog --steps 30
+  impinge record balls.json -o slow.implog --steps 10 --dt 0.001
+
+Fields of --json: file, dimension, scalar, output, steps, bytes, objects, touched (steps with a contact or an intersection).")]
+pub(crate) struct RecordArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+    /// The recording to write
+    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) output: PathBuf,
+    /// How many updates
+    #[arg(long, value_name = "N")]
+    pub(crate) steps: u32,
+    /// Seconds from one step to the next
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        allow_negative_numbers = true,
+        default_value = "0.016666666666666666"
+    )]
+    pub(crate) dt: Positive,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// What happened at the steps of a recording.
+///
+/// Without `--step` a line for each step; with it the objects and pairs after that step.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge replay balls.implog
+  impinge replay balls.implog --step 20
+  impinge replay balls.implog --step 20 --json
+
+Fields of --json: file, dimension, scalar, steps with step, objects, touching, near, contacts, started, stopped;
+with --step also positions (name, translation, rotation: cosine and sine in 2D, i, j, k, w in 3D) and pairs (first,
+second, state, contacts, depth). Exit code 1 if something touches at the last step printed.")]
+pub(crate) struct ReplayArgs {
+    /// A recording; `-` is standard input
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(crate) log: PathBuf,
+    /// The step to print: the number of updates before it
+    #[arg(long, value_name = "N")]
+    pub(crate) step: Option<usize>,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}
+
+/// Whether recordings replay to the same bits.
+///
+/// Every call of a recording is made again, and what comes of it is compared by its hashes: positions, pairs,
+/// contacts, proximities, events and answers of queries.
+#[derive(Args, Debug)]
+#[command(after_help = "\
+Examples:
+  impinge validate balls.implog
+  impinge validate balls.implog balls.implog --json
+
+Fields of --json: recordings with file, steps, same, and difference (step, byte, object, field) or null. Exit
+code 1 if one differs.")]
+pub(crate) struct ValidateArgs {
+    /// Recordings; `-` is standard input
+    #[arg(required = true, value_hint = ValueHint::FilePath)]
+    pub(crate) logs: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) format: Format,
+}

@@ -1,0 +1,34 @@
+//! Numbers of the command line in the scalar and dimension of a scene.
+
+use impinge::math::{Real, Vector};
+
+use crate::args::Numbers;
+use crate::error::CliError;
+use crate::number::significant;
+
+/// A number of an argument; an error where the scalar has no such finite number.
+pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliError> {
+    let converted = N::lit(value);
+    if converted.is_finite_number() {
+        return Ok(converted);
+    }
+    Err(CliError::argument(name, significant(value), "is beyond the numbers of the scene"))
+}
+
+/// A vector of an argument; an error unless it has a number for each dimension.
+pub(crate) fn vector<N: Real, const D: usize>(
+    name: &'static str,
+    numbers: &Numbers,
+) -> Result<Vector<N, D>, CliError> {
+    let Numbers(numbers) = numbers;
+    if numbers.len() != D {
+        let text: Vec<_> = numbers.iter().copied().map(significant).collect();
+        let reason = format!("the scene has {D} dimensions, so {D} numbers are needed");
+        return Err(CliError::argument(name, text.join(","), reason));
+    }
+    let mut vector = Vector::<N, D>::zeros();
+    for (component, number) in vector.iter_mut().zip(numbers) {
+        *component = scalar(name, *number)?;
+    }
+    Ok(vector)
+}

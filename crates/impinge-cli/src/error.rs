@@ -1,0 +1,125 @@
+//! Why the command cannot answer.
+
+use core::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use impinge_html::HtmlError;
+use impinge_record::{ReadError, RecordError};
+use impinge_samples::SampleError;
+
+/// Bad input: the exit code is 2. Each error names the file and the value.
+#[derive(Debug)]
+pub(crate) enum CliError {
+    /// A scene or mesh is wrong.
+    File(impinge_files::FileError),
+    /// A file cannot be read.
+    Read { path: PathBuf, error: io::Error },
+    /// A file cannot be written.
+    Write { path: PathBuf, error: io::Error },
+    /// Standard output cannot be written.
+    Output(io::Error),
+    /// A recording cannot be replayed.
+    Recording { path: PathBuf, error: ReadError },
+    /// A recording of worlds that the library does not have.
+    ForeignRecording { path: PathBuf, scalar_bytes: u8, dimension: u8 },
+    /// A call cannot be recorded.
+    Record(RecordError),
+    /// A page cannot be made or served.
+    Page(HtmlError),
+    /// The command has no page of its own, and none was named.
+    NoPage,
+    /// A sample cannot run.
+    Sample { name: &'static str, error: SampleError },
+    /// A recording has fewer steps.
+    NoStep { path: PathBuf, step: usize, last: usize },
+    /// A scene has no object of this name; perhaps one of a similar one.
+    NoObject { path: PathBuf, name: String, similar: Option<String> },
+    /// An argument does not suit the scene.
+    Argument { name: &'static str, value: String, reason: String },
+}
+
+impl CliError {
+    /// An argument does not suit the scene.
+    pub(crate) fn argument(
+        name: &'static str,
+        value: impl fmt::Display,
+        reason: impl fmt::Display,
+    ) -> Self {
+        Self::Argument { name, value: value.to_string(), reason: reason.to_string() }
+    }
+}
+
+impl fmt::Display for CliError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(error) => error.fmt(f),
+            Self::Read { path, error } => write!(f, "{}: cannot be read: {error}", path.display()),
+            Self::Write { path, error } => {
+                write!(f, "{}: cannot be written: {error}", path.display())
+            }
+            Self::Output(error) => write!(f, "standard output: {error}"),
+            Self::Recording { path, error } => write!(f, "{}: {error}", path.display()),
+            Self::ForeignRecording { path, scalar_bytes, dimension } => write!(
+                f,
+                "{}: the recording has {dimension} dimensions and numbers of {scalar_bytes} bytes",
+                path.display()
+            ),
+            Self::Record(error) => write!(f, "the scene cannot be recorded: {error}"),
+            Self::Page(error) => error.fmt(f),
+            Self::NoPage => f.write_str(
+                "this command was built without the page: build it with `--features page`, or name a folder \
+                 with its parts by --page",
+            ),
+            Self::Sample { name, error } => write!(f, "the sample {name}: {error}"),
+            Self::NoStep { path, step, last } => {
+                write!(f, "{}: there is no step {step}, the last is {last}", path.display())
+            }
+            Self::NoObject { path, name, similar } => {
+                write!(f, "{}: no object has the name {name:?}", path.display())?;
+                similar.as_ref().map_or(Ok(()), |similar| write!(f, "; did you mean {similar:?}?"))
+            }
+            Self::Argument { name, value, reason } => write!(f, "{name} {value}: {reason}"),
+        }
+    }
+}
+
+impl std::error::Error for CliError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::File(error) => Some(error),
+            Self::Read { error, .. } | Self::Write { error, .. } | Self::Output(error) => {
+                Some(error)
+            }
+            Self::Recording { error, .. } => Some(error),
+            Self::Record(error) => Some(error),
+            Self::Page(error) => Some(error),
+            Self::Sample { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl From<io::Error> for CliError {
+    fn from(error: io::Error) -> Self {
+        Self::Output(error)
+    }
+}
+
+impl From<RecordError> for CliError {
+    fn from(error: RecordError) -> Self {
+        Self::Record(error)
+    }
+}
+
+impl From<impinge_files::FileError> for CliError {
+    fn from(error: impinge_files::FileError) -> Self {
+        Self::File(error)
+    }
+}
+
+impl From<HtmlError> for CliError {
+    fn from(error: HtmlError) -> Self {
+        Self::Page(error)
+    }
+}

@@ -1,0 +1,43 @@
+//! Progress bars on standard error.
+
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// What takes less long has no bar.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// A bar that appears after a second, on a terminal alone, and is gone at the end.
+#[derive(Debug)]
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    begun: Instant,
+    is_shown: bool,
+}
+
+impl Progress {
+    /// A bar of so many steps of some work.
+    pub(crate) fn new(steps: usize, work: &'static str) -> Self {
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::hidden());
+        let style = ProgressStyle::with_template("{msg} {wide_bar:.cyan} {pos}/{len} {eta}");
+        let bar = if let Ok(style) = style { bar.with_style(style) } else { bar };
+        bar.set_message(work);
+        Self { bar, begun: Instant::now(), is_shown: false }
+    }
+
+    /// One step is done.
+    pub(crate) fn step(&mut self) {
+        if !self.is_shown && self.begun.elapsed() > PATIENCE {
+            self.is_shown = true;
+            // Draws nothing where standard error is not a terminal.
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.inc(1);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,12 @@
+//! The command, run as a user runs it, in a folder with the scenes of `scenes`.
+
+mod bad_input;
+mod docs;
+mod large;
+mod pages;
+mod pairs;
+mod pictures;
+mod queries;
+mod recordings;
+mod reports;
+mod support;

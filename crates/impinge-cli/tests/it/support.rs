@@ -1,0 +1,107 @@
+//! A folder to run the command in, and what it answers.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder with a copy of the scenes.
+pub(crate) struct Desk(TempDir);
+
+/// A page of a line for each part; the command has the real one with the feature `page` alone.
+const PAGE: [(&str, &str); 4] = [
+    ("page.html", "{{TITLE}}\n{{SCENE}}\n{{RECORDING}}\n{{STYLE}}\n{{SCRIPT}}\n{{WASM}}\n"),
+    ("page.css", "style"),
+    ("page.js", "script"),
+    ("page.wasm.gz", "module"),
+];
+
+/// What a run of the command left.
+#[derive(Debug)]
+pub(crate) struct Ran {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+impl Desk {
+    pub(crate) fn new() -> Self {
+        let folder = TempDir::new().expect("a temporary folder");
+        for entry in fs::read_dir(scenes()).expect("the scenes") {
+            let path = entry.expect("an entry").path();
+            let name = path.file_name().expect("a name");
+            fs::copy(&path, folder.path().join(name)).expect("a copy");
+        }
+        let desk = Self(folder);
+        fs::create_dir(desk.path("page")).expect("a folder");
+        for (name, text) in PAGE {
+            desk.write(&format!("page/{name}"), text);
+        }
+        desk
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+        fs::write(self.path(name), text).expect("a file");
+    }
+
+    /// Runs `impinge` with arguments between blanks.
+    pub(crate) fn run(&self, arguments: &str) -> Ran {
+        self.run_with(arguments, b"")
+    }
+
+    /// Runs it with something on standard input.
+    pub(crate) fn run_with(&self, arguments: &str, input: &[u8]) -> Ran {
+        let mut command = self.command();
+        let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = pipes.args(arguments.split_whitespace()).spawn().expect("the command");
+        // The command may end before it has read everything.
+        let _ = child.stdin.take().expect("a pipe").write_all(input);
+        let output = child.wait_with_output().expect("an end");
+        let text = |bytes| String::from_utf8(bytes).expect("text");
+        let code = output.status.code().expect("no signal");
+        Ran { code, out: text(output.stdout), err: text(output.stderr) }
+    }
+
+    /// The command in this folder, before its arguments.
+    pub(crate) fn command(&self) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_impinge"));
+        command.current_dir(self.0.path()).env_remove("CLICOLOR_FORCE");
+        command.env("IMPINGE_PAGE", self.path("page"));
+        command
+    }
+
+    /// Runs it with `--json` and asserts the exit code.
+    pub(crate) fn json(&self, arguments: &str, code: i32) -> Value {
+        let ran = self.run(&format!("{arguments} --json"));
+        assert_eq!(ran.code, code, "{arguments}: {ran:?}");
+        assert_eq!(ran.err, "", "{arguments}");
+        serde_json::from_str(&ran.out).expect("JSON")
+    }
+}
+
+/// The folder of the crate.
+pub(crate) fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn scenes() -> PathBuf {
+    root().join("scenes")
+}
+
+/// The numbers of a list.
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
+    let list = value.as_array().expect("a list");
+    list.iter().map(|number| number.as_f64().expect("a number")).collect()
+}
+
+/// Whether a number is another up to a few units in the last place of an `f64` of size 1.
+pub(crate) fn is_close(value: &Value, expected: f64) -> bool {
+    value.as_f64().is_some_and(|value| (value - expected).abs() < 1e-14)
+}
