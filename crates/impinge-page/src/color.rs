@@ -15,21 +15,22 @@ const SELECTION: Color = Color::rgb(242, 153, 46);
 /// What is asked for proximity alone.
 const SENSORS: Color = Color::rgb(150, 120, 200).with_alpha(88);
 /// Towards this colour go objects that touch something.
-const WARM: Color = Color::rgb(205, 104, 82);
+const WARM: Color = Color::rgb(255, 140, 110);
 /// How far, of 256.
-const WARMTH: u16 = 56;
+const WARMTH: u16 = 40;
 
 /// The colour of a kind of shape.
 const fn of_kind(kind: ShapeKind) -> Color {
     match kind {
-        ShapeKind::Ball | ShapeKind::Ellipsoid => Color::rgb(98, 146, 184),
-        ShapeKind::Capsule | ShapeKind::TaperedCapsule => Color::rgb(94, 158, 146),
-        ShapeKind::Cuboid => Color::rgb(128, 146, 168),
-        ShapeKind::Polytope | ShapeKind::Rounded => Color::rgb(142, 138, 178),
-        ShapeKind::Cylinder | ShapeKind::Cone => Color::rgb(166, 150, 116),
-        ShapeKind::Segment | ShapeKind::Triangle => Color::rgb(120, 132, 146),
-        ShapeKind::SupportMap => Color::rgb(170, 134, 152),
-        _ => Color::rgb(158, 162, 158),
+        ShapeKind::Ball | ShapeKind::Ellipsoid => Color::rgb(70, 150, 206),
+        ShapeKind::Capsule | ShapeKind::TaperedCapsule => Color::rgb(52, 166, 142),
+        ShapeKind::Cuboid => Color::rgb(116, 144, 182),
+        ShapeKind::Polytope | ShapeKind::Rounded => Color::rgb(142, 124, 204),
+        ShapeKind::Cylinder | ShapeKind::Cone => Color::rgb(196, 158, 92),
+        ShapeKind::Segment | ShapeKind::Triangle => Color::rgb(98, 118, 146),
+        ShapeKind::SupportMap => Color::rgb(200, 120, 160),
+        ShapeKind::Plane => Color::rgb(158, 164, 174),
+        _ => Color::rgb(152, 166, 152),
     }
 }
 
@@ -50,8 +51,9 @@ impl Look {
         if self.flags & SELECTED != 0 {
             return word(SELECTION.with_alpha(base.alpha.max(160)));
         }
-        let is_touching = self.flags & TOUCHES != 0;
-        word(if is_touching { mixed(base, WARM, WARMTH) } else { base })
+        // Most worlds stand on a half-space: it touches something nearly always, and is too large to be warm.
+        let is_warm = self.flags & TOUCHES != 0 && self.kind != ShapeKind::Plane;
+        word(if is_warm { mixed(base, WARM, WARMTH) } else { base })
     }
 
     /// One of four tones of the kind's colour.
