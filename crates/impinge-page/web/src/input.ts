@@ -12,13 +12,15 @@ const MODES: { mode: Mode; label: string; hint: string; key: string }[] = [
   { mode: "ray", label: "Ray", hint: "Draw a ray: drag in 2D, click in 3D", key: "r" },
   { mode: "move", label: "Move", hint: "Drag an object; also Alt-drag in any mode", key: "m" },
 ];
-/** A press that moved less than this, in CSS pixels, is a click. */
-const SLACK = 5;
+/** How exactly a pointer points, in CSS pixels. */
+const PRECISION = { mouse: 6, touch: 14 };
 
 /** A point of the window in CSS pixels. */
 export interface At {
   x: number;
   y: number;
+  /** A press that moves less than this is a click, and in 2D a click this far from an object selects it. */
+  radius: number;
 }
 
 /** What the pointer asks for. */
@@ -43,7 +45,7 @@ export interface Gestures {
 export class Pointer {
   mode: Mode = "select";
   private readonly buttons = new Map<Mode, HTMLButtonElement>();
-  /** Where the button went down, while it is down. */
+  /** Where the button or the first finger went down, while it is down. */
   private start: At | null = null;
   /** What the gesture will be if it moves. */
   private action: "click" | "ray" | "move" = "click";
@@ -56,8 +58,10 @@ export class Pointer {
     private readonly gestures: Gestures,
     signal: AbortSignal,
   ) {
-    // Before the camera's own listeners, which a captured gesture switches off.
-    canvas.addEventListener("pointerdown", (event) => this.down(event), { signal, capture: true });
+    // A second finger is the camera's from its start, so that this comes before the camera's own listener. The first
+    // one comes after it: the camera tracks the finger even while it is disabled, and can take the pinch over.
+    canvas.addEventListener("pointerdown", (event) => this.interrupt(event), { signal, capture: true });
+    canvas.addEventListener("pointerdown", (event) => this.down(event), { signal });
     canvas.addEventListener("pointermove", (event) => this.drag(event), { signal });
     canvas.addEventListener("pointerup", (event) => this.up(event), { signal });
     canvas.addEventListener("pointercancel", () => this.finish(), { signal });
@@ -75,37 +79,42 @@ export class Pointer {
     return group;
   }
 
-  /** Takes up another mode, and shows its hint. */
+  /** Takes up another mode, and shows its hint until the canvas is used. */
   choose(mode: Mode): void {
     this.mode = mode;
     for (const [other, element] of this.buttons) element.setAttribute("aria-pressed", String(other === mode));
     this.canvas.dataset.mode = mode;
+    this.hint.hidden = false;
     this.hint.textContent = MODES.find((other) => other.mode === mode)?.hint ?? "";
+  }
+
+  /** Two fingers pinch and pan: neither a click nor what the first one had begun. */
+  private interrupt(event: PointerEvent): void {
+    if (!event.isPrimary && this.start) this.finish();
   }
 
   /** Only the first finger and the main button draw and move: the rest is the camera's. */
   private down(event: PointerEvent): void {
     if (event.button !== 0 || !event.isPrimary) return;
-    this.start = { x: event.clientX, y: event.clientY };
+    this.hint.hidden = true;
+    this.start = pointOf(event);
     this.moved = false;
     this.action = this.actionOf(event);
     this.gestures.free(this.action === "click");
-    if (this.action !== "click") this.canvas.setPointerCapture(event.pointerId);
   }
 
   /** Moving needs an object under the pointer; otherwise the camera takes the drag. */
   private actionOf(event: PointerEvent): "click" | "ray" | "move" {
-    const at = { x: event.clientX, y: event.clientY };
     if (this.mode === "ray" && this.gestures.dragsRays() && !event.altKey) return "ray";
-    if ((this.mode === "move" || event.altKey) && this.gestures.grab(at)) return "move";
+    if ((this.mode === "move" || event.altKey) && this.gestures.grab(pointOf(event))) return "move";
     return "click";
   }
 
   /** A press becomes a drag once it has moved far enough. */
   private drag(event: PointerEvent): void {
     if (!this.start || !event.isPrimary) return;
-    const at = { x: event.clientX, y: event.clientY };
-    this.moved ||= Math.hypot(at.x - this.start.x, at.y - this.start.y) > SLACK;
+    const at = pointOf(event);
+    this.moved ||= Math.hypot(at.x - this.start.x, at.y - this.start.y) > at.radius;
     if (!this.moved) return;
     if (this.action === "ray") this.gestures.drawRay(this.start, at);
     if (this.action === "move") this.gestures.move(at);
@@ -114,8 +123,7 @@ export class Pointer {
   /** A press that did not move is a click, whatever the mode. */
   private up(event: PointerEvent): void {
     if (!this.start || !event.isPrimary) return;
-    const at = { x: event.clientX, y: event.clientY };
-    if (!this.moved) this.gestures.click(at, event.shiftKey || this.mode === "pair");
+    if (!this.moved) this.gestures.click(pointOf(event), event.shiftKey || this.mode === "pair");
     this.finish();
   }
 
@@ -128,6 +136,11 @@ export class Pointer {
   }
 }
 
+/** Where a pointer is, and how exactly. */
+function pointOf({ clientX, clientY, pointerType }: PointerEvent): At {
+  return { x: clientX, y: clientY, radius: pointerType === "touch" ? PRECISION.touch : PRECISION.mouse };
+}
+
 /** A key, what it does, and the words for it in the list of keys. */
 export interface Key {
   keys: string[];
@@ -138,24 +151,23 @@ export interface Key {
 /** Calls what a key stands for, unless the reader types or a control takes the key itself. */
 export function listen(keys: Key[], signal: AbortSignal): void {
   const acts = new Map(keys.flatMap(({ keys: names, act }) => names.map((name) => [name, act] as const)));
-  const act = (event: KeyboardEvent): void => {
+  const press = (event: KeyboardEvent): void => {
     if (event.ctrlKey || event.metaKey || event.altKey || taken(event)) return;
     const found = acts.get((event.shiftKey && event.key.startsWith("Arrow") ? "Shift+" : "") + event.key);
     if (!found) return;
     event.preventDefault();
     found(event);
   };
-  document.addEventListener("keydown", act, { signal });
+  document.addEventListener("keydown", press, { signal });
 }
 
-/** Elements that have a meaning of their own for a key keep it. */
-function taken(event: KeyboardEvent): boolean {
-  if (!(event.target instanceof HTMLElement)) return false;
-  if (event.target.closest("dialog[open]")) return true;
-  if (event.target instanceof HTMLSelectElement) return true;
-  if (event.target instanceof HTMLInputElement) return event.target.type !== "checkbox" || event.key === " ";
-  const presses = event.key === " " || event.key === "Enter";
-  return presses && event.target.closest("button, a, summary") !== null;
+/** An element keeps the keys by which it is operated, but for the time line: the page's own keys move it as well. */
+function taken({ target, key }: KeyboardEvent): boolean {
+  if (!(target instanceof HTMLElement) || target.matches(".timeline input")) return false;
+  if (target.closest("dialog[open], select")) return true;
+  if (target.matches("input[type=range]")) return /^(Arrow|Page|Home|End)/.test(key);
+  if (target.matches("input")) return key === " ";
+  return (key === " " || key === "Enter") && target.closest("button, a, summary") !== null;
 }
 
 /** The list of keys, as a dialog that the browser opens and closes. */
@@ -171,7 +183,7 @@ export function fillHelp(dialog: HTMLDialogElement, keys: Key[]): void {
   dialog.replaceChildren(
     make("div", { class: "title" }, make("h2", { id: "help-title" }, "Keys"), close),
     make("table", {}, make("tbody", {}, ...rows, ...hints)),
-    make("p", {}, "Drag to orbit or pan, wheel or pinch to zoom, two fingers to pan."),
+    make("p", {}, "Drag to orbit (3D) or pan (2D), wheel or pinch to zoom, right button or two fingers to pan."),
   );
 }
 

@@ -6,31 +6,29 @@ import { type At, fillHelp, type Gestures, type Key, listen, modeKeys, Pointer }
 import type { PickAnswer, Vec3 } from "./protocol";
 import type { Viewer } from "./viewer";
 
-/** A click this far from an object, in CSS pixels, still picks it in 2D. */
-const REACH = 6;
-
-/** An object in the hand: where it was, and where it was taken. */
-interface Grip {
+/** An object that is dragged, in the world's frame. */
+interface Dragged {
   object: number;
+  /** Where it was when the drag began. */
   translation: Vec3;
+  /** The point of it that the pointer took, which stays under the pointer. */
   anchor: Vec3;
 }
 
 /** Connects the canvas and the keyboard with a viewer until it is closed. Returns the bar of modes. */
 export function interact(engine: Engine, viewer: Viewer, leave: (() => void) | null): HTMLElement {
-  const hand = new Hand(engine, viewer, () => pointer.mode);
-  const pointer: Pointer = new Pointer(byId<HTMLCanvasElement>("canvas"), byId("hint"), hand, viewer.signal);
+  const gestures = new StageGestures(engine, viewer, () => pointer.mode);
+  const pointer: Pointer = new Pointer(byId<HTMLCanvasElement>("canvas"), byId("hint"), gestures, viewer.signal);
   const tools = pointer.tools();
-  const keys = [...stageKeys(viewer, leave), ...modeKeys((mode) => pointer.choose(mode))];
-  listen(keys, viewer.signal);
-  fillHelp(byId<HTMLDialogElement>("help"), keys.slice(0, -4));
+  const keys = stageKeys(viewer, leave);
+  listen([...keys, ...modeKeys((mode) => pointer.choose(mode))], viewer.signal);
+  fillHelp(byId<HTMLDialogElement>("help"), keys);
   return tools;
 }
 
 /** The pointer's gestures as questions and moves. */
-class Hand implements Gestures {
-  /** What is dragged at the moment. */
-  private grip: Grip | null = null;
+class StageGestures implements Gestures {
+  private dragged: Dragged | null = null;
 
   constructor(
     private readonly engine: Engine,
@@ -38,7 +36,10 @@ class Hand implements Gestures {
     private readonly mode: () => string,
   ) {}
 
-  /** In 2D a ray is a drag, so that a click in that mode selects as in the others. */
+  /**
+   * A click under perspective is a ray from the camera. In 2D a ray is a drag, so that a click in that mode selects as in
+   * the others.
+   */
   click(at: At, second: boolean): void {
     const { camera } = this.viewer.view;
     const { from, direction } = camera.rayAt(at.x, at.y);
@@ -62,28 +63,28 @@ class Hand implements Gestures {
       const { object, point } = this.pick(at);
       if (object === null) return;
       const { translation } = this.engine.object(object);
-      this.grip = { object, translation, anchor: camera.flat ? this.point(at) : (point ?? translation) };
+      this.dragged = { object, translation, anchor: camera.flat ? this.point(at) : (point ?? translation) };
       this.viewer.player.pause();
       if (!this.viewer.inquiry.selected.includes(object)) this.viewer.inquiry.pick(object, false);
     });
-    return this.grip !== null;
+    return this.dragged !== null;
   }
 
-  /** The point that was taken stays under the pointer. */
+  /** The point that was taken stays under the pointer, at its distance from the plane of the screen. */
   move(to: At): void {
-    const { grip } = this;
-    if (!grip) return;
-    const point = this.viewer.view.camera.pointAt(to.x, to.y, grip.anchor);
-    const translation = grip.translation.map((part, index) => part + (point[index] ?? 0) - (grip.anchor[index] ?? 0));
-    this.viewer.attempt(() => this.viewer.player.take(this.engine.drag(grip.object, translation as Vec3)));
+    if (!this.dragged) return;
+    const { object, translation, anchor } = this.dragged;
+    const point = this.viewer.view.camera.pointAt(to.x, to.y, anchor);
+    const moved = translation.map((part, axis) => part + (point[axis] ?? 0) - (anchor[axis] ?? 0)) as Vec3;
+    this.viewer.attempt(() => this.viewer.player.take(this.engine.drag(object, moved)));
   }
 
   /** The object stays where it is: recordings take it back with the next step. */
   drop(): void {
-    this.grip = null;
+    this.dragged = null;
   }
 
-  /** A drag that means something else must not turn the camera. */
+  /** A disabled camera goes on to track the fingers, but does not move: see `Pointer`. */
   free(camera: boolean): void {
     this.viewer.view.camera.controls.enabled = camera;
   }
@@ -93,10 +94,10 @@ class Hand implements Gestures {
   }
 
   /** The object under a point of the window. */
-  private pick(at: At): PickAnswer {
+  private pick({ x, y, radius }: At): PickAnswer {
     const { camera } = this.viewer.view;
-    const { from, direction } = camera.rayAt(at.x, at.y);
-    return this.engine.pick(from, direction, REACH / camera.pixelsPerUnit());
+    const { from, direction } = camera.rayAt(x, y);
+    return this.engine.pick(from, direction, radius / camera.pixelsPerUnit());
   }
 
   /** The point of the world under a point of the window, in 2D. */
@@ -134,7 +135,7 @@ function stageKeys(viewer: Viewer, leave: (() => void) | null): Key[] {
     { keys: ["End"], text: "to the end (recordings)", act: () => seekable && player.follow() },
     {
       keys: [".", ","],
-      text: "next and last mark of the time line",
+      text: "next and previous mark of the time line",
       act: (event) => viewer.toMark(event.key === "." ? 1 : -1),
     },
     {

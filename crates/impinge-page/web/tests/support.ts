@@ -88,6 +88,8 @@ export interface Look {
   width?: number;
   height?: number;
   dark?: boolean;
+  /** A screen that fingers touch. */
+  touch?: boolean;
   /** With the engine of boxes instead of the module. */
   fake?: boolean;
 }
@@ -102,7 +104,11 @@ export async function visit(browser: Browser, address: string, look: Look = {}):
     const isThumbnail = message.location().url?.includes("/thumbnails/") ?? false;
     if (message.type() === "error" && !isThumbnail) errors.push(message.text());
   });
-  await page.setViewport({ width: look.width ?? 1180, height: look.height ?? 760 });
+  await page.setViewport({
+    width: look.width ?? 1180,
+    height: look.height ?? 760,
+    hasTouch: look.touch ?? false,
+  });
   await page.emulateMediaFeatures([
     { name: "prefers-color-scheme", value: look.dark ? "dark" : "light" },
     { name: "prefers-reduced-motion", value: "reduce" },
