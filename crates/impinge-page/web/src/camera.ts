@@ -1,6 +1,22 @@
 // The camera of a stage: perspective that orbits in 3D, orthographic that pans in 2D.
+//
+// Two frames occur. The world's is in f64. The stage's, in which three.js draws, is the world's shifted by the origin of
+// the stage, so that f32 has digits left where a scene is far from 0. `Vec3` is a point of the world, `Vector3` one of
+// the stage.
 
-import { MOUSE, OrthographicCamera, PerspectiveCamera, Plane, Raycaster, TOUCH, Vector2, Vector3 } from "three";
+import {
+  Box3,
+  MathUtils,
+  MOUSE,
+  OrthographicCamera,
+  PerspectiveCamera,
+  Plane,
+  Raycaster,
+  Sphere,
+  TOUCH,
+  Vector2,
+  Vector3,
+} from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Info, Vec3 } from "./protocol";
 
@@ -10,98 +26,105 @@ export interface WorldRay {
   direction: Vec3;
 }
 
+/** A point of the canvas in CSS pixels from its upper left corner. */
+export interface CanvasPoint {
+  x: number;
+  y: number;
+  /** Between -1 at the near plane and 1 at the far plane: less is nearer. */
+  depth: number;
+}
+
 /** Vertical field of view of the perspective camera, in degrees. */
 const FIELD = 38;
-/** The part of the view that the bounds may cover in 2D when they are fitted. */
-const FILL = 0.86;
+/** The tangent of half of it: half the height of what is visible at a distance of 1. */
+const HALF_HEIGHT = Math.tan(MathUtils.degToRad(FIELD / 2));
+/** The part of the height or of the width that fitted bounds cover, whichever they fill first. */
+const FILL = 0.9;
+/** Points farther from the centre of the bounds than this many radii are not framed with them. */
+const FAR = 2.5;
 
-/** Lengths are those of the world. Positions inside are relative to the origin of the stage, in which three.js draws. */
+/** Lengths are those of the world. */
 export class StageCamera {
   readonly camera: PerspectiveCamera | OrthographicCamera;
   readonly controls: OrbitControls;
   /** The world is 2D. */
   readonly flat: boolean;
-  /** The centre and the half diagonal of what is framed, relative to the origin. */
-  private readonly center = new Vector3();
-  /** Half the diagonal of the bounds. */
-  private radius = 1;
+  /** The bounds of the world. */
+  readonly box = new Box3();
+  /** Around the box: sizes of lights and grids are proportional to its radius. */
+  readonly sphere = new Sphere();
+  /** What `fit` framed: the bounds and some of what is drawn around them. */
+  private readonly framed = new Box3();
+  /** The camera was not moved since it was aimed. */
+  private isFitted = false;
   private readonly caster = new Raycaster();
   /** Width over height of the canvas. */
   private aspect = 1;
-  /** Half the height of what the orthographic camera sees at zoom 1. */
+  /** Half the height of what the orthographic camera covers at zoom 1. */
   private halfHeight = 1;
 
   constructor(
     info: Info,
-    private readonly origin: Vec3,
+    private origin: Vec3,
     private readonly canvas: HTMLCanvasElement,
   ) {
     this.flat = info.dimension === 2;
     this.camera = this.flat ? new OrthographicCamera() : new PerspectiveCamera(FIELD);
-    this.camera.up.set(...info.up);
-    this.frame(info.bounds);
+    this.camera.up.set(...info.up).normalize();
     this.controls = new OrbitControls(this.camera, canvas);
     this.configure();
-    this.fit();
+    this.frame(info.bounds, origin);
+    this.framed.copy(this.box);
   }
 
-  /** What `fit` frames; NaN and empty bounds count as a unit box. */
-  frame([least, greatest]: [Vec3, Vec3]): void {
-    const low = new Vector3(...this.relative(least));
-    const high = new Vector3(...this.relative(greatest));
-    this.center.addVectors(low, high).multiplyScalar(0.5);
-    this.radius = low.distanceTo(high) / 2;
-    if (!Number.isFinite(this.radius) || !Number.isFinite(this.center.lengthSq())) {
-      this.center.set(0, 0, 0);
-      this.radius = 1;
+  /** Sets the bounds of the world, and the origin of the stage. NaN and empty bounds count as a cube of half extent 1. */
+  frame([mins, maxs]: [Vec3, Vec3], origin: Vec3): void {
+    this.origin = origin;
+    this.box.set(this.relative(mins), this.relative(maxs));
+    if (!(this.box.getSize(new Vector3()).length() < Infinity) || this.box.isEmpty()) {
+      this.box.setFromCenterAndSize(new Vector3(), new Vector3(2, 2, this.flat ? 0 : 2));
     }
-    this.radius = Math.max(this.radius, 1e-12);
-    this.extent.subVectors(high, low);
+    this.box.getBoundingSphere(this.sphere);
+    // A world of one point has no size: what divides by the radius needs one.
+    this.sphere.radius = Math.max(this.sphere.radius, 1e-12);
   }
 
-  /** The size of the bounds along each axis. */
-  private readonly extent = new Vector3();
-
-  /** The point that is looked at, relative to the origin. */
-  get target(): Vector3 {
-    return this.controls.target;
+  /**
+   * Frames the bounds, and those of the points that are not far outside of them, such as the end of a cast: a ray may
+   * go on for ever. In 3D from a direction between the front, the right and above.
+   */
+  fit(points: Iterable<Vector3>): void {
+    const { center, radius } = this.sphere;
+    this.framed.copy(this.box);
+    for (const point of points) if (point.distanceTo(center) < FAR * radius) this.framed.expandByPoint(point);
+    this.aim();
   }
 
-  /** A length of the scene, to which sizes of lights and grids are proportional. */
-  get sceneRadius(): number {
-    return this.radius;
-  }
-
-  /** Frames the bounds from a direction between the front, the side and above. */
-  fit(): void {
-    this.controls.target.copy(this.center);
-    if (this.camera instanceof PerspectiveCamera) this.fitPerspective(this.camera);
-    else this.fitOrthographic(this.camera);
-    this.controls.update();
-    this.place();
-  }
-
-  /** In CSS pixels. */
+  /** In CSS pixels. What was fitted stays so until the reader moves the camera, as when a phone is turned. */
   resize(width: number, height: number): void {
     this.aspect = width / Math.max(height, 1);
     if (this.camera instanceof PerspectiveCamera) this.camera.aspect = this.aspect;
-    else this.spread(this.camera);
+    if (this.isFitted) this.aim();
+    else if (this.camera instanceof OrthographicCamera) this.spread(this.camera);
     this.camera.updateProjectionMatrix();
   }
 
   /** Keeps the near and the far plane around the scene; called before each picture. */
   place(): void {
     if (this.camera instanceof PerspectiveCamera) {
-      const distance = this.camera.position.distanceTo(this.center);
-      const reach = this.radius * 12;
-      this.camera.near = Math.max(distance - reach, Math.max(distance, this.radius) * 2e-3);
-      this.camera.far = distance + reach * 4;
+      const { center, radius } = this.sphere;
+      const distance = this.camera.position.distanceTo(center);
+      // Terrain and endless half-spaces go on beyond the bounds. The ratio of far to near stays below what 24 bits of
+      // depth resolve.
+      const extent = radius * 12;
+      this.camera.near = Math.max(distance - extent, Math.max(distance, radius) * 2e-3);
+      this.camera.far = distance + extent * 4;
     }
     this.camera.updateProjectionMatrix();
     this.camera.updateMatrixWorld();
   }
 
-  /** The world's ray under a point of the canvas, which is given in CSS pixels of the window. */
+  /** The world's ray under a point of the window, in CSS pixels. */
   rayAt(x: number, y: number): WorldRay {
     this.caster.setFromCamera(this.toDevice(x, y), this.camera);
     const { origin, direction } = this.caster.ray;
@@ -112,48 +135,48 @@ export class StageCamera {
     return { from: this.absolute(origin), direction: direction.toArray() };
   }
 
-  /** The point under a point of the canvas, in the plane through `anchor` that is parallel to the screen. */
+  /** The point under a point of the window, in the plane through `anchor` that is parallel to the screen. */
   pointAt(x: number, y: number, anchor: Vec3): Vec3 {
     this.caster.setFromCamera(this.toDevice(x, y), this.camera);
     const normal = this.camera.getWorldDirection(new Vector3());
-    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, new Vector3(...this.relative(anchor)));
+    const plane = new Plane().setFromNormalAndCoplanarPoint(normal, this.relative(anchor));
     const hit = this.caster.ray.intersectPlane(plane, new Vector3());
     if (!hit) return anchor;
     const [px, py, pz] = this.absolute(hit);
     return [px, py, this.flat ? 0 : pz];
   }
 
-  /** Where a point of the world is on the canvas, in CSS pixels; null behind the camera. */
-  project(at: Vec3): { x: number; y: number } | null {
-    const device = new Vector3(...this.relative(at)).project(this.camera);
-    if (device.z > 1) return null;
+  /** Where a point of the stage is on the canvas; null behind the camera. */
+  project(at: Vector3): CanvasPoint | null {
+    const device = at.clone().project(this.camera);
+    if (!(device.z <= 1)) return null;
     const { clientWidth, clientHeight } = this.canvas;
-    return { x: ((device.x + 1) / 2) * clientWidth, y: ((1 - device.y) / 2) * clientHeight };
+    return { x: ((device.x + 1) / 2) * clientWidth, y: ((1 - device.y) / 2) * clientHeight, depth: device.z };
   }
 
-  /** CSS pixels for a length of 1 at the target: what a world's size is on the screen. */
+  /** CSS pixels for a length of 1 at the target. */
   pixelsPerUnit(): number {
     const height = this.canvas.clientHeight;
     if (this.camera instanceof PerspectiveCamera) {
-      const distance = this.camera.position.distanceTo(this.controls.target);
-      return height / (2 * distance * Math.tan((FIELD * Math.PI) / 360));
+      return height / (2 * HALF_HEIGHT * this.camera.position.distanceTo(this.controls.target));
     }
     return (height / (2 * this.halfHeight)) * this.camera.zoom;
   }
 
-  /** Turns (3D) or shifts (2D) by keys: a step of 1 is an eighth of a right angle or of the view. */
+  /** Turns (3D) or shifts (2D) by keys: a step of 1 is an eighth of a right angle or of half the height. */
   nudge(right: number, up: number): void {
-    const offset = this.camera.position.clone().sub(this.controls.target);
-    const side = new Vector3().crossVectors(this.camera.up, offset).normalize();
+    const { position, up: above } = this.camera;
+    const offset = position.clone().sub(this.controls.target);
+    const side = new Vector3().crossVectors(above, offset).normalize();
     if (this.flat) {
       const length = this.halfHeight / this.camera.zoom / 8;
-      const shift = side.multiplyScalar(right * length).addScaledVector(this.camera.up, up * length);
-      this.camera.position.add(shift);
+      const shift = side.multiplyScalar(right * length).addScaledVector(above, up * length);
+      position.add(shift);
       this.controls.target.add(shift);
     } else {
-      offset.applyAxisAngle(this.camera.up, (right * Math.PI) / 16);
+      offset.applyAxisAngle(above, (right * Math.PI) / 16);
       offset.applyAxisAngle(side, (-up * Math.PI) / 16);
-      this.camera.position.addVectors(this.controls.target, offset);
+      position.addVectors(this.controls.target, offset);
     }
     this.controls.update();
   }
@@ -168,23 +191,34 @@ export class StageCamera {
     this.controls.update();
   }
 
-  /** Stops listening to the canvas. */
+  /** Removes the listeners of the canvas. */
   dispose(): void {
     this.controls.dispose();
   }
 
-  /** A point of the world as three.js has it. */
-  relative(at: Vec3): Vec3 {
-    return [at[0] - this.origin[0], at[1] - this.origin[1], at[2] - this.origin[2]];
+  /** A point of the world in the stage's frame. */
+  relative(at: Vec3): Vector3 {
+    return new Vector3(at[0] - this.origin[0], at[1] - this.origin[1], at[2] - this.origin[2]);
   }
 
-  /** A point of three.js as the world has it. */
+  /** A point of the stage in the world's frame. */
   private absolute(at: Vector3): Vec3 {
     return [at.x + this.origin[0], at.y + this.origin[1], at.z + this.origin[2]];
   }
 
+  /** Moves the camera to where it sees all of what is framed. */
+  private aim(): void {
+    if (this.camera instanceof PerspectiveCamera) this.fitPerspective(this.camera);
+    else this.fitOrthographic(this.camera);
+    this.controls.update();
+    // After the controls have reported the change.
+    this.isFitted = true;
+    this.place();
+  }
+
   /** In 2D a drag shifts the view; nothing turns it. */
   private configure(): void {
+    this.controls.addEventListener("change", () => (this.isFitted = false));
     this.controls.zoomToCursor = true;
     this.controls.screenSpacePanning = true;
     if (!this.flat) return;
@@ -193,22 +227,49 @@ export class StageCamera {
     this.controls.touches = { ONE: TOUCH.PAN, TWO: TOUCH.DOLLY_PAN };
   }
 
-  /** The ball around the bounds touches the nearer two edges of the view. */
+  /**
+   * The nearest position from which the box is within the view, in the middle of it.
+   *
+   * Let p be a corner relative to the centre, b the unit vector back to the camera, a an axis of the screen, t the tangent
+   * of half the field along a. From a distance d, shifted by s along a, the corner is visible where
+   * |p·a - s| <= t (d - p·b). With plus = max(p·a + t p·b) and minus = max(-p·a + t p·b) over the corners, the least d
+   * is (plus + minus) / 2t, where s = (plus - minus) / 2 puts a corner at either edge of the view.
+   */
   private fitPerspective(camera: PerspectiveCamera): void {
-    const narrow = Math.min(1, this.aspect);
-    const half = Math.atan(Math.tan((FIELD * Math.PI) / 360) * narrow);
-    const up = camera.up.clone().normalize();
-    // A horizontal direction that does not depend on which axis points up.
-    const front = Math.abs(up.z) > 0.5 ? new Vector3(0.55, -1, 0) : new Vector3(0.55, 0, 1);
-    const direction = front.normalize().addScaledVector(up, 0.42).normalize();
-    const distance = this.radius / Math.sin(half);
-    camera.position.copy(this.center).addScaledVector(direction, distance);
+    const back = viewDirection(camera.up);
+    const right = new Vector3().crossVectors(camera.up, back).normalize();
+    const axes = [
+      { axis: right, tangent: FILL * HALF_HEIGHT * this.aspect },
+      { axis: new Vector3().crossVectors(back, right), tangent: FILL * HALF_HEIGHT },
+    ];
+    const corners = cornersOf(this.framed).map((corner) => corner.sub(this.sphere.center));
+    const ends = (axis: Vector3, tangent: number): { plus: number; minus: number } => {
+      const end = (sign: number): number =>
+        Math.max(...corners.map((corner) => sign * corner.dot(axis) + tangent * corner.dot(back)));
+      return { plus: end(1), minus: end(-1) };
+    };
+    const distances = axes.map(({ axis, tangent }) => {
+      const { plus, minus } = ends(axis, tangent);
+      return (plus + minus) / (2 * tangent);
+    });
+    // Never within the bounds, even if they are a line towards the camera.
+    const distance = Math.max(1.2 * this.sphere.radius, ...distances);
+    const { target } = this.controls;
+    target.copy(this.sphere.center);
+    for (const { axis, tangent } of axes) {
+      // Along the axis that is not full, the corners are at the edges of a narrower view, whose tangent is a fixed point.
+      let { plus, minus } = ends(axis, tangent);
+      for (let round = 0; round < 8; round += 1) ({ plus, minus } = ends(axis, (plus + minus) / (2 * distance)));
+      target.addScaledVector(axis, (plus - minus) / 2);
+    }
+    camera.position.copy(target).addScaledVector(back, distance);
   }
 
   /** Looks down the z axis at the plane z = 0. */
   private fitOrthographic(camera: OrthographicCamera): void {
+    this.framed.getCenter(this.controls.target);
     camera.zoom = 1;
-    camera.position.copy(this.center).setZ(10);
+    camera.position.copy(this.controls.target).setZ(10);
     camera.near = 0;
     camera.far = 20;
     this.spread(camera);
@@ -216,17 +277,32 @@ export class StageCamera {
 
   /** The bounds fit into the view whatever its shape is; bounds without a size are as if they had one. */
   private spread(camera: OrthographicCamera): void {
-    const height = Math.max(this.extent.y, this.extent.x / this.aspect, this.radius * 1e-3);
-    this.halfHeight = Number.isFinite(height) ? height / 2 / FILL : 1;
+    const { x, y } = this.framed.getSize(new Vector3());
+    this.halfHeight = Math.max(y, x / this.aspect, this.sphere.radius * 1e-3) / 2 / FILL;
     camera.top = this.halfHeight;
     camera.bottom = -this.halfHeight;
     camera.left = -this.halfHeight * this.aspect;
     camera.right = this.halfHeight * this.aspect;
   }
 
-  /** From pixels of the window to the square from -1 to 1 in which cameras think. */
+  /** From pixels of the window to the square from -1 to 1 of normalized device coordinates, y up. */
   private toDevice(x: number, y: number): Vector2 {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     return new Vector2(((x - left) / width) * 2 - 1, 1 - ((y - top) / height) * 2);
   }
+}
+
+/** From the target to the camera, as a unit vector: 29 degrees to the right of the front, 23 degrees above it. */
+function viewDirection(up: Vector3): Vector3 {
+  // The front is -y where z points up, as in robotics, and otherwise +z, as in graphics.
+  const front = Math.abs(up.z) > 0.5 ? new Vector3(0.55, -1, 0) : new Vector3(0.55, 0, 1);
+  return front.normalize().addScaledVector(up, 0.42).normalize();
+}
+
+/** The bits of an index choose between the least and the greatest coordinate. */
+function cornersOf({ min, max }: Box3): Vector3[] {
+  return Array.from(
+    { length: 8 },
+    (_, bits) => new Vector3(bits & 1 ? max.x : min.x, bits & 2 ? max.y : min.y, bits & 4 ? max.z : min.z),
+  );
 }

@@ -1,10 +1,14 @@
-// Colours: bytes as the engine gives them, and the linear light in which is shaded.
+// Colours. The engine writes sRGB bytes; three.js shades in linear light and converts back when it writes a pixel.
 
-/** The linear light of each byte of an sRGB colour. */
-export const LINEAR = Float32Array.from({ length: 256 }, (_, byte) => {
-  const part = byte / 255;
-  return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
-});
+import { Color, SRGBColorSpace } from "three";
+
+const scratch = new Color();
+
+/** The linear light of each byte of an sRGB colour: a table, since a frame has three of them for each instance. */
+export const LINEAR = Float32Array.from(
+  { length: 256 },
+  (_, byte) => scratch.setRGB(byte / 255, 0, 0, SRGBColorSpace).r,
+);
 
 /** A colour of the engine, red in the lowest byte, as CSS writes it. */
 export function css(color: number): string {
@@ -12,5 +16,8 @@ export function css(color: number): string {
   return `rgb(${red} ${green} ${blue})`;
 }
 
-/** What the page itself draws: answers to the reader's questions. */
-export const ANSWER = { distance: "#0b7285", distanceDark: "#66d9e8", ray: "#1864ab", rayDark: "#74c0fc" };
+/** The sRGB bytes red, green, blue of a colour of the style sheet. */
+export function bytesOf(text: string): number[] {
+  const hex = scratch.set(text).getHex();
+  return [hex >>> 16, (hex >>> 8) & 255, hex & 255];
+}

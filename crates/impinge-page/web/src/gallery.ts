@@ -1,6 +1,6 @@
 // The gallery: a card for each sample.
 
-import { button, make } from "./dom";
+import { button, make, setText } from "./dom";
 import type { SampleEntry } from "./protocol";
 
 /** In the order of the buttons. */
@@ -10,49 +10,60 @@ const FILTERS = [
   { wanted: "3", label: "3D" },
 ];
 
-/** Fills the gallery; a card is a link, so that it opens by mouse, keyboard and in a new tab. */
-export function showGallery(room: HTMLElement, title: string, samples: SampleEntry[]): void {
-  const cards = samples.map((sample) => ({ sample, element: card(sample) }));
-  const grid = make("ul", { class: "cards" }, ...cards.map(({ element }) => element));
-  const filters = make("div", { class: "modes", role: "group", "aria-label": "Dimension" });
-  const count = make("p", { role: "status" });
-  const choose = (wanted: string): void => {
-    for (const { sample, element } of cards) element.hidden = wanted !== "all" && wanted !== String(sample.dimension);
-    for (const other of filters.children)
-      other.setAttribute("aria-pressed", String((other as HTMLElement).dataset.wanted === wanted));
-    count.textContent = `${cards.filter(({ element }) => !element.hidden).length} of ${cards.length} samples`;
-  };
-  for (const { wanted, label } of FILTERS) {
-    filters.append(button(label, () => choose(wanted), { "data-wanted": wanted }));
-  }
-  choose("all");
-  const head = make(
-    "div",
-    { class: "head" },
-    make("h1", {}, title),
-    make("p", {}, LEAD),
-    make("div", { class: "filter" }, filters, count),
-  );
-  room.replaceChildren(head, grid);
-}
-
 /** What a newcomer should know. */
 const LEAD =
   "Collision detection in 2D and 3D, computed in this page. Open a sample, click its objects, drag them, and ask why they touch.";
+
+/** Fills the gallery; a card is a link, so that it opens by mouse, keyboard and in a new tab. */
+export function showGallery(container: HTMLElement, title: string, samples: SampleEntry[]): void {
+  const cards = samples.map((sample) => ({ sample, element: card(sample) }));
+  const filters = make("div", { class: "modes", role: "group", "aria-label": "Dimension" });
+  const search = make("input", { type: "search", placeholder: "Search", "aria-label": "Search the samples" });
+  const count = make("p", { role: "status" });
+  let wanted = "all";
+  const update = (): void => {
+    const words = search.value.toLowerCase().split(/\s+/);
+    for (const { sample, element } of cards) element.hidden = !matches(sample, wanted, words);
+    const shown = cards.filter(({ element }) => !element.hidden).length;
+    setText(count, `${shown} of ${cards.length} samples`);
+    for (const other of filters.querySelectorAll("button"))
+      other.setAttribute("aria-pressed", String(other.dataset.wanted === wanted));
+  };
+  for (const filter of FILTERS) {
+    const choose = (): void => {
+      wanted = filter.wanted;
+      update();
+    };
+    filters.append(button(filter.label, choose, { "data-wanted": filter.wanted }));
+  }
+  search.addEventListener("input", update);
+  update();
+  container.replaceChildren(
+    make("h1", {}, title),
+    make("p", { class: "lead" }, LEAD),
+    make("div", { class: "filter" }, filters, search, count),
+    make("ul", { class: "cards" }, ...cards.map(({ element }) => element)),
+  );
+}
 
 /** The name of a sample in the address of the page, or null. */
 export function sampleInAddress(): string | null {
   return new URLSearchParams(location.hash.slice(1)).get("sample");
 }
 
-/** Title, two sentences and a picture. The link covers the card. */
-function card(sample: SampleEntry): HTMLElement {
+/** The sample has the dimension, and all the words in its texts. */
+function matches({ name, title, about, dimension }: SampleEntry, wanted: string, words: string[]): boolean {
+  const text = `${name} ${title} ${about}`.toLowerCase();
+  return (wanted === "all" || wanted === String(dimension)) && words.every((word) => text.includes(word));
+}
+
+/** A picture, a title and a few sentences. The link covers the card. */
+function card({ name, title, about, dimension }: SampleEntry): HTMLElement {
   const picture = make("div", { class: "picture", "aria-hidden": "true" });
-  const image = make("img", { alt: "", loading: "lazy", src: `thumbnails/${sample.name}.png` });
-  // Where there is no thumbnail the dimension stands in its place.
-  image.addEventListener("error", () => picture.replaceChildren(make("span", {}, `${sample.dimension}D`)));
-  picture.append(image);
-  const link = make("a", { href: `#sample=${encodeURIComponent(sample.name)}` }, sample.title);
-  const badge = make("span", { class: "badge" }, `${sample.dimension}D`);
-  return make("li", { class: "card" }, picture, make("h2", {}, link), badge, make("p", {}, sample.about));
+  const image = make("img", { alt: "", loading: "lazy", src: `thumbnails/${name}.png` });
+  // A page without its folder has no thumbnails: the badge stands alone.
+  image.addEventListener("error", () => image.remove());
+  picture.append(image, make("span", { class: "badge" }, `${dimension}D`));
+  const link = make("a", { href: `#sample=${encodeURIComponent(name)}` }, title);
+  return make("li", { class: "card" }, picture, make("h2", {}, link), make("p", {}, about));
 }

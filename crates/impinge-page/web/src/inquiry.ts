@@ -1,6 +1,6 @@
 // The reader's questions: what is selected, which ray is drawn, and the answers in panel and picture.
 
-import type { Engine } from "./engine";
+import { type Engine, EngineError } from "./engine";
 import { number } from "./format";
 import { type Links, objectPanel, pairPanel, rayPanel } from "./panels";
 import type { Info, Vec3 } from "./protocol";
@@ -70,10 +70,10 @@ export class Inquiry {
       const [a, b] = this.selected;
       if (a !== undefined && b !== undefined) return this.answerPair(a, b);
       if (a !== undefined) this.answerObject(a);
-      else this.write("", []);
+      else this.write("", () => []);
     } catch (error) {
-      const text = error instanceof Error ? error.message : String(error);
-      this.write(text, [document.createTextNode(text)]);
+      if (!(error instanceof EngineError)) throw error;
+      this.write(error.message, () => [document.createTextNode(error.message)]);
     }
     return [];
   }
@@ -117,11 +117,11 @@ export class Inquiry {
   }
 
   /** Writes the panel where it differs, so that what has the focus stays as long as it can. */
-  private write(key: string, content: Node[] | (() => Node[])): void {
+  private write(key: string, content: () => Node[]): void {
     if (key === this.written) return;
     this.written = key;
     const focus = [...this.panel.querySelectorAll("button")].indexOf(document.activeElement as HTMLButtonElement);
-    this.panel.replaceChildren(...(typeof content === "function" ? content() : content));
+    this.panel.replaceChildren(...content());
     this.panel.hidden = key === "";
     if (focus >= 0) this.panel.querySelectorAll("button")[focus]?.focus({ preventScroll: true });
   }

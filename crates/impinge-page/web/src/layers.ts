@@ -1,19 +1,10 @@
-// The layers of a frame as check boxes, with their colours as a legend.
+// The layers of a frame as check boxes, with their colours as a legend. The colours are the engine's; the style sheet
+// repeats them, since frames have those of visible layers only.
 
-import { css } from "./color";
 import { make } from "./dom";
-import type { Frame } from "./protocol";
 
-/** Something that the engine draws, or not. */
-interface Layer {
-  name: string;
-  /** What it draws, for people. */
-  label: string;
-  shown: boolean;
-}
-
-/** In the order of their keys; boxes and the tree are for those who want them. */
-const LAYERS: Layer[] = [
+/** In the order of their keys: the engine's name, what it draws, and whether it is visible at first. */
+const LAYERS = [
   { name: "object", label: "objects", shown: true },
   { name: "tight box", label: "tight boxes", shown: false },
   { name: "loosened box", label: "loosened boxes", shown: false },
@@ -25,66 +16,34 @@ const LAYERS: Layer[] = [
   { name: "query", label: "queries", shown: true },
   { name: "query hit", label: "hits of queries", shown: true },
 ];
+/** The engine's names of all layers. */
+export const LAYER_NAMES = LAYERS.map(({ name }) => name);
 
+/** The check boxes are the state. */
 export class Layers {
   readonly element = make("ul", { class: "layers" });
-  private readonly layers = LAYERS.map((layer) => ({ ...layer }));
-  /** The check box of each layer by its name. */
-  private readonly boxes = new Map<string, HTMLInputElement>();
+  private readonly boxes = LAYERS.map(({ shown }) => make("input", { type: "checkbox", checked: shown }));
 
-  constructor(private readonly changed: () => void) {
-    this.layers.forEach((layer, index) => this.element.append(this.row(layer, index)));
+  constructor(changed: () => void) {
+    this.element.append(...this.boxes.map((box, index) => row(box, index)));
+    this.element.addEventListener("change", changed);
   }
 
-  /** The names of the layers that are on, as the engine has them. */
+  /** The names of the layers that are on. */
   get shown(): string[] {
-    return this.layers.filter((layer) => layer.shown).map((layer) => layer.name);
+    return LAYER_NAMES.filter((_, index) => this.boxes[index]?.checked);
   }
 
-  /** Turns the layer of a key over: 1 is the first. */
+  /** Turns a layer on or off, as a click on its check box does. */
   toggle(index: number): void {
-    const layer = this.layers[index];
-    if (!layer) return;
-    layer.shown = !layer.shown;
-    const box = this.boxes.get(layer.name);
-    if (box) box.checked = layer.shown;
-    this.changed();
+    this.boxes[index]?.click();
   }
+}
 
-  /** Takes the legend's colours from what is drawn. */
-  learn({ layers, lines, points, triangles, payload }: Frame): void {
-    for (const { count, color, layer } of [triangles, points, lines]) {
-      const [colors, indices] = [payload.words(color), payload.words(layer)];
-      let last = -1;
-      for (let at = 0; at < count; at += 1) {
-        const index = indices[at] ?? 0;
-        // Layers come in runs: the first of each is enough.
-        if (index !== last) this.swatch(layers[index] ?? "", colors[at] ?? 0);
-        last = index;
-      }
-    }
-  }
-
-  /** Writes a colour where it differs. */
-  private swatch(name: string, color: number): void {
-    const swatch = this.boxes.get(name)?.nextElementSibling as HTMLElement | null;
-    const text = css(color);
-    if (swatch && swatch.dataset.color !== text) {
-      swatch.dataset.color = text;
-      swatch.style.background = text;
-    }
-  }
-
-  /** A check box, a colour, words and a key. */
-  private row(layer: Layer, index: number): HTMLElement {
-    const box = make("input", { type: "checkbox", checked: layer.shown });
-    box.addEventListener("change", () => {
-      layer.shown = box.checked;
-      this.changed();
-    });
-    this.boxes.set(layer.name, box);
-    const swatch = make("i", { class: `swatch ${layer.name.replace(" ", "-")}`, "aria-hidden": "true" });
-    const key = make("kbd", { "aria-hidden": "true" }, String((index + 1) % 10));
-    return make("li", {}, make("label", {}, box, swatch, layer.label, key));
-  }
+/** A check box, a colour, words and a key. */
+function row(box: HTMLInputElement, index: number): HTMLElement {
+  const { name, label } = LAYERS[index]!;
+  const swatch = make("i", { class: `swatch ${name.replace(" ", "-")}`, "aria-hidden": "true" });
+  const key = make("kbd", { "aria-hidden": "true" }, String((index + 1) % 10));
+  return make("li", {}, make("label", {}, box, swatch, label, key));
 }

@@ -15,7 +15,7 @@ import type {
 } from "./protocol";
 
 /** Events that a panel lists. */
-const MOST_EVENTS = 60;
+const MAX_EVENTS = 60;
 
 /** What a reader does by links in the panels. */
 export interface Links {
@@ -73,7 +73,7 @@ export function pairPanel(answer: PairAnswer, dimension: number, links: Links): 
   const count = answer.manifolds.reduce((sum, { contacts }) => sum + contacts.length, 0);
   return [
     title,
-    make("p", { class: why.touch ? "verdict touch" : "verdict apart" }, why.text),
+    make("p", { class: why.touch ? "result touch" : "result apart" }, why.text),
     tests(answer),
     terms(rows),
     ...(count > 0 ? [subheading(`${counted(answer.manifolds.length, "manifold")}, ${counted(count, "contact")}`)] : []),
@@ -95,14 +95,14 @@ export function rayPanel(hits: RayHit[], dimension: number, links: Links): Node[
   });
   return [
     heading("Ray"),
-    make("p", { class: "verdict" }, hits.length === 0 ? "It hits nothing." : counted(hits.length, "hit")),
+    make("p", { class: "result" }, hits.length === 0 ? "It hits nothing." : counted(hits.length, "hit")),
     list(rows),
   ];
 }
 
 /** What happened in the step that is shown. */
 export function eventList({ events, event_count: count }: Status, links: Links): HTMLElement {
-  const shown = events.slice(0, MOST_EVENTS);
+  const shown = events.slice(0, MAX_EVENTS);
   const rows = list(
     shown.map((event) => {
       const open = link(eventText(event), () => links.pair(event.a, event.b));

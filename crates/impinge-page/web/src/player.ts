@@ -6,9 +6,9 @@ import type { Info, Status } from "./protocol";
 /** Those that the reader can choose. */
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
 /** A picture that came late is caught up by at most so many steps. */
-const MOST_STEPS = 16;
+const MAX_STEPS = 16;
 /** The longest time that counts between two pictures, in seconds: a page that slept does not jump. */
-const LONGEST = 0.1;
+const MAX_PAUSE = 0.1;
 
 /** Steps of the world against the reader's clock. */
 export class Player {
@@ -113,14 +113,14 @@ export class Player {
       this.wanted = null;
       if (step !== this.status.step) this.take(this.engine.seek(step));
     }
-    if (this.playing) this.run(Math.min(seconds, LONGEST));
+    if (this.playing) this.run(Math.min(seconds, MAX_PAUSE));
   }
 
-  /** Takes the whole steps that are due. */
+  /** Takes the whole due steps. */
   private run(seconds: number): void {
     const step = this.info.time_step > 0 ? this.info.time_step : 1 / 60;
     this.owed += (seconds * this.speed) / step;
-    const steps = Math.min(Math.floor(this.owed), MOST_STEPS);
+    const steps = Math.min(Math.floor(this.owed), MAX_STEPS);
     if (steps === 0) return;
     this.owed = Math.min(this.owed - steps, 1);
     if (this.atEnd) {

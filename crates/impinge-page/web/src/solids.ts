@@ -1,6 +1,7 @@
 // The objects of a frame as instances: one draw of faces and one of edges for each form and opacity.
 
 import {
+  Box3,
   BufferAttribute,
   BufferGeometry,
   DynamicDrawUsage,
@@ -10,27 +11,38 @@ import {
   InstancedMesh,
   LineSegments,
   type Material,
+  Matrix4,
   MeshBasicMaterial,
   MeshLambertMaterial,
+  Quaternion,
   ShaderMaterial,
+  Vector3,
 } from "three";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
+import { grown, upload } from "./buffers";
 import { LINEAR } from "./color";
 import { type Form, Forms, type ScaledForm } from "./forms";
-import { writePose } from "./pose";
+import { ORDER } from "./order";
 import type { Frame, Vec3 } from "./protocol";
 
 /** Faces that meet at less than this angle, in radians, are shaded as one surface. */
 const CREASE = 0.6;
-/** Batches that no frame used for so many frames are released. */
-const PATIENCE = 240;
-const OPAQUE = 255;
-/** The key of a batch is its form times this, and its alpha. */
-const KEYS = 256;
+/** Batches without instances in so many frames are released: a sample that alternates keeps its batches. */
+const MAX_IDLE_FRAMES = 240;
+/** The alpha of opaque objects, and the number of alphas there are. */
+const [OPAQUE, ALPHAS] = [255, 256];
+/** In place of an object's number. */
+const NO_OBJECT = 0xffffffff;
 /** More instances than this cast no shadows. */
-const SHADOW_LIMIT = 3000;
+const MAX_SHADOWS = 3000;
 
-/** Batches by form and opacity. */
+// Of one instance at a time, so that none is allocated for each.
+const translation = new Vector3();
+const rotation = new Quaternion();
+const stretch = new Vector3();
+const pose = new Matrix4();
+
+/** Batches by form and opacity; the key of one is `form * ALPHAS + alpha`. */
 export class Solids {
   /** All batches, for the scene. */
   readonly group = new Group();
@@ -38,6 +50,8 @@ export class Solids {
   private readonly batches = new Map<number, Batch>();
   /** Frames so far: the clock of what is released. */
   private frames = 0;
+  /** Opposite corners of the boxes of shapes that are no objects, such as those at the end of a cast. */
+  private readonly corners: Vector3[] = [];
 
   constructor(private readonly flat: boolean) {}
 
@@ -51,13 +65,19 @@ export class Solids {
     this.frames += 1;
     this.receive(frame);
     for (const batch of this.batches.values()) batch.count = 0;
+    this.corners.length = 0;
     this.scatter(frame);
-    const shadows = !this.flat && frame.instances.count <= SHADOW_LIMIT;
+    const shadows = !this.flat && frame.instances.count <= MAX_SHADOWS;
     for (const [key, batch] of this.batches) {
       if (batch.count > 0) batch.used = this.frames;
       batch.show(shadows);
-      if (this.frames - batch.used > PATIENCE) this.release(key, batch);
+      if (this.frames - batch.used > MAX_IDLE_FRAMES) this.release(key, batch);
     }
+  }
+
+  /** What is drawn around the objects, for the camera. */
+  points(): Vector3[] {
+    return this.corners;
   }
 
   /** Releases the graphics memory. */
@@ -75,27 +95,29 @@ export class Solids {
   /** Writes each instance into its batch. */
   private scatter({ instances, payload }: Frame): void {
     const mesh = payload.words(instances.mesh);
+    const object = payload.words(instances.object);
     const color = payload.bytes(instances.color);
-    const pose = payload.floats(instances.pose);
+    const poses = payload.floats(instances.pose);
     let scaled: ScaledForm | undefined;
     let batch: Batch | undefined;
     let [lastMesh, lastKey] = [-1, -1];
     for (let index = 0; index < instances.count; index += 1) {
       const id = mesh[index] ?? 0;
-      // Neighbours mostly share a mesh, or at least a form: the maps are asked when they do not.
+      // Neighbours mostly share a mesh, or at least a form: the maps are searched where they do not.
       if (id !== lastMesh) scaled = this.forms.get(id);
       lastMesh = id;
       if (!scaled) continue;
-      const key = scaled.form.id * KEYS + (color[4 * index + 3] ?? OPAQUE);
+      const key = scaled.form.id * ALPHAS + (color[4 * index + 3] ?? OPAQUE);
       if (key !== lastKey || !batch) batch = this.batches.get(key) ?? this.begin(key, scaled.form);
       lastKey = key;
-      batch.add(pose, scaled.scale, color, index);
+      batch.add(poses, scaled.scale, color, index);
+      if (object[index] === NO_OBJECT) this.corners.push(...batch.lastBox());
     }
   }
 
   /** A batch for a key that has none. */
   private begin(key: number, form: Form): Batch {
-    const batch = new Batch(form, key % KEYS, this.flat);
+    const batch = new Batch(form, key % ALPHAS, this.flat);
     this.batches.set(key, batch);
     this.group.add(batch.faces, batch.edges);
     return batch;
@@ -111,7 +133,7 @@ export class Solids {
 
 /** The form of a batch's key. */
 function formOf(key: number): number {
-  return Math.floor(key / KEYS);
+  return Math.floor(key / ALPHAS);
 }
 
 /** All instances of one form with one opacity. */
@@ -123,33 +145,41 @@ class Batch {
   used = 0;
   /** Instances for which there is room. */
   private capacity = 0;
-  /** Poses in columns. */
+  /** Four columns of four numbers: scale, then rotation, then translation. */
   private matrix = new InstancedBufferAttribute(new Float32Array(0), 16);
-  /** Linear light. */
+  /** Red, green and blue of linear light. */
   private color = new InstancedBufferAttribute(new Float32Array(0), 3);
 
   constructor(data: Form, alpha: number, flat: boolean) {
     this.faces = new InstancedMesh(facesOf(data, flat), faceMaterial(alpha, flat), 0);
     this.faces.frustumCulled = false;
-    this.faces.renderOrder = alpha < OPAQUE ? 2 : 0;
-    this.edges = new LineSegments(edgesOf(data), edgeMaterial(alpha, data.triangles.length > 0 ? 0.3 : 1));
+    this.faces.renderOrder = alpha < OPAQUE ? ORDER.transparentSolids : ORDER.solids;
+    this.edges = new LineSegments(edgesOf(data), edgeMaterial(alpha, data.triangles.length > 0));
     this.edges.frustumCulled = false;
-    this.edges.renderOrder = flat ? 3 : 1;
-    this.grow(16);
+    this.edges.renderOrder = flat ? ORDER.edgesOfAreas : ORDER.edges;
+    this.grow();
   }
 
-  /** Adds an instance of a frame; the caller has them in any order. */
-  add(pose: Float32Array, scale: Vec3, color: Uint8Array, index: number): void {
-    if (this.count === this.capacity) this.grow(2 * this.capacity);
-    writePose(pose, 7 * index, scale, this.matrix.array as Float32Array, 16 * this.count);
+  /** Adds an instance of a frame: its pose is seven numbers, a translation and a unit quaternion x, y, z, w. */
+  add(poses: Float32Array, scale: Vec3, color: Uint8Array, index: number): void {
+    if (this.count === this.capacity) this.grow();
+    translation.fromArray(poses, 7 * index);
+    rotation.fromArray(poses, 7 * index + 3);
+    pose.compose(translation, rotation, stretch.fromArray(scale)).toArray(this.matrix.array, 16 * this.count);
     const into = this.color.array;
-    into[3 * this.count] = LINEAR[color[4 * index] ?? 0] ?? 0;
-    into[3 * this.count + 1] = LINEAR[color[4 * index + 1] ?? 0] ?? 0;
-    into[3 * this.count + 2] = LINEAR[color[4 * index + 2] ?? 0] ?? 0;
+    for (let part = 0; part < 3; part += 1) into[3 * this.count + part] = LINEAR[color[4 * index + part] ?? 0] ?? 0;
     this.count += 1;
   }
 
-  /** Sends what was added to the graphics memory. */
+  /** Opposite corners of the box around the instance that was added last. */
+  lastBox(): [Vector3, Vector3] {
+    const { geometry } = this.edges;
+    if (!geometry.boundingBox) geometry.computeBoundingBox();
+    const { min, max } = new Box3().copy(geometry.boundingBox ?? new Box3()).applyMatrix4(pose);
+    return [min, max];
+  }
+
+  /** Draws and uploads what was added. */
   show(shadows: boolean): void {
     const visible = this.count > 0;
     this.faces.visible = visible;
@@ -159,8 +189,7 @@ class Batch {
     this.faces.castShadow = shadows && !(this.faces.material as Material).transparent;
     this.faces.receiveShadow = shadows;
     this.edges.geometry.instanceCount = this.count;
-    send(this.matrix, this.count);
-    send(this.color, this.count);
+    for (const attribute of [this.matrix, this.color]) upload(attribute, this.count * attribute.itemSize);
   }
 
   dispose(): void {
@@ -171,8 +200,9 @@ class Batch {
     this.edges.material.dispose();
   }
 
-  /** Faces and edges read the same two buffers. */
-  private grow(capacity: number): void {
+  /** Room for one more instance at least; what was added stays. Faces and edges read the same two buffers. */
+  private grow(): void {
+    const capacity = grown(this.capacity, this.capacity + 1);
     this.matrix = larger(this.matrix, capacity);
     this.color = larger(this.color, capacity);
     this.capacity = capacity;
@@ -191,13 +221,6 @@ function larger(old: InstancedBufferAttribute, capacity: number): InstancedBuffe
   const array = new Float32Array(capacity * old.itemSize);
   array.set(old.array);
   return new InstancedBufferAttribute(array, old.itemSize).setUsage(DynamicDrawUsage);
-}
-
-/** Uploads the first instances only. */
-function send(attribute: InstancedBufferAttribute, count: number): void {
-  attribute.clearUpdateRanges();
-  attribute.addUpdateRange(0, count * attribute.itemSize);
-  attribute.needsUpdate = true;
 }
 
 /** Triangles; in 3D with normals that are smooth but for creases. */
@@ -231,7 +254,8 @@ function faceMaterial(alpha: number, flat: boolean): Material {
 }
 
 /** Edges in a darker tone of the object's colour; where there are no faces, the colour itself. */
-function edgeMaterial(alpha: number, tone: number): ShaderMaterial {
+function edgeMaterial(alpha: number, hasFaces: boolean): ShaderMaterial {
+  const opacity = hasFaces ? 0.35 + 0.4 * (alpha / OPAQUE) : alpha / OPAQUE;
   return new ShaderMaterial({
     vertexShader: `
       attribute mat4 instanceMatrix;
@@ -249,7 +273,7 @@ function edgeMaterial(alpha: number, tone: number): ShaderMaterial {
         gl_FragColor = vec4(tint * tone, opacity);
         #include <colorspace_fragment>
       }`,
-    uniforms: { opacity: { value: 0.35 + 0.4 * (alpha / OPAQUE) }, tone: { value: tone } },
+    uniforms: { opacity: { value: opacity }, tone: { value: hasFaces ? 0.3 : 1 } },
     transparent: true,
     depthWrite: false,
   });

@@ -1,8 +1,7 @@
 // Lines, points and triangles of a frame: one buffer of each, refilled for each frame.
 
 import {
-  BufferAttribute,
-  BufferGeometry,
+  type BufferGeometry,
   DoubleSide,
   DynamicDrawUsage,
   Group,
@@ -12,45 +11,57 @@ import {
   MeshBasicMaterial,
   Points,
   ShaderMaterial,
+  Vector3,
 } from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
+import { Buffers, grown, upload } from "./buffers";
 import { LINEAR } from "./color";
+import { ORDER } from "./order";
 import type { Frame } from "./protocol";
 
-/** These layers are drawn behind solids where they are behind them; the others lie on the surfaces of solids. */
+/**
+ * Layers that solids cover where these are nearer. The others lie on the surfaces of solids: rounding decides there which
+ * is nearer, so that they are drawn over all solids.
+ */
 const IN_DEPTH = new Set(["object", "tight box", "loosened box", "tree"]);
 
-/** Line segments of one width, in pixels. */
+/** The least diameter of a dot, in CSS pixels; half of it where there are more than so many, which would hide all else. */
+const [MIN_DOT, CROWD] = [5, 1000];
+
+/** Line segments of one width, in CSS pixels. */
 export class Lines {
   readonly object: LineSegments2;
   private readonly geometry = new LineSegmentsGeometry();
   private readonly material: LineMaterial;
-  /** Six numbers for each segment, relative to the origin. */
+  /** Six numbers for each segment, in the stage's frame. */
   private ends = new Float32Array(0);
-  /** Three parts of linear light for each segment. */
+  /** Red, green and blue of linear light for each segment. */
   private colors = new Float32Array(0);
   /** Segments since `begin`. */
   private count = 0;
 
-  constructor(width: number, depthTest: boolean) {
+  /** Lines in the order of `ORDER.lines` are tested for depth. */
+  constructor(width: number, order: number) {
+    const depthTest = order === ORDER.lines;
     this.material = new LineMaterial({ linewidth: width, vertexColors: true, depthTest, depthWrite: false });
     this.material.transparent = true;
     this.object = new LineSegments2(this.geometry, this.material);
+    // The bounding sphere of a buffer that changes each frame would have to be computed each frame.
     this.object.frustumCulled = false;
-    this.object.renderOrder = depthTest ? 4 : 6;
-    this.reserve(64);
+    this.object.renderOrder = order;
   }
 
-  /** Forgets the segments; the buffers stay. */
-  begin(): void {
+  /** Forgets the segments, and makes room for at most so many. */
+  begin(most: number): void {
     this.count = 0;
+    const capacity = grown(this.ends.length / 6, Math.max(most, 1));
+    if (6 * capacity > this.ends.length) this.reserve(capacity);
   }
 
-  /** Adds a segment: six numbers from `ends[at]`, and a colour's bytes from `bytes[color]`. */
+  /** Adds a segment: six numbers from `ends[at]`, and a colour's sRGB bytes from `bytes[color]`. */
   add(ends: ArrayLike<number>, at: number, bytes: ArrayLike<number>, color: number): void {
-    if (6 * this.count === this.ends.length) this.reserve(2 * this.count);
     for (let index = 0; index < 6; index += 1) this.ends[6 * this.count + index] = ends[at + index] ?? 0;
     for (let index = 0; index < 3; index += 1) {
       this.colors[3 * this.count + index] = LINEAR[bytes[color + index] ?? 0] ?? 0;
@@ -58,15 +69,18 @@ export class Lines {
     this.count += 1;
   }
 
-  /** Sends what was added to the graphics memory, and no more than that. */
+  /** The ends of the segments. */
+  points(): Generator<Vector3> {
+    return pointsOf(this.ends, 2 * this.count);
+  }
+
+  /** Draws and uploads what was added. */
   end(): void {
     this.object.visible = this.count > 0;
     this.geometry.instanceCount = this.count;
     for (const name of ["instanceStart", "instanceColorStart"]) {
       const { data } = this.geometry.getAttribute(name) as InterleavedBufferAttribute;
-      data.clearUpdateRanges();
-      data.addUpdateRange(0, this.count * data.stride);
-      data.needsUpdate = true;
+      upload(data, this.count * data.stride);
     }
   }
 
@@ -76,16 +90,13 @@ export class Lines {
     this.material.dispose();
   }
 
-  /** Makes room for so many segments. Both ends share a buffer, and so do both colours. */
+  /** New buffers. The layout is that of LineSegmentsGeometry: both ends share one, and both ends have one colour. */
   private reserve(capacity: number): void {
-    const [ends, colors] = [new Float32Array(6 * capacity), new Float32Array(3 * capacity)];
-    ends.set(this.ends);
-    colors.set(this.colors);
-    this.ends = ends;
-    this.colors = colors;
+    this.ends = new Float32Array(6 * capacity);
+    this.colors = new Float32Array(3 * capacity);
     this.geometry.dispose();
-    const segment = new InstancedInterleavedBuffer(ends, 6, 1).setUsage(DynamicDrawUsage);
-    const color = new InstancedInterleavedBuffer(colors, 3, 1).setUsage(DynamicDrawUsage);
+    const segment = new InstancedInterleavedBuffer(this.ends, 6, 1).setUsage(DynamicDrawUsage);
+    const color = new InstancedInterleavedBuffer(this.colors, 3, 1).setUsage(DynamicDrawUsage);
     this.geometry.setAttribute("instanceStart", new InterleavedBufferAttribute(segment, 3, 0));
     this.geometry.setAttribute("instanceEnd", new InterleavedBufferAttribute(segment, 3, 3));
     this.geometry.setAttribute("instanceColorStart", new InterleavedBufferAttribute(color, 3, 0));
@@ -93,7 +104,7 @@ export class Lines {
   }
 }
 
-/** Discs of a least and a greatest size on the screen, with a rim that sets them off from what is below. */
+/** Discs of a least and a greatest size on the screen, with a light rim that sets them off from solids. */
 export class Dots {
   readonly object: Points<BufferGeometry, ShaderMaterial>;
   private readonly buffers = new Buffers({ position: 3, size: 1, color: 3 });
@@ -101,7 +112,7 @@ export class Dots {
   constructor() {
     this.object = new Points(this.buffers.geometry, dotMaterial());
     this.object.frustumCulled = false;
-    this.object.renderOrder = 7;
+    this.object.renderOrder = ORDER.dots;
   }
 
   /** `pixels` of the screen for a length of 1, on a screen with so many pixels for one of CSS. */
@@ -113,13 +124,16 @@ export class Dots {
 
   /** Copies the points of a frame. */
   update({ points, payload }: Frame): void {
-    const [at, size] = [payload.floats(points.at), payload.floats(points.size)];
-    const color = payload.bytes(points.color);
+    const bytes = payload.bytes(points.color);
     this.buffers.reserve(points.count);
-    this.buffers.array("position").set(at);
-    this.buffers.array("size").set(size);
-    writeColors(color, points.count, 3, this.buffers.array("color"));
+    this.buffers.array("position").set(payload.floats(points.at));
+    this.buffers.array("size").set(payload.floats(points.size));
+    const colors = this.buffers.array("color");
+    for (let point = 0; point < points.count; point += 1) {
+      for (let part = 0; part < 3; part += 1) colors[3 * point + part] = LINEAR[bytes[4 * point + part] ?? 0] ?? 0;
+    }
     this.buffers.end(points.count);
+    this.object.material.uniforms.least!.value = points.count > CROWD ? MIN_DOT / 2 : MIN_DOT;
     this.object.visible = points.count > 0;
   }
 
@@ -140,10 +154,10 @@ export class Faces {
     material.depthTest = false;
     this.object = new Mesh(this.buffers.geometry, material);
     this.object.frustumCulled = false;
-    this.object.renderOrder = 5;
+    this.object.renderOrder = ORDER.areas;
   }
 
-  /** Copies the triangles of a frame; each has one colour, which its three corners repeat. */
+  /** Copies the triangles of a frame: nine numbers each, and one colour, which its three corners repeat. */
   update({ triangles, payload }: Frame): void {
     const bytes = payload.bytes(triangles.color);
     this.buffers.reserve(3 * triangles.count);
@@ -158,6 +172,11 @@ export class Faces {
     this.object.visible = triangles.count > 0;
   }
 
+  /** The corners of the triangles. The draw range is what `end` has set. */
+  points(): Generator<Vector3> {
+    return pointsOf(this.buffers.array("position"), this.buffers.geometry.drawRange.count);
+  }
+
   dispose(): void {
     this.buffers.geometry.dispose();
     this.object.material.dispose();
@@ -167,9 +186,9 @@ export class Faces {
 /** All of a frame that is not an object. */
 export class Strokes {
   readonly group = new Group();
-  // What lies in space, and what lies on surfaces, which would flicker if it were tested for depth.
-  private readonly behind = new Lines(1.5, true);
-  private readonly above = new Lines(2.25, false);
+  /** Lines of `IN_DEPTH`, and all others. */
+  private readonly behind = new Lines(1.5, ORDER.lines);
+  private readonly above = new Lines(2.25, ORDER.linesAbove);
   private readonly dots = new Dots();
   private readonly faces = new Faces();
 
@@ -182,19 +201,22 @@ export class Strokes {
     this.dots.scale(pixels, density);
   }
 
+  /** The ends of all lines and the corners of all triangles, in the stage's frame. */
+  *points(): Generator<Vector3> {
+    for (const part of [this.behind, this.above, this.faces]) yield* part.points();
+  }
+
   /** Replaces all by what a frame has. */
   update(frame: Frame): void {
     const { lines, payload } = frame;
     const inDepth = frame.layers.map((name) => IN_DEPTH.has(name));
     const [ends, color, layer] = [payload.floats(lines.ends), payload.bytes(lines.color), payload.words(lines.layer)];
-    this.behind.begin();
-    this.above.begin();
+    for (const batch of [this.behind, this.above]) batch.begin(lines.count);
     for (let index = 0; index < lines.count; index += 1) {
       const batch = inDepth[layer[index] ?? 0] ? this.behind : this.above;
       batch.add(ends, 6 * index, color, 4 * index);
     }
-    this.behind.end();
-    this.above.end();
+    for (const batch of [this.behind, this.above]) batch.end();
     this.dots.update(frame);
     this.faces.update(frame);
   }
@@ -204,53 +226,11 @@ export class Strokes {
   }
 }
 
-/** Attributes of a geometry that grow by doubling. */
-class Buffers {
-  readonly geometry = new BufferGeometry();
-  /** In vertices. */
-  private capacity = 0;
-
-  /** `sizes` has the numbers for a vertex of each attribute. */
-  constructor(private readonly sizes: Record<string, number>) {
-    this.reserve(64);
-  }
-
-  /** Grows if it must; what was written is lost, since each frame writes all. */
-  reserve(count: number): void {
-    if (count <= this.capacity) return;
-    this.capacity = Math.max(count, 2 * this.capacity);
-    this.geometry.dispose();
-    for (const [name, size] of Object.entries(this.sizes)) {
-      const attribute = new BufferAttribute(new Float32Array(size * this.capacity), size);
-      this.geometry.setAttribute(name, attribute.setUsage(DynamicDrawUsage));
-    }
-  }
-
-  /** The numbers of an attribute, to be written in place. */
-  array(name: string): Float32Array {
-    return this.geometry.getAttribute(name).array as Float32Array;
-  }
-
-  /** Draws so many vertices, and sends them. */
-  end(count: number): void {
-    this.geometry.setDrawRange(0, count);
-    for (const [name, size] of Object.entries(this.sizes)) {
-      const attribute = this.geometry.getAttribute(name) as BufferAttribute;
-      attribute.clearUpdateRanges();
-      attribute.addUpdateRange(0, size * count);
-      attribute.needsUpdate = true;
-    }
-  }
+function* pointsOf(numbers: Float32Array, count: number): Generator<Vector3> {
+  for (let point = 0; point < count; point += 1) yield new Vector3().fromArray(numbers, 3 * point);
 }
 
-/** Bytes of red, green, blue and alpha as linear light; alpha is left out. */
-function writeColors(bytes: Uint8Array, count: number, size: number, into: Float32Array): void {
-  for (let index = 0; index < count; index += 1) {
-    for (let part = 0; part < 3; part += 1) into[size * index + part] = LINEAR[bytes[4 * index + part] ?? 0] ?? 0;
-  }
-}
-
-/** Points with a size in the world that stay legible: from 6 to 11 pixels wide. */
+/** Points with a size in the world that stay legible: from `least` to 11 CSS pixels wide. */
 function dotMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: `
@@ -258,21 +238,22 @@ function dotMaterial(): ShaderMaterial {
       attribute vec3 color;
       uniform float pixels;
       uniform float density;
+      uniform float least;
       varying vec3 tint;
       void main() {
         tint = color;
         gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-        gl_PointSize = clamp(size * pixels, 6.0, 11.0) * density;
+        gl_PointSize = clamp(size * pixels, least, 11.0) * density;
       }`,
     fragmentShader: `
       varying vec3 tint;
       void main() {
-        float reach = 2.0 * length(gl_PointCoord - 0.5);
-        if (reach > 1.0) discard;
-        gl_FragColor = vec4(reach > 0.72 ? mix(tint, vec3(1.0), 0.75) : tint, 1.0);
+        float radius = 2.0 * length(gl_PointCoord - 0.5);
+        if (radius > 1.0) discard;
+        gl_FragColor = vec4(radius > 0.72 ? mix(tint, vec3(1.0), 0.75) : tint, 1.0);
         #include <colorspace_fragment>
       }`,
-    uniforms: { pixels: { value: 1 }, density: { value: 1 } },
+    uniforms: { pixels: { value: 1 }, density: { value: 1 }, least: { value: MIN_DOT } },
     transparent: true,
     depthTest: false,
     depthWrite: false,

@@ -1,16 +1,19 @@
-// The time line: a slider over the steps, with marks where something happened.
+// The time line: a slider over the steps, in front of marks where something happened.
+//
+// The slider is the browser's own, with its pointer, touch and assistive technology. Its thumb is as wide as both margins
+// of the marks together, so that its middle is above the mark of its step.
 
 import { make } from "./dom";
 import type { Mark } from "./protocol";
 
 /** Marks closer than this, in CSS pixels, are drawn as one. */
 const BIN = 4;
-/** Left and right of the track, so that its ends can be taken. */
+/** Left and right of the marks: half the width of the thumb, which the style sheet has. */
 const PAD = 10;
 /** In CSS pixels; the style sheet has the same. */
 const HEIGHT = 58;
 /** From top to bottom: added, removed and changed; started; the track; stopped; proximities and queries. */
-const ROWS = { changed: 9, track: 31, queries: 51 };
+const ROWS = { changed: 8, track: HEIGHT / 2, queries: 50 };
 /** The length of the longest bar. */
 const BAR = 13;
 
@@ -18,22 +21,22 @@ const BAR = 13;
 const KINDS = ["started", "stopped", "proximities", "added", "removed", "changed", "queries"] as const;
 /** How often each kind of thing happened. */
 type Counts = Record<(typeof KINDS)[number], number>;
+const NOTHING = Object.fromEntries(KINDS.map((kind) => [kind, 0])) as Counts;
 
 export class Timeline {
-  readonly element: HTMLElement;
-  private readonly canvas = make("canvas");
+  readonly element = make("div", { class: "timeline" });
+  private readonly canvas = make("canvas", { "aria-hidden": "true" });
+  private readonly slider = make("input", { type: "range", min: 0, step: 1, value: 0, "aria-label": "Step" });
   private readonly tip = make("span", { class: "tip", "aria-hidden": "true", hidden: true });
-  /** Sums of marks by their place on the track. */
+  /** Sums of marks by their bin on the track. */
   private bins = new Map<number, Counts>();
   /** In order of the steps. */
   private marks: Mark[] = [];
   private steps = 0;
-  private step = 0;
 
-  constructor(private readonly seek: (step: number) => void) {
-    this.element = make("div", { class: "timeline", role: "slider", tabindex: 0, "aria-label": "Step" });
-    this.element.append(this.canvas, this.tip);
-    this.element.addEventListener("pointerdown", (event) => this.press(event));
+  constructor(seek: (step: number) => void) {
+    this.element.append(this.canvas, this.slider, this.tip);
+    this.slider.addEventListener("input", () => seek(this.slider.valueAsNumber));
     this.element.addEventListener("pointermove", (event) => this.hover(event));
     this.element.addEventListener("pointerleave", () => (this.tip.hidden = true));
     new ResizeObserver(() => this.layout()).observe(this.element);
@@ -43,27 +46,25 @@ export class Timeline {
   setMarks(steps: number, marks: Mark[]): void {
     this.steps = steps;
     this.marks = marks;
-    this.element.setAttribute("aria-valuemin", "0");
-    this.element.setAttribute("aria-valuemax", String(steps));
+    this.slider.max = String(steps);
     this.layout();
   }
 
-  /** Moves the head, and says the step to assistive technology. */
+  /** Moves the head. */
   setStep(step: number): void {
-    this.step = step;
-    this.element.setAttribute("aria-valuenow", String(step));
-    this.element.setAttribute("aria-valuetext", `step ${step} of ${this.steps}`);
-    this.draw();
+    this.slider.valueAsNumber = step;
+    this.slider.setAttribute("aria-valuetext", `step ${step} of ${this.steps}`);
+    this.slider.style.setProperty("--played", String(this.part(step)));
   }
 
   /** The step of the mark after this one, or before it; null where there is none. */
   neighbour(step: number, direction: 1 | -1): number | null {
-    const steps = this.marks.map((mark) => mark.step);
-    const found = direction > 0 ? steps.find((other) => other > step) : steps.findLast((other) => other < step);
-    return found ?? null;
+    const found =
+      direction > 0 ? this.marks.find((mark) => mark.step > step) : this.marks.findLast((mark) => mark.step < step);
+    return found?.step ?? null;
   }
 
-  /** Draws track, marks and head; colours are those of the style sheet. */
+  /** Draws the marks; colours are those of the style sheet. */
   draw(): void {
     const context = this.canvas.getContext("2d");
     if (!context) return;
@@ -72,24 +73,25 @@ export class Timeline {
     context.clearRect(0, 0, this.width, HEIGHT);
     const style = getComputedStyle(this.element);
     const color = (name: string): string => style.getPropertyValue(`--${name}`).trim();
-    this.drawTrack(context, color);
     for (const [bin, counts] of this.bins) drawMark(context, PAD + (bin + 0.5) * BIN, counts, color);
-    this.drawHead(context, color);
   }
 
   private get width(): number {
     return this.element.clientWidth;
   }
 
-  /** Where a step is, in CSS pixels from the left. */
-  private x(step: number): number {
-    return PAD + (this.steps === 0 ? 0 : step / this.steps) * (this.width - 2 * PAD);
+  /** How far a step is, from 0 at the first to 1 at the last. */
+  private part(step: number): number {
+    return this.steps === 0 ? 0 : step / this.steps;
   }
 
-  /** The step under the pointer, between the first and the last. */
-  private stepAt(event: PointerEvent): number {
-    const part = (event.clientX - this.element.getBoundingClientRect().left - PAD) / (this.width - 2 * PAD);
-    return Math.round(Math.max(0, Math.min(part, 1)) * this.steps);
+  /** From the left end of the track, in CSS pixels. */
+  private x(step: number): number {
+    return this.part(step) * (this.width - 2 * PAD);
+  }
+
+  private binOf(step: number): number {
+    return Math.floor(this.x(step) / BIN);
   }
 
   /** Sums the marks of each few pixels, so that drawing costs what the width is. */
@@ -99,66 +101,27 @@ export class Timeline {
     this.canvas.height = Math.round(HEIGHT * density);
     this.bins = new Map();
     for (const mark of this.marks) {
-      const bin = Math.floor((this.x(mark.step) - PAD) / BIN);
-      const sum = this.bins.get(bin) ?? {
-        started: 0,
-        stopped: 0,
-        proximities: 0,
-        added: 0,
-        removed: 0,
-        changed: 0,
-        queries: 0,
-      };
+      const bin = this.binOf(mark.step);
+      const sum = this.bins.get(bin) ?? { ...NOTHING };
       for (const kind of KINDS) sum[kind] += mark[kind];
       this.bins.set(bin, sum);
     }
     this.draw();
   }
 
-  /** The part that was played has the accent's colour. */
-  private drawTrack(context: CanvasRenderingContext2D, color: (name: string) => string): void {
-    context.lineCap = "round";
-    context.lineWidth = 3;
-    stroke(context, [PAD, ROWS.track, this.width - PAD, ROWS.track], color("line"));
-    stroke(context, [PAD, ROWS.track, this.x(this.step), ROWS.track], color("accent"));
-  }
-
-  /** The present step. */
-  private drawHead(context: CanvasRenderingContext2D, color: (name: string) => string): void {
-    const x = this.x(this.step);
-    context.lineWidth = 1.5;
-    stroke(context, [x, 2, x, HEIGHT - 2], color("accent"));
-    context.beginPath();
-    context.arc(x, ROWS.track, 6.5, 0, 2 * Math.PI);
-    context.fillStyle = color("accent");
-    context.fill();
-    context.strokeStyle = color("panel");
-    context.lineWidth = 2;
-    context.stroke();
-  }
-
-  /** Captures the pointer, so that a drag goes on outside of the element. */
-  private press(event: PointerEvent): void {
-    if (event.button !== 0) return;
-    this.element.setPointerCapture(event.pointerId);
-    this.seek(this.stepAt(event));
-  }
-
-  /** Says what happened under the pointer, and scrubs while it is pressed. */
+  /** Names what happened under the pointer. */
   private hover(event: PointerEvent): void {
-    const step = this.stepAt(event);
-    if (event.buttons & 1) this.seek(step);
+    const part = (event.clientX - this.element.getBoundingClientRect().left - PAD) / (this.width - 2 * PAD);
+    const step = Math.round(Math.max(0, Math.min(part, 1)) * this.steps);
     this.tip.hidden = false;
     this.tip.textContent = [`step ${step}`, ...this.happened(step)].join(" · ");
     const half = this.tip.offsetWidth / 2;
-    const x = Math.max(half, Math.min(this.x(step), this.width - half));
-    this.tip.style.left = `${x}px`;
+    this.tip.style.left = `${Math.max(half, Math.min(PAD + this.x(step), this.width - half))}px`;
   }
 
-  /** The marks that share their place with a step, in words. */
+  /** The marks that share the bin of a step, in words. */
   private happened(step: number): string[] {
-    const bin = Math.floor((this.x(step) - PAD) / BIN);
-    const counts = this.bins.get(bin);
+    const counts = this.bins.get(this.binOf(step));
     if (!counts) return [];
     return KINDS.filter((kind) => counts[kind] > 0).map((kind) => describe(kind, counts[kind]));
   }

@@ -1,111 +1,109 @@
 // The picture of a stage: light, grid, objects, strokes, and the answers to the reader's questions.
 
-import {
-  Color,
-  DirectionalLight,
-  GridHelper,
-  HemisphereLight,
-  type LineBasicMaterial,
-  PCFSoftShadowMap,
-  Quaternion,
-  Scene,
-  Vector3,
-  WebGLRenderer,
-} from "three";
+import { Color, DirectionalLight, HemisphereLight, PCFSoftShadowMap, Scene, Vector3, WebGLRenderer } from "three";
+import { Axes } from "./axes";
 import { StageCamera } from "./camera";
-import { ANSWER, css } from "./color";
-import { Labels, type PlacedText } from "./labels";
+import { bytesOf, css } from "./color";
+import { Labels } from "./labels";
+import { Grid } from "./grid";
+import { ORDER } from "./order";
 import type { Frame, Info, Vec3 } from "./protocol";
 import { Solids } from "./solids";
 import { Lines, Strokes } from "./strokes";
 
-/** More texts of a frame than this hide what they name, and none is shown. */
-const CROWD = 24;
-
-/** A line that answers a question, and the text at its middle. */
+/** A line that answers a question, and the text at its middle. Its colour is that of the style sheet for its kind. */
 export interface AnswerLine {
   ends: [Vec3, Vec3];
   kind: "distance" | "ray";
   text?: string;
 }
 
-/** Draws a stage. Positions of frames are relative to an origin, which the camera knows too. */
+/**
+ * Draws a stage. Positions of frames are in the stage's frame, those of answers in the world's: see `camera.ts`.
+ *
+ * A picture is drawn where something changed: `update` after a frame, `answer` after a question, then `render`.
+ */
 export class View {
   readonly camera: StageCamera;
   /** The objects. */
   readonly solids: Solids;
   private readonly scene = new Scene();
   private readonly strokes = new Strokes();
-  /** Lines that answer questions lie above all else. */
-  private readonly answers = new Lines(3, false);
+  private readonly answers = new Lines(3, ORDER.answers);
   private readonly labels: Labels;
-  private readonly light = new DirectionalLight(0xffffff, 2.1);
-  private readonly grid: GridHelper;
-  /** Texts of the engine, and those of the page, which come first where there are too many. */
-  private frameTexts: PlacedText[] = [];
-  private answerTexts: PlacedText[] = [];
+  private readonly axes: Axes | null;
+  private readonly light = new DirectionalLight(0xffffff, 2);
+  private readonly grid = new Grid();
   /** Kept so that another colour scheme can draw them again. */
   private lines: AnswerLine[] = [];
-  /** The reader's scheme. */
-  private dark = false;
-  /** The most pixels for one of CSS. */
+  /** The greatest number of pixels for one of CSS. */
   private density = 2;
+  private readonly up: Vector3;
+  /** What camera, light and grid are laid out for. */
+  private bounds: Info["bounds"];
 
   constructor(
     private readonly renderer: WebGLRenderer,
     info: Info,
-    private readonly origin: Vec3,
+    private origin: Vec3,
     layer: HTMLElement,
   ) {
+    layer.replaceChildren();
     this.camera = new StageCamera(info, origin, renderer.domElement);
     this.solids = new Solids(this.camera.flat);
     this.labels = new Labels(layer);
-    this.grid = grid(info, this.camera);
+    this.axes = this.camera.flat ? null : new Axes(layer);
+    this.up = new Vector3(...info.up).normalize();
+    this.bounds = info.bounds;
     this.scene.add(this.grid, this.solids.group, this.strokes.group, this.answers.object);
-    this.lightScene(info.up);
+    if (!this.camera.flat) this.addLights();
+    this.frame(this.bounds);
     this.theme();
     this.resize();
-    this.camera.fit();
+  }
+
+  /** Camera, light and grid are laid out for a world of these bounds. The view stays until it is fitted. */
+  frame(bounds: Info["bounds"]): void {
+    this.bounds = bounds;
+    this.camera.frame(bounds, this.origin);
+    this.grid.fit(this.camera, this.up);
+    this.placeLight();
+  }
+
+  /** Brings the world and what is drawn around it into the view. */
+  fit(): void {
+    this.camera.fit([...this.solids.points(), ...this.strokes.points()]);
   }
 
   /** Draws another frame; the picture follows with `render`. */
   update(frame: Frame): void {
-    // The camera reads the same three numbers; they settle when the stage has its first object.
-    this.origin.splice(0, 3, ...frame.origin);
+    const hasMoved = frame.origin.some((part, axis) => part !== this.origin[axis]);
+    this.origin = frame.origin;
     this.solids.update(frame);
     this.strokes.update(frame);
-    const { origin } = this;
-    const labels = frame.labels.length > CROWD ? [] : frame.labels;
-    this.frameTexts = labels.map(({ at, text, color }) => ({
-      at: [at[0] + origin[0], at[1] + origin[1], at[2] + origin[2]],
-      text,
-      color: css(color),
-    }));
-    this.labels.set([...this.answerTexts, ...this.frameTexts]);
+    this.labels.set(frame.labels.map(({ at, text, color }) => ({ at: new Vector3(...at), text, color: css(color) })));
+    this.light.shadow.needsUpdate = true;
+    // The origin settles when the stage has its first object: nothing was visible that could jump.
+    if (!hasMoved) return;
+    this.frame(this.bounds);
+    this.fit();
   }
 
   /** Replaces the lines that answer questions. */
   answer(lines: AnswerLine[]): void {
     this.lines = lines;
-    this.answers.begin();
-    for (const { ends, kind } of lines) {
-      const { r, g, b } = new Color(this.answerColor(kind));
-      const bytes = new Color(r, g, b)
-        .convertLinearToSRGB()
-        .toArray()
-        .map((part) => Math.round(part * 255));
-      this.answers.add(
-        ends.flatMap((end) => this.camera.relative(end)),
-        0,
-        bytes,
-        0,
-      );
-    }
+    const placed = lines.map(({ ends, kind, text }) => {
+      const [start, end] = ends.map((at) => this.camera.relative(at)) as [Vector3, Vector3];
+      return { start, end, color: styleOf(`--${kind}`), text };
+    });
+    this.answers.begin(lines.length);
+    for (const { start, end, color } of placed) this.answers.add([...start, ...end], 0, bytesOf(color), 0);
     this.answers.end();
-    this.answerTexts = lines.flatMap(({ ends, kind, text }) =>
-      text ? [{ at: middle(ends), text, color: this.answerColor(kind) }] : [],
+    this.labels.setAnswers(
+      placed.flatMap(({ start, end, color, text }) =>
+        text ? [{ at: start.clone().lerp(end, 0.5), text, color }] : [],
+      ),
     );
-    this.labels.set([...this.answerTexts, ...this.frameTexts]);
   }
 
   /** Draws the picture once. */
@@ -114,6 +112,7 @@ export class View {
     this.strokes.scale(this.camera.pixelsPerUnit(), this.renderer.getPixelRatio());
     this.renderer.render(this.scene, this.camera.camera);
     this.labels.place(this.camera);
+    this.axes?.place(this.camera);
   }
 
   /** Takes over the size of the canvas, which the style sheet gives. */
@@ -124,18 +123,17 @@ export class View {
     this.camera.resize(clientWidth, clientHeight);
   }
 
-  /** Reads the colours of the page, which follow the reader's scheme. */
+  /** Reads the colours of the style sheet, which follow the reader's scheme. */
   theme(): void {
-    const style = getComputedStyle(document.documentElement);
-    this.dark = matchMedia("(prefers-color-scheme: dark)").matches;
-    this.scene.background = new Color(style.getPropertyValue("--canvas").trim());
-    (this.grid.material as LineBasicMaterial).color.set(style.getPropertyValue("--grid").trim());
+    this.scene.background = new Color(styleOf("--canvas"));
+    this.grid.tint = styleOf("--grid");
     this.answer(this.lines);
   }
 
-  /** Draws without shadows and with a pixel for each of CSS, where drawing takes too long. */
+  /** Draws without shadows and grid and with a pixel for each of CSS, where drawing takes too long. */
   simplify(): void {
     this.light.castShadow = false;
+    this.grid.visible = false;
     this.density = 1;
     this.resize();
   }
@@ -148,74 +146,50 @@ export class View {
     this.grid.dispose();
     this.light.dispose();
     this.camera.dispose();
-    this.labels.set([]);
-    this.labels.place(this.camera);
-  }
-
-  /** Dark enough on light ground, light enough on dark ground. */
-  private answerColor(kind: AnswerLine["kind"]): string {
-    return this.dark ? ANSWER[`${kind}Dark`] : ANSWER[kind];
   }
 
   /** Light from the sky and one lamp, which casts soft shadows. */
-  private lightScene(up: Vec3): void {
-    if (this.camera.flat) return;
-    const sky = new HemisphereLight(0xffffff, 0xc9cdd6, 2);
-    sky.position.set(...up);
-    const radius = this.camera.sceneRadius;
+  private addLights(): void {
+    const sky = new HemisphereLight(0xffffff, 0xb8bec9, 1.7);
+    sky.position.copy(this.up);
     const { light } = this;
-    const target = this.camera.target;
-    const side = Math.abs(up[2]) > 0.5 ? new Vector3(0.6, -0.35, 0) : new Vector3(0.6, 0, 0.35);
-    light.target.position.copy(target);
-    light.position.copy(target).addScaledVector(side.addScaledVector(new Vector3(...up), 1), 2 * radius);
     light.castShadow = true;
     light.shadow.mapSize.set(2048, 2048);
     light.shadow.radius = 4;
+    // Contacts below a solid must stay legible in its shadow.
     light.shadow.intensity = 0.45;
-    light.shadow.normalBias = radius * 2e-3;
-    const { camera } = light.shadow;
-    [camera.left, camera.right, camera.top, camera.bottom] = [-radius, radius, radius, -radius].map((x) => 1.2 * x) as [
-      number,
-      number,
-      number,
-      number,
-    ];
-    camera.near = 0.1 * radius;
-    camera.far = 5 * radius;
+    // Shadows change with the frame, not with the camera: orbiting draws the objects once for each picture, not twice.
+    light.shadow.autoUpdate = false;
     this.scene.add(sky, light, light.target);
+  }
+
+  /** The lamp is above the right front of the world; the box of its shadows holds the world. */
+  private placeLight(): void {
+    const { center, radius } = this.camera.sphere;
+    const side = Math.abs(this.up.z) > 0.5 ? new Vector3(0.6, -0.35, 0) : new Vector3(0.6, 0, 0.35);
+    this.light.target.position.copy(center);
+    this.light.position.copy(center).addScaledVector(side.add(this.up), 2 * radius);
+    const { shadow } = this.light;
+    // About two texels of the map, in lengths of the world: without it surfaces shade themselves in stripes.
+    shadow.normalBias = radius * 2e-3;
+    // The box lies along the light: wide enough for the ball around the world, from before the lamp to behind the world.
+    const half = 1.2 * radius;
+    Object.assign(shadow.camera, { left: -half, right: half, top: half, bottom: -half });
+    Object.assign(shadow.camera, { near: 0.1 * radius, far: 5 * radius });
+    shadow.camera.updateProjectionMatrix();
+    shadow.needsUpdate = true;
   }
 }
 
 /** The renderer of the page: one for all stages, since browsers allow few. */
 export function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer {
-  const renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: false });
+  const renderer = new WebGLRenderer({ canvas, antialias: true });
   renderer.shadowMap.enabled = true;
   renderer.shadowMap.type = PCFSoftShadowMap;
   return renderer;
 }
 
-/** A faint grid below the bounds in 3D, behind them in 2D; its cells measure a power of ten. */
-function grid(info: Info, camera: StageCamera): GridHelper {
-  const cell = 10 ** Math.floor(Math.log10(Math.max(camera.sceneRadius, 1e-30)));
-  const cells = 60;
-  const helper = new GridHelper(cell * cells, cells, 0xffffff, 0xffffff);
-  const material = helper.material as LineBasicMaterial;
-  material.vertexColors = false;
-  material.transparent = true;
-  material.opacity = 0.6;
-  material.depthWrite = false;
-  helper.renderOrder = -1;
-  const normal = camera.flat ? new Vector3(0, 0, 1) : new Vector3(...info.up).normalize();
-  helper.quaternion.copy(new Quaternion().setFromUnitVectors(new Vector3(0, 1, 0), normal));
-  const low = new Vector3(...camera.relative(info.bounds[0]));
-  const depth = camera.flat ? -1 : low.dot(normal) - camera.sceneRadius * 2e-3;
-  const center = camera.target.clone().addScaledVector(normal, -camera.target.dot(normal));
-  center.set(...(center.toArray().map((part) => Math.round(part / cell) * cell) as Vec3));
-  helper.position.copy(center.addScaledVector(normal, Number.isFinite(depth) ? depth : 0));
-  return helper;
-}
-
-/** Where the text of a line stands. */
-function middle([a, b]: [Vec3, Vec3]): Vec3 {
-  return [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2];
+/** A colour that the style sheet names. */
+function styleOf(name: string): string {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

@@ -9,7 +9,7 @@ import { Inquiry } from "./inquiry";
 import { Layers } from "./layers";
 import { eventList, eventText, readoutList } from "./panels";
 import { Player } from "./player";
-import type { Frame, Info, Status } from "./protocol";
+import type { Info, Status } from "./protocol";
 import { Transport } from "./transport";
 import { View } from "./view";
 
@@ -19,6 +19,9 @@ const PANEL_PAUSE = 120;
 const SUMMARY_PAUSE = 1500;
 /** Pictures that take longer than this, in milliseconds, on the average are drawn more simply. */
 const SLOW = 60;
+
+/** What is out of date once the world has changed. */
+const ALL = { frame: true, picture: true, panels: true };
 
 /** Owns what belongs to a stage until `close`. Nothing is drawn while nothing changes. */
 export class Viewer {
@@ -38,7 +41,7 @@ export class Viewer {
   /** Running average of the time between pictures while the world moves. */
   private pace = 0;
   /** What differs from the engine's state or from the camera. */
-  private stale = { frame: true, picture: true, panels: true };
+  private stale = { ...ALL };
   /** When things were done last, in milliseconds. */
   private last = { time: 0, panels: 0, summary: 0 };
 
@@ -55,7 +58,8 @@ export class Viewer {
     this.form = new ControlForm(info.controls, (name, value) => this.control(name, value));
     const first = engine.frame(this.layers.shown, [], 0);
     this.view = new View(renderer, info, first.origin, byId("labels"));
-    this.draw(first);
+    this.view.update(first);
+    this.view.fit();
     this.transport = new Transport(byId("transport"), this.player);
     this.panels(selection);
     this.view.camera.controls.addEventListener("change", () => (this.stale.picture = true));
@@ -74,7 +78,7 @@ export class Viewer {
 
   /** The frame, the picture and the panels are made anew. */
   refresh(): void {
-    this.stale = { frame: true, picture: true, panels: true };
+    this.stale = { ...ALL };
     this.last.panels = 0;
   }
 
@@ -83,9 +87,9 @@ export class Viewer {
     this.stale.picture = true;
   }
 
-  /** Frames the world. */
+  /** Brings the world into the view. */
   fit(): void {
-    this.view.camera.fit();
+    this.view.fit();
     this.redraw();
   }
 
@@ -106,7 +110,7 @@ export class Viewer {
   grow(info: Info): void {
     this.player.grow(info);
     this.transport.grow();
-    if (this.player.following) this.view.camera.frame(info.bounds);
+    this.view.frame(info.bounds);
   }
 
   /** The live recording's stream ended. */
@@ -129,9 +133,9 @@ export class Viewer {
     this.attempt(() => this.player.take(this.engine.control(name, value)));
   }
 
-  /** The engine's state changed: all is out of date. */
+  /** The engine's state changed. */
   private take(status: Status): void {
-    this.stale = { frame: true, picture: true, panels: true };
+    this.stale = { ...ALL };
     this.form.update(status.controls);
     this.transport.update();
     if (status.diverged) this.complain(status.diverged);
@@ -158,7 +162,7 @@ export class Viewer {
   private bringUpToDate(time: number): void {
     if (this.stale.frame) {
       this.stale.frame = false;
-      this.draw(this.engine.frame(this.layers.shown, this.inquiry.selected, this.view.solids.known));
+      this.view.update(this.engine.frame(this.layers.shown, this.inquiry.selected, this.view.solids.known));
       this.view.answer(this.inquiry.answer());
     }
     if (this.stale.picture) {
@@ -166,12 +170,6 @@ export class Viewer {
       this.view.render();
     }
     if (this.stale.panels && time - this.last.panels > PANEL_PAUSE) this.write(time);
-  }
-
-  /** Reads a frame, before the next call to the engine. */
-  private draw(frame: Frame): void {
-    this.view.update(frame);
-    this.layers.learn(frame);
   }
 
   /** Writes the panel of the world. */
@@ -207,12 +205,7 @@ export class Viewer {
       .map((text) => make("p", { class: "about" }, text));
     const world = make("section", { class: "world", "aria-label": "World" }, ...about, this.counts, this.form.element);
     world.append(this.readouts, this.events);
-    const layers = make(
-      "details",
-      { class: "sheet", open: innerWidth > 720 },
-      make("summary", {}, "Layers"),
-      this.layers.element,
-    );
+    const layers = make("details", { open: innerWidth > 720 }, make("summary", {}, "Layers"), this.layers.element);
     byId("panels").replaceChildren(selection, world, layers);
   }
 
@@ -226,7 +219,7 @@ export class Viewer {
   /** The reader's colour scheme changed. */
   private recolor(): void {
     this.view.theme();
-    this.transport.update();
+    this.transport.timeline.draw();
     this.stale.picture = true;
   }
 }

@@ -2,9 +2,9 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import type { Browser } from "puppeteer-core";
+import type { Browser, Page } from "puppeteer-core";
 import type { Vec3 } from "../src/protocol";
-import { projection2, projection3, silhouette } from "./project";
+import { corners, projection2, projection3, silhouette } from "./project";
 import { findBrowser, golden, launch, settle, textOf, until, visit, write } from "./support";
 
 const path = findBrowser();
@@ -17,6 +17,13 @@ const BOUNDS2: [Vec3, Vec3] = [
   [11, 15, 0],
 ];
 let browser: Browser;
+
+/** The texts in the picture that did not give way. */
+function labels(page: Page): Promise<(string | null)[]> {
+  return page.$$eval("#labels span", (elements) =>
+    elements.filter(({ style }) => style.visibility === "visible").map(({ textContent }) => textContent),
+  );
+}
 
 before(async () => {
   if (path) browser = await launch(path);
@@ -61,30 +68,82 @@ test("boxes in 2D cover the pixels that the fitted bounds say", options, async (
   await page.close();
 });
 
-test("boxes in 3D lie within the projection of their bounds and nearly fill it", options, async () => {
+/** Of the recording at its first step. */
+const BOUNDS3: [Vec3, Vec3] = [
+  [-0.5, 0, -0.5],
+  [5, 7, 5],
+];
+
+/** How far the solids are within the projection of the fitted bounds: left, right, above, below. */
+async function margins(page: Page): Promise<number[]> {
+  const spots = corners(BOUNDS3).map(await projection3(page, BOUNDS3));
+  const [xs, ys] = [spots.map(({ x }) => x), spots.map(({ y }) => y)];
+  const { low, high } = await silhouette(page, "solid");
+  return [low.x - Math.min(...xs), Math.max(...xs) - high.x, low.y - Math.min(...ys), Math.max(...ys) - high.y];
+}
+
+test("boxes in 3D nearly fill their bounds, which are fitted again until the view is moved", options, async () => {
   const { page } = await visit(browser, recording, { fake: true });
   await until(page, /step 0/);
+  for (const width of [1180, 800, 600]) {
+    await page.setViewport({ width, height: 760 });
+    await settle(page);
+    const found = await margins(page);
+    assert.ok(
+      found.every((margin) => margin > -4 && margin < 40),
+      `margins ${found.join(", ")} at a width of ${width}`,
+    );
+  }
+  await page.keyboard.press("-");
   await settle(page);
-  const [low, high]: [Vec3, Vec3] = [
-    [-0.5, 0, -0.5],
-    [5, 7, 5],
-  ];
-  const project = await projection3(page, [low, high]);
-  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((bits) =>
-    project([0, 1, 2].map((axis) => ((bits >> axis) & 1 ? high : low)[axis]!) as Vec3),
-  );
-  const [xs, ys] = [corners.map(({ x }) => x), corners.map(({ y }) => y)];
-  const seen = await silhouette(page, "solid");
-  const margins = [
-    seen.low.x - Math.min(...xs),
-    Math.max(...xs) - seen.high.x,
-    seen.low.y - Math.min(...ys),
-    Math.max(...ys) - seen.high.y,
-  ];
-  assert.ok(
-    margins.every((margin) => margin > -4 && margin < 40),
-    `margins ${margins.join(", ")}`,
-  );
+  const { low, high } = await silhouette(page, "solid");
+  await page.setViewport({ width: 660, height: 760 });
+  await settle(page);
+  const moved = await silhouette(page, "solid");
+  assert.ok(Math.abs(moved.high.x - moved.low.x - (high.x - low.x)) < 4, "the reader's distance stays");
+  await page.close();
+});
+
+test("texts that would overlap give way, always the same ones", options, async () => {
+  const shown: string[][] = [];
+  for (const _ of [1, 2]) {
+    const { page } = await visit(browser, `${samples}#sample=texts2:60`, { fake: true });
+    await until(page, /60 objects/);
+    await settle(page);
+    const boxes = await page.$$eval("#labels span", (elements) =>
+      elements
+        .filter(({ style }) => style.visibility === "visible")
+        .map((element) => ({ text: element.textContent ?? "", ...element.getBoundingClientRect().toJSON() })),
+    );
+    for (const [index, one] of boxes.entries()) {
+      for (const other of boxes.slice(index + 1)) {
+        const apart =
+          one.right <= other.left || other.right <= one.left || one.bottom <= other.top || other.bottom <= one.top;
+        assert.ok(apart, `${one.text} overlaps ${other.text}`);
+      }
+    }
+    assert.ok(boxes.length >= 8 && boxes.length < 60, `${boxes.length} of 60 texts`);
+    shown.push(boxes.map(({ text }) => text));
+    // Nearer, there is room for all that is left in the view.
+    for (const key of "++++++++++++") await page.keyboard.press(key as "+");
+    await settle(page);
+    assert.ok((await labels(page)).length > 2, "some remain");
+    await page.close();
+  }
+  assert.deepEqual(shown[0], shown[1]);
+});
+
+test("the gallery is searched by words and by dimension", options, async () => {
+  const { page } = await visit(browser, samples, { fake: true });
+  const titles = (): Promise<string[]> =>
+    page.$$eval(".card:not([hidden]) h2", (elements) => elements.map(({ innerText }) => innerText));
+  await page.waitForSelector(".card");
+  assert.deepEqual(await titles(), ["Boxes in 2D", "Boxes in 3D"]);
+  await page.type("input[type=search]", "drag BOXES 3d");
+  assert.deepEqual(await titles(), ["Boxes in 3D"], "all words, in any order");
+  await page.click("[data-wanted='2']");
+  assert.deepEqual(await titles(), []);
+  assert.match(await textOf(page, ".filter"), /0 of 2 samples/);
   await page.close();
 });
 
@@ -101,7 +160,7 @@ test("two clicks give the distance of two boxes", options, async () => {
   await page.keyboard.up("Shift");
   await page.waitForFunction(() => document.querySelector(".selection h2")?.textContent?.startsWith("Pair"));
   assert.match(await textOf(page, ".selection"), /Pair of 0 and 4[\s\S]*distance\s+5\b/);
-  assert.equal(await textOf(page, "#labels span:not([hidden])"), "5", "the length stands at the line");
+  assert.deepEqual(await labels(page), ["5", "normal"], "the length stands at the line");
   assert.equal((await page.$$(".tests .pass")).length, 3);
   assert.equal((await page.$$(".tests .fail")).length, 1);
   await page.keyboard.press("Escape");
@@ -167,7 +226,9 @@ test("the time line is a slider that is dragged", options, async () => {
   await page.mouse.move(x(180), box.y + 30, { steps: 4 });
   await until(page, /^step 180 /);
   await page.mouse.up();
-  assert.equal(await page.$eval(".timeline", (element) => element.getAttribute("aria-valuenow")), "180");
+  assert.equal(await page.$eval(".timeline input", (element) => element.value), "180");
+  await page.keyboard.press("PageUp");
+  await until(page, /^step 170 /);
   await page.close();
 });
 

@@ -1,8 +1,9 @@
 // A small engine of boxes that do not turn, with the exports of the real one. It serves to look at the page and to measure
-// its drawing without the cost of collision detection; what is asked of it has answers in closed form.
+// its drawing without the cost of collision detection; what is asked of it has answers in closed form. `texts2:60` is
+// `boxes2:60` with a text at each box.
 
 import type { Exports } from "../src/engine";
-import type { Control, FrameText, Section, Vec3 } from "../src/protocol";
+import type { Control, FrameText, Label, Section, Vec3 } from "../src/protocol";
 
 interface Box {
   at: Vec3;
@@ -11,6 +12,8 @@ interface Box {
 
 /** A world that is a function of the step. */
 interface Stage {
+  /** Each box has a text. */
+  isNamed: boolean;
   dimension: 2 | 3;
   steps: number | null;
   boxes: (step: number) => Box[];
@@ -18,7 +21,8 @@ interface Stage {
 
 /** So many boxes in a square or a cube; `name` is `boxes2:400` or `boxes3:10000`. */
 function makeStage(name: string, steps: number | null): Stage {
-  const dimension = name.startsWith("boxes2") ? 2 : 3;
+  const isNamed = name.startsWith("texts");
+  const dimension = name.includes("2:") ? 2 : 3;
   const count = Number(name.split(":")[1] ?? 60);
   const side = Math.ceil(count ** (1 / dimension));
   const home = (index: number, step: number): Vec3 => {
@@ -28,7 +32,7 @@ function makeStage(name: string, steps: number | null): Stage {
   };
   const half: Vec3 = dimension === 2 ? [0.5, 0.5, 0] : [0.5, 0.5, 0.5];
   const boxes = (step: number): Box[] => Array.from({ length: count }, (_, index) => ({ at: home(index, step), half }));
-  return { dimension, steps, boxes };
+  return { isNamed, dimension, steps, boxes };
 }
 
 /** Gap between two boxes along each axis, negative where they overlap. */
@@ -185,10 +189,15 @@ class FakeEngine {
         color: writer.words([0xff3c50ff]),
         layer: writer.words([0]),
       },
-      labels: [{ at: top, text: "normal", color: 0xff3c50ff, layer: 1 }],
+      labels: [{ at: top, text: "normal", color: 0xff3c50ff, layer: 1 }, ...this.names(boxes)],
       layers: ["contact", "normal"],
     };
     return { text, payload: writer.bytes() };
+  }
+
+  private names(boxes: Box[]): Label[] {
+    if (!this.stage.isNamed) return [];
+    return boxes.map(({ at }, index) => ({ at, text: `number ${index}`, color: 0xff3cc8ff, layer: 0 }));
   }
 
   /** The box that a line of sight meets first, by its slabs. */

@@ -10,6 +10,9 @@ import type { AddressInfo } from "node:net";
 import { after, before, test } from "node:test";
 import type { Browser, Page } from "puppeteer-core";
 import type { Vec3 } from "../src/protocol";
+import { css } from "../src/color";
+import { loadEngine } from "../src/engine";
+import { LAYER_NAMES } from "../src/layers";
 import { type Projection, projection2, projection3, silhouette } from "./project";
 import { fill, findBrowser, findModule, golden, launch, settle, textOf, until, visit, write } from "./support";
 
@@ -97,6 +100,30 @@ test("recordings of every shape open and run to their end without an error", opt
   }
 });
 
+test("the legend has the colours in which the engine draws", { skip: !wasm }, async () => {
+  const engine = await loadEngine(Uint8Array.from(wasm!));
+  const style = readFileSync("page.css", "utf8");
+  const found = new Set<string>();
+  for (const dimension of [2, 3] as const) {
+    const { steps } = engine.open({ kind: "recording", bytes: golden(dimension) });
+    for (let step = 1; step <= steps!; step += 1) {
+      engine.seek(step);
+      const { layers, lines, points, triangles, payload } = engine.frame(LAYER_NAMES, [], 0);
+      for (const { count, color, layer } of [lines, points, triangles]) {
+        const [colors, indices] = [payload.words(color), payload.words(layer)];
+        for (let at = 0; at < count; at += 1) found.add(`${layers[indices[at]!]}: ${css(colors[at]!)}`);
+      }
+    }
+  }
+  const swatch = (layer: string): string =>
+    new RegExp(`\\.swatch\\.${layer.replace(" ", "-")} \\{ background: (.*?); \\}`).exec(style)?.[1] ?? "";
+  for (const one of found) {
+    const [layer, color] = one.split(": ") as [string, string];
+    assert.equal(swatch(layer), color, layer);
+  }
+  assert.ok(found.size >= 7, [...found].join(", "));
+});
+
 test("balls have the distance that their centres say, at each step, forwards and backwards", options, async () => {
   const { page, errors } = await visit(browser, recorded(2));
   await until(page, /^step 1 of 40: 4 objects/);
@@ -165,7 +192,7 @@ test("a ball in 3D is picked where the camera has it, and the picture covers the
   const xs = floor.map(({ x }) => x);
   assert.ok(
     Math.abs(seen.low.x - Math.min(...xs)) < 5 && Math.abs(seen.high.x - Math.max(...xs)) < 5,
-    JSON.stringify(seen),
+    `${JSON.stringify(seen)} is not from ${Math.min(...xs)} to ${Math.max(...xs)}`,
   );
   await clickAt(page, project, [2, 0.5, 0]);
   await selected(page, /resting ball/);

@@ -22,27 +22,52 @@ async function canvasOf(page: Page): Promise<Rectangle> {
   return box;
 }
 
-/** Of a world in 2D whose bounds were fitted: they fill 86 % of the height or of the width. */
+/** The part of the canvas that fitted bounds cover. */
+const FILL = 0.9;
+
+/** Of a world in 2D whose bounds were fitted: they fill the height or the width. */
 export async function projection2(page: Page, [low, high]: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);
-  const scale = 0.86 * Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
+  const scale = FILL * Math.min(width / (high[0] - low[0]), height / (high[1] - low[1]));
   const [cx, cy] = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
   return (at) => ({ x: x + width / 2 + (at[0] - cx) * scale, y: y + height / 2 - (at[1] - cy) * scale });
 }
 
-/** Of a world in 3D with y up: the ball around its bounds touches the edges of a field of 38 degrees. */
-export async function projection3(page: Page, [low, high]: [Vec3, Vec3]): Promise<Projection> {
+/** The corners of a box. */
+export function corners([low, high]: [Vec3, Vec3]): Vec3[] {
+  return [0, 1, 2, 3, 4, 5, 6, 7].map(
+    (bits) => [0, 1, 2].map((axis) => ((bits >> axis) & 1 ? high : low)[axis]!) as Vec3,
+  );
+}
+
+/**
+ * Of a world in 3D with y up: its bounds are in the middle of a field of 38 degrees and fill the height or the width. The
+ * page solves for the camera; here it is found by trial: centred, then nearer or farther, until nothing changes.
+ */
+export async function projection3(page: Page, bounds: [Vec3, Vec3]): Promise<Projection> {
   const { x, y, width, height } = await canvasOf(page);
-  const aspect = width / height;
-  const camera = new PerspectiveCamera(38, aspect, 0.01, 1000);
-  const center = new Vector3(...low).add(new Vector3(...high)).divideScalar(2);
-  const radius = new Vector3(...high).distanceTo(new Vector3(...low)) / 2;
-  const half = Math.atan(Math.tan((19 * Math.PI) / 180) * Math.min(1, aspect));
-  const front = new Vector3(0.55, 0, 1).normalize();
-  const direction = front.add(new Vector3(0, 0.42, 0)).normalize();
-  camera.position.copy(center).addScaledVector(direction, radius / Math.sin(half));
-  camera.lookAt(center);
-  camera.updateMatrixWorld();
+  const camera = new PerspectiveCamera(38, width / height, 0.01, 1000);
+  const points = corners(bounds).map((corner) => new Vector3(...corner));
+  const back = new Vector3(0.55, 0, 1).normalize().setY(0.42).normalize();
+  const right = new Vector3(0, 1, 0).cross(back).normalize();
+  const up = new Vector3().crossVectors(back, right);
+  const target = points[0]!.clone().add(points[7]!).divideScalar(2);
+  let distance = 10 * points[0]!.distanceTo(points[7]!);
+  for (let trial = 0; trial < 200; trial += 1) {
+    camera.position.copy(target).addScaledVector(back, distance);
+    camera.lookAt(target);
+    camera.updateMatrixWorld();
+    const devices = points.map((point) => point.clone().project(camera));
+    const ends = (axis: "x" | "y"): [number, number] => {
+      const parts = devices.map((device) => device[axis]);
+      return [Math.min(...parts), Math.max(...parts)];
+    };
+    const [[left, rightmost], [bottom, top]] = [ends("x"), ends("y")];
+    const half = distance * Math.tan((19 * Math.PI) / 180);
+    target.addScaledVector(right, ((left + rightmost) / 2) * half * camera.aspect);
+    target.addScaledVector(up, ((bottom + top) / 2) * half);
+    distance *= Math.max((rightmost - left) / 2, (top - bottom) / 2) / FILL;
+  }
   return (at) => {
     const device = new Vector3(...at).project(camera);
     return { x: x + ((device.x + 1) / 2) * width, y: y + ((1 - device.y) / 2) * height };
@@ -59,7 +84,7 @@ export interface Silhouette {
 /** Reads the colours of a screenshot in the page itself, which can decode it. */
 export async function silhouette(page: Page, kind: "blue" | "solid"): Promise<Silhouette> {
   const { x, y, width, height } = await canvasOf(page);
-  await page.addStyleTag({ content: "#hint, #labels { visibility: hidden }" });
+  await page.addStyleTag({ content: "#hint, #labels { display: none }" });
   const picture = await page.screenshot({ clip: { x, y, width, height }, encoding: "base64" });
   const found = await page.evaluate(readPicture, picture, kind);
   const shift = (spot: Spot): Spot => ({ x: spot.x + x, y: spot.y + y });
