@@ -1,4 +1,4 @@
-// The objects of a frame as instances: one draw of faces and one of edges for each form and opacity.
+// The objects of a frame as instances: one draw of faces and one of edges for each mesh and opacity.
 
 import {
   Box3,
@@ -21,9 +21,8 @@ import {
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { grown, upload } from "./buffers";
 import { LINEAR } from "./color";
-import { type Form, Forms, type ScaledForm } from "./forms";
 import { ORDER } from "./order";
-import type { Frame, Vec3 } from "./protocol";
+import type { Frame } from "./protocol";
 
 /** Faces that meet at less than this angle, in radians, are shaded as one surface. */
 const CREASE = 0.6;
@@ -39,26 +38,40 @@ const MAX_SHADOWS = 3000;
 // Of one instance at a time, so that none is allocated for each.
 const translation = new Vector3();
 const rotation = new Quaternion();
-const stretch = new Vector3();
+const scale = new Vector3();
 const pose = new Matrix4();
 
-/** Batches by form and opacity; the key of one is `form * ALPHAS + alpha`. */
+/** A mesh, copied out of the engine's memory. Sizes are scales of instances: ten thousand boxes are one mesh. */
+interface Mesh {
+  vertices: Float32Array;
+  triangles: Uint32Array;
+  lines: Uint32Array;
+}
+
+/**
+ * Sections of a frame. An instance has seven numbers of its pose, a translation and a unit quaternion x, y, z, w, and three
+ * of its scale along the axes of its mesh.
+ */
+interface Poses {
+  pose: Float32Array;
+  scale: Float32Array;
+}
+
+/** Batches by mesh and opacity; the key of one is `mesh * ALPHAS + alpha`. */
 export class Solids {
   /** All batches, for the scene. */
   readonly group = new Group();
-  private readonly forms = new Forms();
+  private readonly meshes = new Map<number, Mesh>();
   private readonly batches = new Map<number, Batch>();
   /** Frames so far: the clock of what is released. */
   private frames = 0;
   /** Opposite corners of the boxes of shapes that are no objects, such as those at the end of a cast. */
   private readonly corners: Vector3[] = [];
 
-  constructor(private readonly flat: boolean) {}
+  /** Meshes with ids below this number were received. */
+  known = 0;
 
-  /** How many meshes the page has. */
-  get known(): number {
-    return this.forms.known;
-  }
+  constructor(private readonly flat: boolean) {}
 
   /** Replaces what is drawn by the instances of a frame; nothing is allocated while batches are large enough. */
   update(frame: Frame): void {
@@ -87,9 +100,13 @@ export class Solids {
 
   /** Copies new meshes out of the engine's memory, and forgets those that it dropped. */
   private receive({ meshes, dropped, payload }: Frame): void {
-    const gone = new Set(dropped.map((mesh) => this.forms.drop(mesh)));
-    for (const [key, batch] of this.batches) if (gone.has(formOf(key))) this.release(key, batch);
-    for (const mesh of meshes) this.forms.receive(mesh, payload);
+    for (const id of dropped) this.meshes.delete(id);
+    for (const [key, batch] of this.batches) if (!this.meshes.has(meshOf(key))) this.release(key, batch);
+    for (const { id, vertices, triangles, lines } of meshes) {
+      this.known = Math.max(this.known, id + 1);
+      const [indices, edges] = [payload.words(triangles).slice(), payload.words(lines).slice()];
+      this.meshes.set(id, { vertices: payload.floats(vertices).slice(), triangles: indices, lines: edges });
+    }
   }
 
   /** Writes each instance into its batch. */
@@ -97,33 +114,30 @@ export class Solids {
     const mesh = payload.words(instances.mesh);
     const object = payload.words(instances.object);
     const color = payload.bytes(instances.color);
-    const poses = payload.floats(instances.pose);
-    let scaled: ScaledForm | undefined;
+    const poses = { pose: payload.floats(instances.pose), scale: payload.floats(instances.scale) };
     let batch: Batch | undefined;
-    let [lastMesh, lastKey] = [-1, -1];
+    let lastKey = -1;
     for (let index = 0; index < instances.count; index += 1) {
-      const id = mesh[index] ?? 0;
-      // Neighbours mostly share a mesh, or at least a form: the maps are searched where they do not.
-      if (id !== lastMesh) scaled = this.forms.get(id);
-      lastMesh = id;
-      if (!scaled) continue;
-      const key = scaled.form.id * ALPHAS + (color[4 * index + 3] ?? OPAQUE);
-      if (key !== lastKey || !batch) batch = this.batches.get(key) ?? this.begin(key, scaled.form);
+      const key = (mesh[index] ?? 0) * ALPHAS + (color[4 * index + 3] ?? OPAQUE);
+      // Neighbours mostly share a batch: the map is searched where they do not.
+      if (key !== lastKey) batch = this.batches.get(key) ?? this.begin(key);
       lastKey = key;
-      batch.add(poses, scaled.scale, color, index);
-      if (object[index] === NO_OBJECT) this.corners.push(...batch.lastBox());
+      batch?.add(poses, color, index);
+      if (batch && object[index] === NO_OBJECT) this.corners.push(...batch.lastBox());
     }
   }
 
-  /** A batch for a key that has none. */
-  private begin(key: number, form: Form): Batch {
-    const batch = new Batch(form, key % ALPHAS, this.flat);
+  /** A batch for a key that has none; undefined for a mesh that was not received. */
+  private begin(key: number): Batch | undefined {
+    const mesh = this.meshes.get(meshOf(key));
+    if (!mesh) return undefined;
+    const batch = new Batch(mesh, key % ALPHAS, this.flat);
     this.batches.set(key, batch);
     this.group.add(batch.faces, batch.edges);
     return batch;
   }
 
-  /** Frees a batch; its form stays, since it may come again. */
+  /** Frees a batch; its mesh stays, since it may come again. */
   private release(key: number, batch: Batch): void {
     this.group.remove(batch.faces, batch.edges);
     batch.dispose();
@@ -131,26 +145,26 @@ export class Solids {
   }
 }
 
-/** The form of a batch's key. */
-function formOf(key: number): number {
+/** The id of the mesh of a batch's key. */
+function meshOf(key: number): number {
   return Math.floor(key / ALPHAS);
 }
 
-/** All instances of one form with one opacity. */
+/** All instances of one mesh with one opacity. */
 class Batch {
   faces: InstancedMesh;
   readonly edges: LineSegments<InstancedBufferGeometry, ShaderMaterial>;
   count = 0;
   /** The frame that used it last. */
   used = 0;
-  /** Instances for which there is room. */
+  /** Instances that the buffers hold. */
   private capacity = 0;
   /** Four columns of four numbers: scale, then rotation, then translation. */
   private matrix = new InstancedBufferAttribute(new Float32Array(0), 16);
   /** Red, green and blue of linear light. */
   private color = new InstancedBufferAttribute(new Float32Array(0), 3);
 
-  constructor(data: Form, alpha: number, flat: boolean) {
+  constructor(data: Mesh, alpha: number, flat: boolean) {
     this.faces = new InstancedMesh(facesOf(data, flat), faceMaterial(alpha, flat), 0);
     this.faces.frustumCulled = false;
     this.faces.renderOrder = alpha < OPAQUE ? ORDER.transparentSolids : ORDER.solids;
@@ -160,12 +174,13 @@ class Batch {
     this.grow();
   }
 
-  /** Adds an instance of a frame: its pose is seven numbers, a translation and a unit quaternion x, y, z, w. */
-  add(poses: Float32Array, scale: Vec3, color: Uint8Array, index: number): void {
+  /** Adds an instance of a frame. */
+  add(poses: Poses, color: Uint8Array, index: number): void {
     if (this.count === this.capacity) this.grow();
-    translation.fromArray(poses, 7 * index);
-    rotation.fromArray(poses, 7 * index + 3);
-    pose.compose(translation, rotation, stretch.fromArray(scale)).toArray(this.matrix.array, 16 * this.count);
+    translation.fromArray(poses.pose, 7 * index);
+    rotation.fromArray(poses.pose, 7 * index + 3);
+    scale.fromArray(poses.scale, 3 * index);
+    pose.compose(translation, rotation, scale).toArray(this.matrix.array, 16 * this.count);
     const into = this.color.array;
     for (let part = 0; part < 3; part += 1) into[3 * this.count + part] = LINEAR[color[4 * index + part] ?? 0] ?? 0;
     this.count += 1;
@@ -200,7 +215,7 @@ class Batch {
     this.edges.material.dispose();
   }
 
-  /** Room for one more instance at least; what was added stays. Faces and edges read the same two buffers. */
+  /** Reserves one more instance at least; what was added stays. Faces and edges read the same two buffers. */
   private grow(): void {
     const capacity = grown(this.capacity, this.capacity + 1);
     this.matrix = larger(this.matrix, capacity);
@@ -216,7 +231,7 @@ class Batch {
   }
 }
 
-/** A copy with room for more instances. */
+/** A copy of a larger capacity. */
 function larger(old: InstancedBufferAttribute, capacity: number): InstancedBufferAttribute {
   const array = new Float32Array(capacity * old.itemSize);
   array.set(old.array);
@@ -224,7 +239,7 @@ function larger(old: InstancedBufferAttribute, capacity: number): InstancedBuffe
 }
 
 /** Triangles; in 3D with normals that are smooth but for creases. */
-function facesOf(data: Form, flat: boolean): BufferGeometry {
+function facesOf(data: Mesh, flat: boolean): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
   geometry.setIndex(new BufferAttribute(data.triangles, 1));
@@ -232,7 +247,7 @@ function facesOf(data: Form, flat: boolean): BufferGeometry {
 }
 
 /** The edges that the engine chose, such as those between faces at an angle. */
-function edgesOf(data: Form): InstancedBufferGeometry {
+function edgesOf(data: Mesh): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
   geometry.setIndex(new BufferAttribute(data.lines, 1));
