@@ -26,7 +26,7 @@ export class Buffers {
     this.reserve(1);
   }
 
-  /** Makes room for so many vertices; what was written is lost, since each frame writes all. */
+  /** Reserves so many vertices; what was written is lost, since each frame writes all. */
   reserve(count: number): void {
     const capacity = grown(this.capacity, count);
     if (capacity === this.capacity) return;

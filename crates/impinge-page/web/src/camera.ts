@@ -206,7 +206,7 @@ export class StageCamera {
     return [at.x + this.origin[0], at.y + this.origin[1], at.z + this.origin[2]];
   }
 
-  /** Moves the camera to where it sees all of what is framed. */
+  /** Moves the camera to where all of what is framed is visible. */
   private aim(): void {
     if (this.camera instanceof PerspectiveCamera) this.fitPerspective(this.camera);
     else this.fitOrthographic(this.camera);

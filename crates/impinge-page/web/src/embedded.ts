@@ -15,7 +15,7 @@ export function readScene(): Scene {
   return JSON.parse(textOf("impinge-scene")) as Scene;
 }
 
-/** The bytes of a recording, packed or not: the engine sees which. */
+/** The bytes of a recording, packed or not: the engine reads both. */
 export function readRecording(): Uint8Array<ArrayBuffer> {
   return decodeBase64(textOf("impinge-recording"));
 }

@@ -10,7 +10,7 @@ const FILTERS = [
   { wanted: "3", label: "3D" },
 ];
 
-/** What a newcomer should know. */
+/** The introduction above the cards. */
 const LEAD =
   "Collision detection in 2D and 3D, computed in this page. Open a sample, click its objects, drag them, and ask why they touch.";
 

@@ -94,7 +94,7 @@ export class Labels {
     return element;
   }
 
-  /** To the right of the point, or to the left where there is no room, and at half its height. */
+  /** To the right of the point, or to the left where it would leave the canvas, and at half its height. */
   private beside({ x, y }: CanvasPoint, { offsetWidth: width, offsetHeight: height }: HTMLElement): Rectangle {
     const { clientWidth, clientHeight } = this.layer;
     const isInside = x + OFFSET + width < clientWidth;

@@ -22,7 +22,7 @@ class Page {
     private readonly engine: Engine,
   ) {}
 
-  /** Opens what the file says; errors of it are the caller's. */
+  /** Opens what the file names. Errors of a recording are the caller's. */
   open(): void {
     switch (this.scene.open) {
       case "recording":
@@ -71,7 +71,7 @@ class Page {
     return viewer;
   }
 
-  /** The stage is opened when the head of the recording is there, which says its dimension. */
+  /** The stage is opened when the header of the recording was read, which has its dimension. */
   private watch(address: string): void {
     this.engine.open({ kind: "stream" });
     const take = (bytes: Uint8Array): void =>
@@ -93,7 +93,7 @@ function facts(info: Info): string {
   return [`${info.dimension}D`, info.scalar, ...steps, info.written_by].filter(Boolean).join(" · ");
 }
 
-/** Shows a text that the reader should know; it stays until it is dismissed. */
+/** Shows a text, such as an error; it stays until it is dismissed. */
 function complain(message: string): void {
   const notice = byId("notice");
   setText(notice.querySelector("p") ?? notice, message);
@@ -105,7 +105,7 @@ function dismiss(): void {
   byId("notice").hidden = true;
 }
 
-/** Does what may fail, and says so if it does. */
+/** Reports the error of what may fail. */
 function attempt(act: () => void): void {
   try {
     act();
@@ -119,7 +119,7 @@ function text(error: unknown): string {
   return error instanceof Error ? error.message : String(error);
 }
 
-/** A page that cannot be shown says why instead of staying blank. */
+/** A page that cannot be opened shows the error instead of staying blank. */
 async function main(): Promise<void> {
   byId("notice").querySelector("button")?.addEventListener("click", dismiss);
   const page = new Page(readScene(), await loadEngine(await readModule()));

@@ -121,7 +121,7 @@ export function eventText(event: PairEvent): string {
   return `proximity of ${event.a} and ${event.b}: ${event.before} to ${event.after}`;
 }
 
-/** What a sample says of itself. */
+/** Numbers and words that a sample computes. */
 export function readoutList(readouts: Readout[]): HTMLElement {
   return terms(readouts.map(({ label, value }) => [label, value]));
 }
@@ -148,7 +148,7 @@ function near(object: number, nearest: NearAnswer["nearest"], links: Links): Nod
   return [subheading("Nearest objects"), list(rows)];
 }
 
-/** Each test with its outcome; all are made, whatever the first says. */
+/** Each test with its outcome; all are made, also after one that fails. */
 function tests({ why }: PairAnswer): HTMLElement {
   const rows = why.tests.map(({ name, passes, text }) => {
     const mark = make("b", { role: "img", "aria-label": passes ? "passes" : "fails" }, passes ? "✓" : "✗");

@@ -53,7 +53,7 @@ export class Lines {
     this.object.renderOrder = order;
   }
 
-  /** Forgets the segments, and makes room for at most so many. */
+  /** Removes the segments, and reserves at most so many. */
   begin(most: number): void {
     this.count = 0;
     const capacity = grown(this.ends.length / 6, Math.max(most, 1));

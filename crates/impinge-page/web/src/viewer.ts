@@ -118,7 +118,7 @@ export class Viewer {
     this.transport.ended();
   }
 
-  /** Does what may be refused, and says so if it is. */
+  /** Reports a refusal of the engine; other errors are bugs, and are not caught. */
   attempt(act: () => void): void {
     try {
       act();

@@ -124,7 +124,7 @@ test("texts that would overlap give way, always the same ones", options, async (
     }
     assert.ok(boxes.length >= 8 && boxes.length < 60, `${boxes.length} of 60 texts`);
     shown.push(boxes.map(({ text }) => text));
-    // Nearer, there is room for all that is left in the view.
+    // Nearer, the points are farther apart than the texts are long.
     for (const key of "++++++++++++") await page.keyboard.press(key as "+");
     await settle(page);
     assert.ok((await labels(page)).length > 2, "some remain");

@@ -25,13 +25,14 @@ function makeStage(name: string, steps: number | null): Stage {
   const dimension = name.includes("2:") ? 2 : 3;
   const count = Number(name.split(":")[1] ?? 60);
   const side = Math.ceil(count ** (1 / dimension));
-  const home = (index: number, step: number): Vec3 => {
+  const center = (index: number, step: number): Vec3 => {
     const row = Math.floor(index / side) % side;
     const fall = Math.max(0, 1 - step / 120);
     return [(index % side) * 1.5, row * (1 + fall) + 0.5, dimension === 2 ? 0 : Math.floor(index / side / side) * 1.5];
   };
   const half: Vec3 = dimension === 2 ? [0.5, 0.5, 0] : [0.5, 0.5, 0.5];
-  const boxes = (step: number): Box[] => Array.from({ length: count }, (_, index) => ({ at: home(index, step), half }));
+  const boxes = (step: number): Box[] =>
+    Array.from({ length: count }, (_, index) => ({ at: center(index, step), half }));
   return { isNamed, dimension, steps, boxes };
 }
 

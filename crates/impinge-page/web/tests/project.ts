@@ -91,7 +91,7 @@ export async function silhouette(page: Page, kind: "blue" | "solid"): Promise<Si
   return { low: shift(found.low), high: shift(found.high), pixels: found.pixels };
 }
 
-/** Runs in the page. Blue is clearly so; solid differs from the almost grey ground by its saturation or its darkness. */
+/** Runs in the page. Blue is clearly so; solid differs from the almost grey background by its saturation or its darkness. */
 async function readPicture(picture: string, kind: "blue" | "solid"): Promise<Silhouette> {
   const image = new Image();
   image.src = `data:image/png;base64,${picture}`;
