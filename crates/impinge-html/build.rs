@@ -39,7 +39,9 @@ mod engine {
     /// Builds the engine in a folder of its own: the outer cargo holds the lock of the usual one.
     fn build(folder: &Path) -> Result<PathBuf, String> {
         let crates = variable("CARGO_MANIFEST_DIR")?.join("..");
-        for name in ["impinge", "impinge-page", "impinge-record", "impinge-samples"] {
+        for name in
+            ["impinge", "impinge-page", "impinge-record", "impinge-samples", "impinge-scenes"]
+        {
             println!("cargo::rerun-if-changed={}", crates.join(name).join("src").display());
         }
         let mut cargo = Command::new(variable("CARGO")?);

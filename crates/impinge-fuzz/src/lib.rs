@@ -1,5 +1,6 @@
 //! Shapes, poses and questions made from the fuzzer's bytes: whatever the bytes, no call may panic
 //! or hang, and answers must not contradict each other.
+#![forbid(unsafe_code)]
 #![allow(
     clippy::missing_assert_message,
     clippy::missing_panics_doc,

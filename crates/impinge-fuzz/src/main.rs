@@ -4,6 +4,7 @@
 //! inputs of `regressions.txt`. The seed is new on each run and printed; `SEED=7` sets it. An input that
 //! panics is reduced and printed. `impinge-fuzz replay world 00ff` runs one input, of hexadecimal digits or
 //! the name of a file, and `impinge-fuzz reduce world 00ff` reduces it before.
+#![forbid(unsafe_code)]
 #![allow(clippy::print_stdout, reason = "findings are printed")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};

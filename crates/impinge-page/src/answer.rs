@@ -3,39 +3,27 @@
 //! Points, vectors and boxes have three coordinates, of which the last is 0 in 2D. Numbers that are not finite become
 //! `null` in JSON.
 
+use impinge_samples::{Control, Entry, Readout};
 use serde::Serialize;
 
 /// The ends of a box: its least and its greatest coordinates. `None` for one with no end.
 pub type Ends = Option<[[f64; 3]; 2]>;
 
-/// A sample of the gallery.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct SampleTitle {
-    /// The name by which it is opened.
-    pub name: &'static str,
-    /// The heading.
-    pub title: &'static str,
-    /// What to see.
-    pub about: &'static str,
-    /// 2 or 3.
-    pub dimension: usize,
-}
-
 /// The gallery.
 #[derive(Clone, Debug, Serialize)]
 pub struct Gallery {
     /// The samples in order.
-    pub samples: Vec<SampleTitle>,
+    pub samples: &'static [Entry],
 }
 
-/// What a stage is.
-#[derive(Clone, Debug, Serialize)]
+/// What a stage is. Members that a kind of stage has no value for are empty or zero.
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Info {
     /// `recording`, `stream` or `sample`.
     pub kind: &'static str,
     /// The step that it stands at.
     pub step: usize,
-    /// What people should know of it.
+    /// Sentences for people: stand-ins, and what of a recording was lost.
     pub notes: Vec<String>,
     /// 2 or 3.
     pub dimension: usize,
@@ -51,7 +39,7 @@ pub struct Info {
     pub written_by: String,
     /// How many updates a recording has so far.
     pub steps: Option<usize>,
-    /// The end of a recording came.
+    /// The last record of a recording was read. A stream lacks it until it ends, a recording if its program died.
     pub complete: bool,
     /// Seconds from a step to the next, where nothing else is known of it.
     pub time_step: f64,
@@ -62,7 +50,7 @@ pub struct Info {
     /// What happened, in order of the steps.
     pub marks: Vec<StepMark>,
     /// The controls of a sample.
-    pub controls: Vec<ShownControl>,
+    pub controls: Vec<Control>,
 }
 
 /// What happened at a step; or in some steps from this one on, where there would be too many marks.
@@ -86,58 +74,6 @@ pub struct StepMark {
     pub queries: u32,
 }
 
-/// A control of a sample.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ShownControl {
-    /// The name by which it is set.
-    pub name: &'static str,
-    /// The text beside it.
-    pub label: &'static str,
-    /// What it is.
-    #[serde(flatten)]
-    pub kind: ShownKind,
-}
-
-/// What a control is, and its value.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
-pub enum ShownKind {
-    /// A number between bounds.
-    Number {
-        /// The value.
-        value: f64,
-        /// The least value.
-        min: f64,
-        /// The greatest value.
-        max: f64,
-        /// By how much a slider changes it.
-        step: f64,
-    },
-    /// One of some words.
-    Choice {
-        /// The word.
-        value: &'static str,
-        /// All words.
-        choices: &'static [&'static str],
-    },
-    /// Yes or no.
-    Flag {
-        /// The value.
-        value: bool,
-    },
-    /// Something to be done once.
-    Button,
-}
-
-/// A number or a word beside the picture.
-#[derive(Clone, Debug, Serialize)]
-pub struct ShownReadout {
-    /// What it is.
-    pub label: &'static str,
-    /// Its value.
-    pub value: String,
-}
-
 /// How things are at a step.
 #[derive(Clone, Debug, Serialize)]
 pub struct Status {
@@ -156,11 +92,9 @@ pub struct Status {
     /// How many events the update had.
     pub event_count: usize,
     /// Controls, if some changed by themselves.
-    pub controls: Vec<ShownControl>,
+    pub controls: Vec<Control>,
     /// What a sample says.
-    pub readouts: Vec<ShownReadout>,
-    /// Without a clock always `None`.
-    pub milliseconds: Option<f64>,
+    pub readouts: Vec<Readout>,
 }
 
 /// An event of an update.

@@ -1,4 +1,4 @@
-//! Questions of the page about everything in a world.
+//! Queries of the page about all objects of a world: picking, rays, nearest objects.
 
 use core::cmp::Reverse;
 
@@ -13,13 +13,13 @@ use crate::answer::{NearObject, NearestAnswer, Picked, RayAnswer, RayHit};
 use crate::request::{NearestRequest, PickRequest, RayRequest};
 use crate::space::{coordinates, point, vector};
 
-/// Objects that are asked for proximity alone: they are drawn transparent.
+/// Whether an object has a proximity query: it is drawn transparent.
 pub(crate) fn is_sensor<N: Space<D>, const D: usize, T>(object: &CollisionObject<N, D, T>) -> bool {
     matches!(object.query_type(), GeometricQueryType::Proximity(_))
 }
 
-/// The first object of a ray; one behind transparent ones is preferred to these. A ray that begins inside an object
-/// sees its far side, as the screen does.
+/// The first object that a ray hits, an opaque one if there is any. A ray that begins inside an object hits its far
+/// side, which is what a camera there draws.
 pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -27,6 +27,7 @@ pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     let ray = Ray::new(point(at.from), vector(at.direction));
     let is_opaque = |object: &CollisionObject<N, D, T>| !is_sensor(object);
     let filters = [QueryFilter::new().predicate(&is_opaque), QueryFilter::new()];
+    // Lazy: the second cast is made only if the first hits nothing.
     let mut hits =
         filters.iter().filter_map(|filter| world.first_ray_hit(&ray, N::INFINITY, false, filter));
     hits.next().map_or_else(Picked::default, |(object, hit)| Picked {
@@ -37,8 +38,8 @@ pub(crate) fn pick_by_ray<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// The object that holds a point, else the nearest within reach. Of several that hold it transparent ones come last,
-/// then endless ones, then those that are drawn earlier.
+/// The object that contains a point, else the nearest within reach. Of several that contain it, transparent ones come
+/// last, before them unbounded ones, and of equals the one drawn last comes first.
 pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     at: &PickRequest,
@@ -50,6 +51,7 @@ pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
             let is_endless = !object.shape().local_aabb().is_bounded();
             (is_sensor(object), is_endless, Reverse(object.handle()))
         };
+        // All objects that contain the point are at a distance of 0.
         let order = one.distance.as_f64().total_cmp(&two.distance.as_f64());
         order.then_with(|| rank(one.object).cmp(&rank(two.object)))
     });
@@ -59,7 +61,7 @@ pub(crate) fn pick_by_point<N: Space<D>, const D: usize, T>(
     })
 }
 
-/// The point on the second of two that are apart.
+/// The nearest point on an object; `None` if it contains the point of the query.
 fn nearest_point<N: Real, const D: usize>(points: &ClosestPoints<N, D>) -> Option<[f64; 3]> {
     match points {
         ClosestPoints::WithinMargin(_, on_object) => Some(coordinates(&on_object.coords)),
@@ -101,7 +103,7 @@ pub(crate) fn nearest<N: Space<D>, const D: usize, T>(
     NearestAnswer { nearest: nearest.collect() }
 }
 
-/// A feature in words, with the part of a composite that it is of.
+/// A feature in words, of a composite with its part: features are numbered within their parts.
 pub(crate) fn feature_text<N: Real, const D: usize>(
     feature: FeatureId,
     part: u32,

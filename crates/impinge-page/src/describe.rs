@@ -1,4 +1,4 @@
-//! All about one object, and how a world is at a step.
+//! The description of one object, and the state of a world at a step.
 
 use impinge::bounding_volume::Aabb;
 use impinge::math::{Real, Space, max};
@@ -12,13 +12,14 @@ use crate::groups;
 use crate::shape_text::shape_text;
 use crate::space::{Viewed, coordinates};
 
-/// So many events a status has at most.
+/// The greatest number of events in a status; the count of all is beside them.
 const MAX_EVENTS: usize = 200;
 
-/// So many bytes of data that is no text are shown.
+/// The greatest number of bytes in a label of data that is not text.
 const MAX_BYTES: usize = 16;
 
-/// The object of a number. Costs a walk over all objects.
+/// The object of a number, the index of its handle: the generation of the handle is unknown to a page, so that this
+/// searches all objects.
 pub(crate) fn object_of<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     number: u32,
@@ -26,7 +27,7 @@ pub(crate) fn object_of<N: Space<D>, const D: usize, T>(
     world.collision_objects().find(|object| object.handle().uid() == number as usize)
 }
 
-/// All about an object.
+/// The description of an object.
 pub(crate) fn object_answer<N: Viewed<D>, const D: usize, T: RecordData>(
     world: &CollisionWorld<N, D, T>,
     object: &CollisionObject<N, D, T>,
@@ -46,13 +47,13 @@ pub(crate) fn object_answer<N: Viewed<D>, const D: usize, T: RecordData>(
     }
 }
 
-/// The corners of a box; `None` if it has no end.
+/// The corners of a box; `None` if it is unbounded.
 fn ends<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> Ends {
     let corners = [aabb.mins(), aabb.maxs()].map(|point| coordinates(&point.coords));
     aabb.is_bounded().then_some(corners)
 }
 
-/// The data of an object: as text if it is some, else its bytes in hexadecimal.
+/// The data of an object: as text if it is UTF-8 without control characters, else its first bytes in hexadecimal.
 fn label(bytes: &[u8]) -> String {
     let text = str::from_utf8(bytes).ok();
     if let Some(text) = text.filter(|text| !text.chars().any(char::is_control)) {
@@ -77,11 +78,13 @@ fn pairs<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     handle: CollisionObjectHandle,
 ) -> Vec<ShownPair> {
+    // One entry for each contact point, those of one partner in a row.
     let mut partners: Vec<_> =
         world.contacts_with(handle).map(|(other, _)| other.handle()).collect();
     partners.dedup();
     let contacts = partners.into_iter().filter_map(|other| {
         let pair = world.contact_pair(handle, other)?;
+        // The deepest of all manifolds of the pair.
         let deepest = pair.views().map(|view| view.deepest_contact().contact.depth).reduce(max)?;
         let (object, contacts, depth) = (other.uid(), pair.num_contacts(), deepest.as_f64());
         Some((other, ShownPair::Contacts { object, contacts, depth, touching: contacts > 0 }))
@@ -95,7 +98,7 @@ fn pairs<N: Space<D>, const D: usize, T>(
     pairs.into_iter().map(|(_, pair)| pair).collect()
 }
 
-/// How a world is; what recordings and samples know beside it is empty.
+/// The state of a world. The members that only recordings or samples have are empty.
 pub(crate) fn status<N: Space<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     step: usize,
@@ -111,6 +114,7 @@ pub(crate) fn status<N: Space<D>, const D: usize, T>(
         before: proximity_text(event.prev_status),
         after: proximity_text(event.new_status),
     });
+    // Contacts come first in the list, whatever their number: a page lists what touches before what is near.
     Status {
         step,
         objects: world.len(),
@@ -121,7 +125,6 @@ pub(crate) fn status<N: Space<D>, const D: usize, T>(
         event_count: world.contact_events().len() + world.proximity_events().len(),
         controls: Vec::new(),
         readouts: Vec::new(),
-        milliseconds: None,
     }
 }
 

@@ -1,15 +1,16 @@
 //! The engine: messages to a stage, answers back.
 
 use core::fmt;
+use std::borrow::Cow;
 
-use impinge_record::{Header, Problem, ReadError, Registry, is_packed, unpack};
+use impinge_record::{Header, Registry, is_packed, unpack};
 use impinge_samples::{ControlValue, Make, entries};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::answer::{Gallery, SampleTitle};
+use crate::answer::Gallery;
 use crate::request::{Opening, Request};
-use crate::{EngineError, Recorded, Sampled, Shown, Stage, message, parts};
+use crate::{EngineError, Recorded, Sampled, Shown, Stage, Viewed, message, parts};
 
 /// What is shown, by its scalar and dimension one of some types.
 type Opened = Box<dyn Stage>;
@@ -33,7 +34,8 @@ type Opened = Box<dyn Stage>;
 #[derive(Default)]
 pub struct Engine {
     stage: Option<Opened>,
-    /// The bytes of a stream of which the header is not yet whole.
+    /// The bytes of a stream whose header is not yet whole: until then its scalar and dimension are unknown, and the
+    /// stage is an empty one.
     begun: Option<Vec<u8>>,
 }
 
@@ -84,7 +86,7 @@ impl Engine {
     fn answer(&mut self, bytes: &[u8]) -> Result<Reply, EngineError> {
         let (text, payload) = parts(bytes)?;
         match serde_json::from_slice(text)? {
-            Request::Samples => reply(&gallery()),
+            Request::Samples => reply(&Gallery { samples: entries() }),
             Request::Open(opening) => {
                 self.open(&opening, payload)?;
                 self.info()
@@ -132,8 +134,8 @@ impl Engine {
     /// The stage before stays if this fails.
     fn open(&mut self, opening: &Opening, payload: &[u8]) -> Result<(), EngineError> {
         let stage = match opening {
-            Opening::Recording => open_recording(payload.to_vec())?,
-            // Its scalar and dimension are those of its header.
+            Opening::Recording => open_recording(payload)?,
+            // Any scalar and dimension: `push` exchanges it once the header says which.
             Opening::Stream => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
             Opening::Sample { name } => open_sample(name)?,
         };
@@ -145,45 +147,25 @@ impl Engine {
         Ok(())
     }
 
-    /// Bytes of a stream: until the header is whole, its scalar and dimension are not known.
+    /// Bytes of a stream. Those of the header are collected, and given to the stage that it asks for.
     fn push(&mut self, bytes: &[u8]) -> Result<(), EngineError> {
         let Some(begun) = &mut self.begun else { return self.stage()?.push(bytes) };
         let before = begun.len();
         begun.extend(bytes);
         match Header::read(begun) {
             Ok(header) => {
-                let mut stage = growing(&header)?;
+                let mut stage = stage_of(&header, None)?;
                 stage.push(begun)?;
                 self.show(stage);
                 Ok(())
             }
-            Err(error) if is_begun(begun, &error) => Ok(()),
+            Err(error) if Header::is_begun(begun, &error) => Ok(()),
             Err(error) => {
                 begun.truncate(before);
                 Err(error.into())
             }
         }
     }
-}
-
-/// The bytes lack the rest of a header and nothing else.
-fn is_begun(bytes: &[u8], error: &ReadError) -> bool {
-    const MAGIC_BYTES: usize = 8;
-    match error.problem {
-        Problem::Truncated => true,
-        Problem::NotARecording => bytes.len() < MAGIC_BYTES,
-        _ => false,
-    }
-}
-
-fn gallery() -> Gallery {
-    let samples = entries().iter().map(|entry| SampleTitle {
-        name: entry.name,
-        title: entry.title,
-        about: entry.about,
-        dimension: entry.make.dimension(),
-    });
-    Gallery { samples: samples.collect() }
 }
 
 fn open_sample(name: &str) -> Result<Opened, EngineError> {
@@ -195,39 +177,38 @@ fn open_sample(name: &str) -> Result<Opened, EngineError> {
     })
 }
 
-fn open_recording(bytes: Vec<u8>) -> Result<Opened, EngineError> {
-    let bytes = if is_packed(&bytes) { unpack(&bytes)? } else { bytes };
-    let header = Header::read(&bytes)?;
-    Ok(match (header.scalar_bytes, header.dimension) {
-        (4, 2) => Box::new(Shown::new(Recorded::<f32, 2>::open(bytes, Registry::new())?)),
-        (4, 3) => Box::new(Shown::new(Recorded::<f32, 3>::open(bytes, Registry::new())?)),
-        (8, 2) => Box::new(Shown::new(Recorded::<f64, 2>::open(bytes, Registry::new())?)),
-        (8, 3) => Box::new(Shown::new(Recorded::<f64, 3>::open(bytes, Registry::new())?)),
-        (scalar_bytes, dimension) => return Err(EngineError::Kind { dimension, scalar_bytes }),
-    })
+fn open_recording(bytes: &[u8]) -> Result<Opened, EngineError> {
+    let bytes = if is_packed(bytes) { Cow::Owned(unpack(bytes)?) } else { Cow::Borrowed(bytes) };
+    stage_of(&Header::read(&bytes)?, Some(&bytes))
 }
 
-/// A stream of which the header is known.
-fn growing(header: &Header) -> Result<Opened, EngineError> {
-    Ok(match (header.scalar_bytes, header.dimension) {
-        (4, 2) => Box::new(Shown::new(Recorded::<f32, 2>::growing(Registry::new()))),
-        (4, 3) => Box::new(Shown::new(Recorded::<f32, 3>::growing(Registry::new()))),
-        (8, 2) => Box::new(Shown::new(Recorded::<f64, 2>::growing(Registry::new()))),
-        (8, 3) => Box::new(Shown::new(Recorded::<f64, 3>::growing(Registry::new()))),
-        (scalar_bytes, dimension) => return Err(EngineError::Kind { dimension, scalar_bytes }),
-    })
+/// The stage of a recording: of all its bytes, or of a stream whose bytes are still to come.
+fn stage_of(header: &Header, bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
+    match (header.scalar_bytes, header.dimension) {
+        (4, 2) => recorded::<f32, 2>(bytes),
+        (4, 3) => recorded::<f32, 3>(bytes),
+        (8, 2) => recorded::<f64, 2>(bytes),
+        (8, 3) => recorded::<f64, 3>(bytes),
+        (scalar_bytes, dimension) => Err(EngineError::Kind { dimension, scalar_bytes }),
+    }
+}
+
+/// As [`stage_of`], of a scalar and a dimension.
+fn recorded<N: Viewed<D>, const D: usize>(bytes: Option<&[u8]>) -> Result<Opened, EngineError> {
+    let recorded = match bytes {
+        Some(bytes) => Recorded::<N, D>::open(bytes, Registry::new())?,
+        None => Recorded::growing(Registry::new()),
+    };
+    Ok(Box::new(Shown::new(recorded)))
 }
 
 /// The value of a control: `null` presses a button.
 fn control_value(value: Value) -> Result<ControlValue, EngineError> {
-    Ok(match value {
-        Value::Null => ControlValue::Pressed,
-        Value::Bool(flag) => ControlValue::Flag(flag),
-        Value::String(word) => ControlValue::Choice(word),
-        Value::Number(number) => match number.as_f64() {
-            Some(number) => ControlValue::Number(number),
-            None => return Err(EngineError::Value(number.to_string())),
-        },
-        other => return Err(EngineError::Value(other.to_string())),
-    })
+    match (value.as_f64(), value) {
+        (Some(number), _) => Ok(ControlValue::Number(number)),
+        (_, Value::Null) => Ok(ControlValue::Pressed),
+        (_, Value::Bool(flag)) => Ok(ControlValue::Flag(flag)),
+        (_, Value::String(word)) => Ok(ControlValue::Choice(word)),
+        (_, other) => Err(EngineError::Value(other.to_string())),
+    }
 }

@@ -23,7 +23,7 @@ pub(crate) struct Two<'a, N: Space<D>, const D: usize, T> {
     pub(crate) stand_ins: &'a [String],
 }
 
-/// What a world asks of a pair, and up to which distance.
+/// The query of a pair in a world, and the distance up to which it has an answer.
 #[derive(Clone, Copy, Debug)]
 enum Limit<N> {
     /// Contacts are kept up to the sum of both predictions.
@@ -33,7 +33,7 @@ enum Limit<N> {
 }
 
 impl<N: Real> Limit<N> {
-    /// Proximity, if either object asks for it.
+    /// Proximity, if either object has a query of that type: then the prediction of the other counts for nothing.
     fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>) -> Self {
         use GeometricQueryType::{Contacts, Proximity};
         match (one, two) {
@@ -52,7 +52,7 @@ impl<N: Real> Limit<N> {
     }
 }
 
-/// The geometry of two objects, there and then.
+/// The geometry of two objects at their present positions, which may be others than at the last update.
 struct Measures<N: Real, const D: usize> {
     distance: N,
     points: ClosestPoints<N, D>,
@@ -70,7 +70,7 @@ pub(crate) const fn proximity_text(proximity: Proximity) -> &'static str {
 }
 
 impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
-    /// All about both.
+    /// The answer to the question. Costs four queries about the two shapes.
     pub(crate) fn answer(&self) -> PairAnswer {
         let limit = Limit::of(self.one.query_type(), self.two.query_type());
         let measures = self.measures(limit.length());
@@ -104,7 +104,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
-    /// The manifolds of the world, seen from the first of the question.
+    /// The manifolds of the world. There a pair has the order of the handles; points are flipped where the question has
+    /// the other order.
     fn manifolds(&self) -> Vec<ShownManifold> {
         let (one, two) = (self.one.handle(), self.two.handle());
         let views = self.world.contact_pair(one, two).into_iter().flat_map(ContactPair::views);
@@ -123,6 +124,8 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         ManifoldPoint { contact, features: format!("{feature1}, {feature2}") }
     }
 
+    /// The result is that of the world, as of its last update; the tests are made now. They disagree after a change
+    /// that no update has followed, and where the world has a reason that is no test: a surface with one side.
     fn why(&self, limit: Limit<N>, measures: &Measures<N, D>) -> Why {
         let tests =
             vec![self.groups(), self.filters(), self.boxes(), distance_test(limit, measures)];
@@ -139,7 +142,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Why { touch, text, tests }
     }
 
-    /// What the world has of the pair, as of the last update.
+    /// Whether the pair touches as of the last update, and the sentence that says so.
     fn found(&self) -> (bool, String) {
         let (one, two) = (self.one.handle(), self.two.handle());
         if let Some(pair) = self.world.proximity_pair(one, two) {
@@ -150,6 +153,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         let Some(pair) = self.world.contact_pair(one, two) else {
             return (false, "the last update found no pair of them".to_owned());
         };
+        // A pair is kept while the loosened boxes overlap, with or without manifolds.
         let depth = pair.views().map(|view| view.deepest_contact().contact.depth).reduce(max);
         match depth {
             Some(depth) => {
@@ -173,6 +177,7 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Test { name: "groups", passes, text: groups::text(one, two) }
     }
 
+    /// The pair filters of the world. Those that are stand-ins are named as such: they refuse nothing.
     fn filters(&self) -> Test {
         let refusing = self.world.refusing_pair_filters(self.one.handle(), self.two.handle());
         let names: Vec<&str> = self.world.broad_phase_pair_filter_names().collect();
@@ -189,14 +194,16 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         Test { name: "filter", passes: refusing.is_empty(), text }
     }
 
+    /// The boxes of the broad phase, as of the last update.
     fn boxes(&self) -> Test {
         let boxes = [self.one, self.two].map(|object| self.world.loosened_aabb(object.handle()));
         let [Some(box1), Some(box2)] = boxes else {
-            let text = "the broad phase has seen no box of one of them".to_owned();
+            let text = "the broad phase has no box of one of them yet".to_owned();
             return Test { name: "boxes", passes: false, text };
         };
         let passes = box1.intersects(&box2);
         let text = if passes {
+            // Two half-spaces overlap without bound.
             let overlap = overlap(&box1, &box2).as_f64();
             let is_finite = overlap.is_finite();
             let by = if is_finite { format!(" by {}", short(overlap)) } else { String::new() };
@@ -218,11 +225,12 @@ fn overlap<N: Real, const D: usize>(box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> N {
     (0..D).map(on_axis).fold(N::INFINITY, min)
 }
 
-/// The shapes themselves.
+/// The distance of the shapes, or their depth, and the limit up to which it counts.
 fn distance_test<N: Real, const D: usize>(limit: Limit<N>, measures: &Measures<N, D>) -> Test {
     let (length, apart) = (short(limit.length().as_f64()), short(measures.distance.as_f64()));
     let passes = measures.distance <= limit.length();
     let depth = measures.contact.as_ref().map(|contact| contact.depth.as_f64());
+    // The depth is negative for shapes that are apart within the prediction, for which the distance is positive.
     let state = match depth {
         _ if measures.distance > N::ZERO => format!("{apart} apart"),
         Some(depth) if depth > 0.0 => format!("they overlap, {} deep", short(depth)),
@@ -246,23 +254,13 @@ pub(crate) fn shown_contact<N: Real, const D: usize>(contact: &Contact<N, D>) ->
     }
 }
 
-/// A number with four significant digits, without zeros at its end.
+/// A number with four significant digits, without zeros at its end; in scientific notation below 0.001 and from a
+/// million on.
 pub(crate) fn short(number: f64) -> String {
-    let size = number.abs();
-    if number == 0.0 || !number.is_finite() {
-        return if number == 0.0 { "0".to_owned() } else { number.to_string() };
-    }
-    if !(1e-3..1e6).contains(&size) {
-        return format!("{number:.3e}");
-    }
-    // Digits after the point, by the digits before it.
-    let digits =
-        [1e-2, 1e-1, 1.0, 10.0, 100.0, 1000.0].iter().filter(|power| size < **power).count();
-    let text = format!("{number:.digits$}");
-    if !text.contains('.') {
-        return text;
-    }
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    // Parsed again, so that zeros at the end are gone. The sum with zero has no negative zero.
+    let rounded = format!("{number:.3e}").parse().unwrap_or(number) + 0.0;
+    let is_plain = rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs());
+    if is_plain { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 #[cfg(test)]
@@ -279,9 +277,10 @@ mod tests {
             (1.0, "1"),
             (12.3456, "12.35"),
             (1234.56, "1235"),
-            (100_000.0, "100000"),
+            (123_456.0, "123500"),
             (-0.5, "-0.5"),
-            (1.5e-7, "1.500e-7"),
+            (-0.0, "0"),
+            (1.5e-7, "1.5e-7"),
             (f64::INFINITY, "inf"),
         ];
         for (number, text) in cases {

@@ -5,6 +5,7 @@
 )]
 
 use std::cell::RefCell;
+use std::mem;
 
 use crate::Engine;
 
@@ -20,11 +21,12 @@ thread_local! {
         const { RefCell::new(Host { engine: Engine::new(), message: Vec::new(), answer: Vec::new() }) };
 }
 
-/// The address of a buffer for a message of so many bytes; 0 if there is no memory for it.
+/// The address of a buffer for a message of so many bytes, which stands until the next call; 0 if there is no memory
+/// for it.
 #[unsafe(no_mangle)]
 extern "C" fn reserve(bytes: usize) -> usize {
     HOST.with_borrow_mut(|host| {
-        host.message.clear();
+        host.message = Vec::new();
         if host.message.try_reserve_exact(bytes).is_err() {
             return 0;
         }
@@ -37,9 +39,10 @@ extern "C" fn reserve(bytes: usize) -> usize {
 #[unsafe(no_mangle)]
 extern "C" fn call(bytes: usize) -> usize {
     HOST.with_borrow_mut(|host| {
-        let Host { engine, message, answer } = host;
-        *answer = engine.call(&message[..bytes.min(message.len())]);
-        answer.as_ptr().addr()
+        // Freed with the call: that of a recording may have hundreds of megabytes.
+        let message = mem::take(&mut host.message);
+        host.answer = host.engine.call(&message[..bytes.min(message.len())]);
+        host.answer.as_ptr().addr()
     })
 }
 

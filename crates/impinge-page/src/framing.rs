@@ -6,9 +6,9 @@ use impinge::world::CollisionWorld;
 
 use crate::space::coordinates;
 
-/// An extent of objects beyond this counts as endless, and a coordinate beyond it as nowhere: numbers of `f32` have
-/// room for squares of it.
-const FAR: f64 = 1e18;
+/// An extent of objects beyond this counts as unbounded, and a coordinate beyond it is left out: its square is still
+/// within the range of `f32`.
+pub(crate) const FAR: f64 = 1e18;
 
 /// A box in `f64` and three dimensions; the third is empty in 2D.
 #[derive(Clone, Copy, Debug)]
@@ -52,7 +52,7 @@ pub(crate) struct Framing {
     pub(crate) origin: [f64; 3],
     /// Half the diagonal of the box of an object in the middle of the order of sizes; never 0.
     pub(crate) size: f64,
-    /// How far what is endless is drawn from its origin.
+    /// How far a half-space is drawn from its origin.
     pub(crate) patch: f64,
 }
 
@@ -77,7 +77,7 @@ impl Framing {
         let distance = center.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
         let is_near = distance <= 64.0 * radius.max(size);
         let origin = if is_near { [0.0; 3] } else { center };
-        // An endless ground goes on beyond what stands on it.
+        // A half-space goes on beyond the objects that lie on it.
         Some(Self { origin, size, patch: (1.5 * radius).max(8.0 * size) })
     }
 }

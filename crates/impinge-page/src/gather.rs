@@ -1,4 +1,5 @@
-//! A back end of debug drawing that fills buffers.
+//! A back end of debug drawing that fills the buffers of a frame: structures of arrays, which the page uploads as they
+//! are.
 
 use core::marker::PhantomData;
 
@@ -7,18 +8,16 @@ use impinge::math::{Point, Vector};
 use serde::Serialize;
 
 use crate::color::{ASKED, LAYERS, layer_of, word};
-use crate::explain::short;
+use crate::framing::FAR;
 use crate::mesh::{MeshTable, single};
 use crate::payload::{Payload, Section};
 use crate::space::{Viewed, coordinates};
+use crate::unit_shapes::UNSCALED;
 
 /// The number of an instance that is no object.
 const NO_OBJECT: u32 = u32::MAX;
 
-/// Lines that go farther are left out.
-const FAR: f32 = 1e18;
-
-/// So many texts at most are legible.
+/// The greatest number of texts: more are not legible.
 const MAX_LABELS: usize = 200;
 
 /// A text in a frame.
@@ -30,10 +29,11 @@ struct Label {
     layer: u32,
 }
 
-/// Numbers, one after another for each thing that is drawn.
+/// Lines, triangles or points: their coordinates, and for each a colour and a layer.
 #[derive(Debug, Default)]
 struct Things {
     numbers: Vec<f32>,
+    /// Of points alone.
     sizes: Vec<f32>,
     colors: Vec<u32>,
     layers: Vec<u32>,
@@ -47,13 +47,14 @@ impl Things {
     }
 }
 
-/// Shapes by mesh and pose.
+/// Shapes by mesh, scale and pose.
 #[derive(Debug, Default)]
 struct Instances {
     mesh: Vec<u32>,
     object: Vec<u32>,
     color: Vec<u32>,
     pose: Vec<f32>,
+    scale: Vec<f32>,
     flags: Vec<u32>,
 }
 
@@ -61,6 +62,8 @@ struct Instances {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instance {
     pub(crate) mesh: u32,
+    /// The factors along the axes of the mesh, applied before its pose.
+    pub(crate) scale: [f32; 3],
     pub(crate) object: u32,
     pub(crate) color: u32,
     pub(crate) flags: u32,
@@ -93,7 +96,7 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
         self.is_shown[layer].then(|| u32::try_from(layer).unwrap_or(0))
     }
 
-    /// Relative to the origin.
+    /// Relative to the origin. The difference is taken in `f64`, so that scenes far from 0 keep their digits.
     fn relative(&self, point: [f64; 3]) -> [f32; 3] {
         [0, 1, 2].map(|axis| single(point[axis] - self.origin[axis]))
     }
@@ -102,10 +105,21 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
         self.relative(coordinates(&point.coords))
     }
 
+    /// Makes space for so many instances more, which are then added without moving the others.
+    pub(crate) fn reserve(&mut self, count: usize) {
+        let Instances { mesh, object, color, pose, scale, flags } = &mut self.buffers.instances;
+        for words in [mesh, object, color, flags] {
+            words.reserve(count);
+        }
+        pose.reserve(7 * count);
+        scale.reserve(3 * count);
+    }
+
     /// Puts a mesh at a position.
     pub(crate) fn instance(&mut self, instance: Instance, position: &N::Isometry) {
-        let Some(center) = self.meshes.place(instance.mesh) else { return };
+        let Some(center) = self.meshes.keep(instance.mesh) else { return };
         let mut translation = coordinates(&N::translation(position));
+        // Only a mesh without a scale has another centre than the origin of its shape.
         if center != [0.0; 3] {
             let center =
                 N::pose(position).vector(&Vector::<N, D>::from_fn(|axis, _| N::lit(center[axis])));
@@ -113,19 +127,20 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
             translation = [0, 1, 2].map(|axis| translation[axis] + turned[axis]);
         }
         let (at, turn) = (self.relative(translation), N::quaternion(position).map(single));
-        let Instances { mesh, object, color, pose, flags } = &mut self.buffers.instances;
+        let Instances { mesh, object, color, pose, scale, flags } = &mut self.buffers.instances;
         mesh.push(instance.mesh);
         object.push(instance.object);
         color.push(instance.color);
         flags.push(instance.flags);
+        scale.extend_from_slice(&instance.scale);
         pose.extend_from_slice(&at);
         pose.extend_from_slice(&turn);
     }
 }
 
-/// Some coordinate is NaN, or so large that nothing can be computed with it.
+/// Whether a coordinate is NaN or beyond [`FAR`].
 fn is_nowhere<const COUNT: usize>(numbers: &[[f32; 3]; COUNT]) -> bool {
-    !numbers.as_flattened().iter().all(|x| x.abs() <= FAR)
+    !numbers.as_flattened().iter().all(|x| f64::from(x.abs()) <= FAR)
 }
 
 impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
@@ -150,9 +165,8 @@ impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
         let Some(layer) = self.layer(what) else { return };
         let at = self.at(at);
         if !is_nowhere(&[at]) && self.buffers.labels.len() < MAX_LABELS {
-            // Numbers come with all their digits.
-            let text = text.parse().map_or_else(|_| text.to_owned(), short);
-            self.buffers.labels.push(Label { at, text, color: word(color), layer });
+            let (text, color) = (text.to_owned(), word(color));
+            self.buffers.labels.push(Label { at, text, color, layer });
         }
     }
 
@@ -169,9 +183,10 @@ impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
             return;
         }
         let mesh = self.meshes.number(mesh);
-        // What a query asks about hides nothing.
+        // Transparent, so that the shape of a query hides no object.
         let color = word(color.with_alpha(color.alpha.min(96)));
-        self.instance(Instance { mesh, object: NO_OBJECT, color, flags: ASKED }, pose);
+        let (scale, object, flags) = (UNSCALED, NO_OBJECT, ASKED);
+        self.instance(Instance { mesh, scale, object, color, flags }, pose);
     }
 }
 
@@ -183,6 +198,7 @@ struct InstanceSections {
     object: Section,
     color: Section,
     pose: Section,
+    scale: Section,
     flags: Section,
 }
 
@@ -232,6 +248,7 @@ impl Buffers {
                 object: payload.words(&instances.object),
                 color: payload.words(&instances.color),
                 pose: payload.floats(&instances.pose),
+                scale: payload.floats(&instances.scale),
                 flags: payload.words(&instances.flags),
             },
             lines: LineSections {

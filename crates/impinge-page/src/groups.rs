@@ -4,27 +4,30 @@ use impinge::world::CollisionGroups;
 
 use crate::answer::{GroupNumbers, ShownGroups};
 
-/// The number of groups.
-const GROUPS: usize = 30;
-
 /// The groups of an object.
 pub(crate) fn shown(groups: &CollisionGroups) -> ShownGroups {
     ShownGroups {
-        membership: numbers(|group| groups.is_member_of(group)),
-        whitelist: numbers(|group| groups.is_group_whitelisted(group)),
-        blacklist: numbers(|group| groups.is_group_blacklisted(group)),
+        membership: numbers(groups.membership_mask()),
+        whitelist: numbers(groups.whitelist_mask()),
+        blacklist: numbers(groups.blacklist_mask()),
         self_collision: groups.can_interact_with_self(),
     }
 }
 
-fn numbers(has: impl Fn(usize) -> bool) -> GroupNumbers {
-    let some: Vec<usize> = (0..GROUPS).filter(|group| has(*group)).collect();
-    if some.len() == GROUPS { GroupNumbers::All("all") } else { GroupNumbers::Some(some) }
+/// The groups of a mask: bit `g` is group `g`.
+fn bits(mask: u32) -> impl Iterator<Item = usize> {
+    (0..u32::BITS as usize).filter(move |group| mask >> group & 1 == 1)
+}
+
+fn numbers(mask: u32) -> GroupNumbers {
+    // New groups are members of all that there are.
+    let is_all = mask == CollisionGroups::new().membership_mask();
+    if is_all { GroupNumbers::All("all") } else { GroupNumbers::Some(bits(mask).collect()) }
 }
 
 /// Groups in a sentence.
-fn listed(has: impl Fn(usize) -> bool) -> String {
-    match numbers(has) {
+fn listed(mask: u32) -> String {
+    match numbers(mask) {
         GroupNumbers::All(all) => all.to_owned(),
         GroupNumbers::Some(some) if some.is_empty() => "none".to_owned(),
         GroupNumbers::Some(some) => {
@@ -41,32 +44,27 @@ pub(crate) struct Named<'a> {
     pub(crate) groups: &'a CollisionGroups,
 }
 
-/// Why the groups of two objects allow a pair, or do not: what [`CollisionGroups::can_interact_with_groups`] asks, with
-/// the first thing that forbids it.
+/// Why the groups of two objects allow a pair or refuse it, as [`CollisionGroups::can_interact_with_groups`] does: the
+/// first refusal, of the lists of either.
 pub(crate) fn text(one: Named<'_>, two: Named<'_>) -> String {
     let refusals = [refusal(one, two), refusal(two, one)];
     let first = refusals.into_iter().flatten().next();
     first.unwrap_or_else(|| "each has a group that the other allows".to_owned())
 }
 
-/// Why an object may not meet another by the latter's lists.
+/// Why the lists of the second object refuse the first; `None` if they allow it. The blacklist takes precedence.
 fn refusal(one: Named<'_>, other: Named<'_>) -> Option<String> {
-    let Named { object, groups } = one;
-    let is_member = |group: usize| groups.is_member_of(group);
-    let mut forbidden =
-        (0..GROUPS).filter(|&group| is_member(group) && other.groups.is_group_blacklisted(group));
-    if let Some(group) = forbidden.next() {
-        return Some(format!("group {group} of {object} is in the blacklist of {}", other.object));
+    let membership = one.groups.membership_mask();
+    let [whitelist, blacklist] = [other.groups.whitelist_mask(), other.groups.blacklist_mask()];
+    if let Some(group) = bits(membership & blacklist).next() {
+        let (one, other) = (one.object, other.object);
+        return Some(format!("group {group} of {one} is in the blacklist of {other}"));
     }
-    let is_allowed =
-        (0..GROUPS).any(|group| is_member(group) && other.groups.is_group_whitelisted(group));
-    let membership = listed(is_member);
-    let whitelist = listed(|group| other.groups.is_group_whitelisted(group));
-    let text = format!(
-        "membership {membership} of {object} is not in the whitelist {whitelist} of {}",
-        other.object
-    );
-    (!is_allowed).then_some(text)
+    (membership & whitelist == 0).then(|| {
+        let [groups, allowed] = [membership, whitelist].map(listed);
+        let (one, other) = (one.object, other.object);
+        format!("membership {groups} of {one} is not in the whitelist {allowed} of {other}")
+    })
 }
 
 #[cfg(test)]

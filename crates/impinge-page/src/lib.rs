@@ -32,6 +32,7 @@ mod space;
 mod stage;
 mod stand_in;
 mod time_line;
+mod unit_shapes;
 
 pub use engine::Engine;
 pub use error::EngineError;

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use impinge::debug_render::ShapeMesh;
 use impinge::math::Real;
+use serde::Serialize;
 
 use crate::payload::{Payload, Section};
 use crate::space::coordinates;
-use serde::Serialize;
 
-/// A mesh that no frame has named for so many frames is dropped.
+/// The number of frames after which an unused mesh is dropped.
 const PATIENCE: u64 = 120;
 
 /// A mesh in `f32`, as the page has it.
@@ -17,13 +17,13 @@ const PATIENCE: u64 = 120;
 struct Buffers {
     /// [`ShapeMesh::id`].
     hash: u64,
-    /// What the vertices are relative to, in the frame of the shape: `f32` cannot tell apart the vertices of a
-    /// mesh that lies far from its own origin.
+    /// The origin of the vertices, in the frame of the shape: in `f32` the vertices of a mesh far from the origin
+    /// of its shape would coincide.
     center: [f64; 3],
     vertices: Vec<f32>,
     triangles: Vec<u32>,
     lines: Vec<u32>,
-    /// The last frame that named it.
+    /// The last frame that used it.
     used: u64,
 }
 
@@ -39,56 +39,60 @@ pub(crate) struct MeshSections {
 /// Meshes by number; numbers count up and are given once.
 #[derive(Debug, Default)]
 pub(crate) struct MeshTable {
+    /// The numbers of the meshes by [`ShapeMesh::id`].
     numbers: BTreeMap<u64, u32>,
-    /// `None` for those that were dropped.
-    meshes: Vec<Option<Buffers>>,
+    meshes: BTreeMap<u32, Buffers>,
+    /// The number of the next new mesh.
+    next: u32,
     frame: u64,
 }
 
 impl MeshTable {
-    /// Begins a frame: drops meshes that were not used for long, and returns their numbers.
+    /// Begins a frame: drops the meshes that no recent frame has used, and returns their numbers.
     pub(crate) fn begin(&mut self) -> Vec<u32> {
         self.frame += 1;
-        let (frame, mut dropped) = (self.frame, Vec::new());
-        for (number, mesh) in (0..).zip(&mut self.meshes) {
-            if let Some(old) = mesh.take_if(|mesh| mesh.used + PATIENCE < frame) {
-                self.numbers.remove(&old.hash);
-                dropped.push(number);
+        let (frame, numbers, mut dropped) = (self.frame, &mut self.numbers, Vec::new());
+        self.meshes.retain(|number, mesh| {
+            let is_recent = frame <= mesh.used + PATIENCE;
+            if !is_recent {
+                numbers.remove(&mesh.hash);
+                dropped.push(*number);
             }
-        }
+            is_recent
+        });
         dropped
     }
 
     /// The number of a mesh, by which frames name it.
     pub(crate) fn number<N: Real, const D: usize>(&mut self, mesh: &ShapeMesh<N, D>) -> u32 {
-        if let Some(&number) = self.numbers.get(&mesh.id) {
-            return number;
+        let next = self.next;
+        let number = *self.numbers.entry(mesh.id).or_insert(next);
+        if number == next {
+            self.meshes.insert(next, Buffers::of(mesh, self.frame));
+            self.next += 1;
         }
-        // There is memory for fewer.
-        let number = u32::try_from(self.meshes.len()).unwrap_or(u32::MAX);
-        self.meshes.push(Some(Buffers::of(mesh, self.frame)));
-        self.numbers.insert(mesh.id, number);
         number
     }
 
-    /// Notes that the frame names a mesh, and returns what its vertices are relative to; `None` if it was dropped.
-    pub(crate) fn place(&mut self, number: u32) -> Option<[f64; 3]> {
-        let mesh = self.meshes.get_mut(number as usize)?.as_mut()?;
+    /// Keeps a mesh for the frames to come, and returns the centre that its vertices are relative to; `None` if it
+    /// was dropped.
+    pub(crate) fn keep(&mut self, number: u32) -> Option<[f64; 3]> {
+        let mesh = self.meshes.get_mut(&number)?;
         mesh.used = self.frame;
         Some(mesh.center)
     }
 
     /// Writes the meshes with numbers from `known` on.
     pub(crate) fn write(&self, known: u32, payload: &mut Payload) -> Vec<MeshSections> {
-        let meshes = (0..).zip(&self.meshes).skip(known as usize);
-        let kept = meshes.filter_map(|(id, mesh)| Some((id, mesh.as_ref()?)));
-        kept.map(|(id, mesh)| MeshSections {
-            id,
-            vertices: payload.floats(&mesh.vertices),
-            triangles: payload.words(&mesh.triangles),
-            lines: payload.words(&mesh.lines),
-        })
-        .collect()
+        let meshes = self.meshes.range(known..);
+        meshes
+            .map(|(&id, mesh)| MeshSections {
+                id,
+                vertices: payload.floats(&mesh.vertices),
+                triangles: payload.words(&mesh.triangles),
+                lines: payload.words(&mesh.lines),
+            })
+            .collect()
     }
 }
 
@@ -109,7 +113,8 @@ impl Buffers {
     }
 }
 
-/// The middle of some points if they are far from the origin, measured by their extent; else the origin.
+/// The origin, or the middle of the points where that is more than 16 times their extent away: then `f32` would lose
+/// more than 4 of its 24 bits.
 fn far_center(points: &[[f64; 3]]) -> [f64; 3] {
     let ends = |axis: usize| {
         let on_axis = points.iter().map(|point| point[axis]);
@@ -149,8 +154,8 @@ mod tests {
         let far = Segment::new(Point::new(1e12, 0.0, 0.0), Point::new(1e12 + 1.0, 0.0, 0.0));
         let mut table = MeshTable::default();
         let number = table.number(&mesh(&far));
-        assert_eq!(table.place(number), Some([1e12 + 0.5, 0.0, 0.0]), "the middle");
-        let buffers = table.meshes[0].as_ref().expect("it was just made");
+        assert_eq!(table.keep(number), Some([1e12 + 0.5, 0.0, 0.0]), "the middle");
+        let buffers = &table.meshes[&0];
         assert_eq!(buffers.vertices, [-0.5, 0.0, 0.0, 0.5, 0.0, 0.0], "half a length each way");
     }
 
@@ -160,7 +165,7 @@ mod tests {
         let mut table = MeshTable::default();
         assert_eq!([0; 2].map(|_| table.number(&mesh(&segment))), [0, 0], "the same number");
         let dropped: Vec<u32> = (0..PATIENCE + 2).flat_map(|_| table.begin()).collect();
-        assert_eq!((dropped, table.place(0)), (vec![0], None), "once");
+        assert_eq!((dropped, table.keep(0)), (vec![0], None), "once");
         assert_eq!(table.number(&mesh(&segment)), 1, "numbers are given once");
         assert_eq!(table.write(0, &mut Payload::default()).len(), 1, "the dropped one is gone");
     }

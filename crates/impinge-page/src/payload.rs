@@ -23,8 +23,11 @@ impl Payload {
 
     fn section(&mut self, count: usize, numbers: impl Iterator<Item = [u8; 4]>) -> Section {
         let start = self.0.len();
-        self.0.reserve(4 * count);
-        numbers.for_each(|bytes| self.0.extend_from_slice(&bytes));
+        self.0.resize(start + 4 * count, 0);
+        // Copied in place: appending four bytes at a time would ask for space each time.
+        for (into, bytes) in self.0[start..].chunks_exact_mut(4).zip(numbers) {
+            into.copy_from_slice(&bytes);
+        }
         Section(start, count)
     }
 }

@@ -1,4 +1,4 @@
-//! What a stage keeps from frame to frame: meshes, and what is known of each object's shape.
+//! Frames of a stage, and the state that lasts from one to the next: meshes, the shapes of objects, the origin.
 
 use core::marker::PhantomData;
 
@@ -20,26 +20,30 @@ use crate::mesh::{MeshSections, MeshTable};
 use crate::payload::Payload;
 use crate::request::FrameRequest;
 use crate::space::{Viewed, coordinates};
+use crate::unit_shapes::UnitShapes;
 
-/// The shape that an object had in the last frame, and its mesh.
+/// The shape that an object had in the last frame, and the mesh that is drawn of it.
 #[derive(Clone, Debug)]
 struct KnownShape<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
     kind: ShapeKind,
     mesh: u32,
+    /// [`Instance::scale`].
+    scale: [f32; 3],
 }
 
 /// Draws frames of one stage.
 ///
-/// A frame costs a pose for each object: comparing it with an earlier one would cost as much. Shapes are looked at
-/// when an object has another one, touching objects when the world was changed.
+/// A frame has every pose: comparing them with those before would cost as much. Meshes are searched for objects with a
+/// new shape alone, and touching objects are found after a change of the world.
 #[derive(Debug)]
 pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     drawing: DebugDrawing<N, D>,
+    units: UnitShapes<N, D>,
     meshes: MeshTable,
     /// By the index of the handle.
     shapes: Vec<Option<KnownShape<N, D>>>,
-    /// `None` before there was an object.
+    /// `None` before the first object.
     framing: Option<Framing>,
     /// By the index of the handle; `None` after a change.
     touching: Option<Vec<bool>>,
@@ -60,6 +64,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
     pub(crate) fn new() -> Self {
         Self {
             drawing: DebugDrawing::default(),
+            units: UnitShapes::new(),
             meshes: MeshTable::default(),
             shapes: Vec::new(),
             framing: None,
@@ -67,7 +72,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         }
     }
 
-    /// The world was changed.
+    /// Invalidates what depends on the contacts of the world.
     pub(crate) fn note_change(&mut self) {
         self.touching = None;
     }
@@ -79,12 +84,13 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         asked: &FrameRequest,
         beside: impl FnOnce(&mut DebugDrawing<N, D>, &mut dyn DebugRender<N, D>),
     ) -> Result<Frame, EngineError> {
+        // Half-spaces have a mesh by the framing, and styles the sizes.
         let framing = self.framing(world);
         let is_shown = LAYERS.map(|(name, _)| asked.layers.iter().any(|layer| layer == name));
         self.set_options(&framing, &is_shown);
         let dropped = self.begin();
         let touching = self.touching.take().unwrap_or_else(|| touching(world));
-        let Self { drawing, meshes, shapes, .. } = self;
+        let Self { drawing, units, meshes, shapes, .. } = self;
         let mut gather = Gather {
             buffers: Buffers::default(),
             meshes,
@@ -92,8 +98,9 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
             origin: framing.origin,
             scalar: PhantomData,
         };
+        // Objects are instances of meshes and bypass the drawing; it draws all other layers.
         if is_shown[0] {
-            let mut objects = Objects { drawing, shapes, touching: &touching, asked };
+            let mut objects = Objects { drawing, units, shapes, touching: &touching, asked };
             objects.draw(world, &mut gather);
         }
         drawing.world(world, &mut gather);
@@ -102,6 +109,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         let buffers = gather.buffers;
         self.touching = Some(touching);
 
+        // Meshes come last: those of the objects and queries above are known by now.
         let mut payload = Payload::default();
         let text = FrameText {
             origin: framing.origin,
@@ -124,7 +132,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         dropped
     }
 
-    /// Fixed once there is an object.
+    /// The framing of the first frame with an object, for the whole stage: later frames keep their coordinates.
     fn framing<T>(&mut self, world: &CollisionWorld<N, D, T>) -> Framing {
         self.framing = self.framing.or_else(|| Framing::of(world));
         self.framing.unwrap_or(Framing::UNKNOWN)
@@ -150,6 +158,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
 /// The pass over all objects.
 struct Objects<'a, N: Viewed<D>, const D: usize> {
     drawing: &'a mut DebugDrawing<N, D>,
+    units: &'a UnitShapes<N, D>,
     shapes: &'a mut Vec<Option<KnownShape<N, D>>>,
     touching: &'a [bool],
     asked: &'a FrameRequest,
@@ -158,18 +167,20 @@ struct Objects<'a, N: Viewed<D>, const D: usize> {
 impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
     /// An instance for each object.
     fn draw<T>(&mut self, world: &CollisionWorld<N, D, T>, gather: &mut Gather<'_, N, D>) {
+        gather.reserve(world.len());
         for object in world.collision_objects() {
             let index = object.handle().uid();
             let flags = self.flags(index, object);
-            let &KnownShape { mesh, kind, .. } = self.known(index, object.shape(), gather.meshes);
+            let &KnownShape { mesh, scale, kind, .. } =
+                self.known(index, object.shape(), gather.meshes);
             let color = Look { kind, object: index, flags }.color();
             let object_number = u32::try_from(index).unwrap_or(u32::MAX);
-            let instance = Instance { mesh, object: object_number, color, flags };
+            let instance = Instance { mesh, scale, object: object_number, color, flags };
             gather.instance(instance, object.position());
         }
     }
 
-    /// The mesh of a shape, which is looked at if the object had another one.
+    /// The mesh and the kind of an object's shape, which are computed if the object had another one before.
     fn known(
         &mut self,
         index: usize,
@@ -179,13 +190,13 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         if self.shapes.len() <= index {
             self.shapes.resize(index + 1, None);
         }
-        let Self { drawing, shapes, .. } = self;
+        let Self { drawing, units, shapes, .. } = self;
         let slot = &mut shapes[index];
         let _ = slot.take_if(|known| !known.shape.is_same(shape));
-        slot.get_or_insert_with(|| KnownShape {
-            shape: shape.clone(),
-            kind: shape.geometry().kind(),
-            mesh: meshes.number(drawing.mesh(shape)),
+        slot.get_or_insert_with(|| {
+            let (drawn, scale) = units.scaled(shape);
+            let mesh = meshes.number(drawing.mesh(drawn));
+            KnownShape { shape: shape.clone(), kind: shape.geometry().kind(), mesh, scale }
         })
     }
 
@@ -213,7 +224,8 @@ fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) ->
     touching
 }
 
-/// Boxes and contacts of selected objects, but for those of layers that are shown anyway.
+/// Boxes and contacts of selected objects, except in layers that are on: those have them already. For that time the
+/// layers of the back end are the ones that are off, and the drawing has the styles of all.
 fn draw_selected<N: Viewed<D>, const D: usize, T>(
     drawing: &mut DebugDrawing<N, D>,
     world: &CollisionWorld<N, D, T>,

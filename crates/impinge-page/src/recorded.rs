@@ -3,7 +3,9 @@
 use impinge::debug_render::{DebugDrawing, DebugRender};
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::CollisionWorld;
-use impinge_record::{Difference, Divergence, Header, ObjectField, ReadError, Registry, Replay};
+use impinge_record::{
+    Difference, Divergence, Header, Loss, ObjectField, ReadError, Registry, Replay,
+};
 use impinge_samples::ControlValue;
 
 use crate::answer::{Info, Status};
@@ -14,31 +16,31 @@ use crate::stand_in::StandIns;
 use crate::time_line::marks;
 use crate::{EngineError, Viewed};
 
-/// A recording that is replayed, whole or growing. The data of objects may be any bytes.
+/// A recording that is replayed, at once or while it grows. The data of objects may be any bytes.
 ///
-/// What the recording names and the registry lacks is stood in for: pair filters let all pairs through, shapes become
-/// balls. [`Info::notes`] says so, and the replay then differs from the recording where that matters.
+/// Names that the registry lacks get stand-ins: pair filters let all pairs through, shapes become balls. The replay then
+/// differs from the recording where that matters. Of a recording without an end, or with a damaged one, the records
+/// before that are replayed. [`Info::notes`] says both.
 #[derive(Debug)]
 pub struct Recorded<N: Viewed<D>, const D: usize> {
     replay: Replay<N, D, Vec<u8>>,
     stand_ins: StandIns<N, D>,
     is_stream: bool,
+    /// What could not be read when it was opened; the replay forgets it where its bytes are read again.
+    loss: Option<Loss>,
 }
 
 impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
-    /// A whole recording, at its first update.
+    /// A recording of which no more bytes come, at its first update.
+    ///
+    /// Costs O(bytes) time and a copy of them.
     ///
     /// # Errors
-    /// As [`Replay::open`] and [`Replay::seek`], but for names that the registry lacks.
-    pub fn open(bytes: Vec<u8>, registry: Registry<N, D, Vec<u8>>) -> Result<Self, EngineError> {
-        let mut stand_ins = StandIns::of(registry);
-        let replay = loop {
-            match Replay::open(bytes.clone(), &stand_ins.registry) {
-                Ok(replay) => break replay,
-                Err(error) => stand_ins.resolve(error)?,
-            }
-        };
-        let mut recorded = Self { replay, stand_ins, is_stream: false };
+    /// As [`Replay::salvage`] and [`Replay::seek`], but for names that the registry lacks.
+    pub fn open(bytes: &[u8], registry: Registry<N, D, Vec<u8>>) -> Result<Self, EngineError> {
+        let mut recorded = Self { is_stream: false, ..Self::growing(registry) };
+        recorded.read(bytes)?;
+        recorded.loss = recorded.replay.loss().cloned();
         recorded.seek(1)?;
         Ok(recorded)
     }
@@ -48,27 +50,50 @@ impl<N: Viewed<D>, const D: usize> Recorded<N, D> {
     pub fn growing(registry: Registry<N, D, Vec<u8>>) -> Self {
         let stand_ins = StandIns::of(registry);
         let replay = Replay::growing(&stand_ins.registry);
-        Self { replay, stand_ins, is_stream: true }
+        Self { replay, stand_ins, is_stream: true, loss: None }
     }
 
-    /// Lets something stand in for a name that was found missing, and reads all bytes again.
-    fn reread(&mut self, error: ReadError) -> Result<(), ReadError> {
-        self.stand_ins.resolve(error)?;
-        let bytes = self.replay.bytes().to_vec();
-        self.replay = Replay::growing(&self.stand_ins.registry);
-        while let Err(error) = self.replay.push(&bytes) {
-            self.stand_ins.resolve(error)?;
-            self.replay = Replay::growing(&self.stand_ins.registry);
+    /// Reads bytes from the beginning of a recording, again for each name that gets a stand-in on the way.
+    fn read(&mut self, bytes: &[u8]) -> Result<(), ReadError> {
+        loop {
+            let error = if self.is_stream {
+                // Damage is an error: the bytes that follow it are never read.
+                self.replay = Replay::growing(&self.stand_ins.registry);
+                self.replay.push(bytes).err()
+            } else {
+                self.replay = Replay::salvage(bytes, &self.stand_ins.registry)?;
+                self.replay.loss().map(|loss| loss.error.clone())
+            };
+            match error {
+                Some(error) if self.stand_ins.add_for(&error) => {}
+                Some(error) if self.is_stream => return Err(error),
+                _ => return Ok(()),
+            }
         }
-        Ok(())
     }
 
-    /// Goes to a step; `at_most` the last.
+    /// Reads all bytes again, with a stand-in for the name that an error says is missing.
+    ///
+    /// # Errors
+    /// The error itself, if it is another one.
+    fn reread(&mut self, error: ReadError) -> Result<(), ReadError> {
+        if !self.stand_ins.add_for(&error) {
+            return Err(error);
+        }
+        let bytes = self.replay.bytes().to_vec();
+        self.read(&bytes)
+    }
+
+    /// Goes to a step, or to the last one. Names of pair filters are found missing here, where their calls are played.
     fn go(&mut self, step: usize) -> Result<(), ReadError> {
         while let Err(error) = self.replay.seek(step) {
             self.reread(error)?;
         }
         Ok(())
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.loss.iter().map(loss_text).chain(self.stand_ins.notes()).collect()
     }
 }
 
@@ -79,25 +104,17 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
         self.replay.world()
     }
 
-    fn info(&self, bounds: [[f64; 3]; 2]) -> Info {
+    fn info(&self) -> Info {
         let header = Header::read(self.replay.bytes());
         Info {
             kind: if self.is_stream { "stream" } else { "recording" },
             step: self.replay.step(),
-            notes: self.stand_ins.notes(),
-            dimension: D,
-            scalar: format!("f{}", 8 * N::BYTES),
-            name: String::new(),
-            title: String::new(),
-            about: String::new(),
+            notes: self.notes(),
             written_by: header.map_or_else(|_| String::new(), |header| header.writer),
             steps: Some(self.replay.len()),
             complete: self.replay.is_complete(),
-            time_step: 1.0 / 60.0,
-            bounds,
-            up: [0.0, 1.0, 0.0],
             marks: marks(self.replay.marks()),
-            controls: Vec::new(),
+            ..Info::default()
         }
     }
 
@@ -115,7 +132,7 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
             self.reread(error)?;
             self.go(step)?;
         }
-        // What was empty stands at its first update, as what is opened whole.
+        // A stream stands at its first update as soon as it has one, like a recording that is opened.
         if step == 0 {
             self.go(1)?;
         }
@@ -154,6 +171,19 @@ impl<N: Viewed<D>, const D: usize> Source<N, D> for Recorded<N, D> {
 
     fn stand_ins(&self) -> &[String] {
         &self.stand_ins.filters
+    }
+}
+
+/// What is missing of a recording, for people.
+fn loss_text(loss: &Loss) -> String {
+    match loss.bytes {
+        0 => "The recording has no end: its program did not finish it.".to_owned(),
+        bytes => {
+            format!(
+                "The recording has no end: its last {bytes} bytes cannot be read, {}.",
+                loss.error
+            )
+        }
     }
 }
 

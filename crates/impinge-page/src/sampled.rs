@@ -4,9 +4,9 @@ use impinge::debug_render::{DebugDrawing, DebugRender};
 use impinge::math::Space;
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::CollisionWorld;
-use impinge_samples::{Control, ControlKind, ControlValue, Entry, Running, Sample};
+use impinge_samples::{Control, ControlValue, Entry, Running, Sample};
 
-use crate::answer::{Info, ShownControl, ShownKind, ShownReadout, Status};
+use crate::answer::{Info, Status};
 use crate::describe::status;
 use crate::stage::Source;
 use crate::{EngineError, Viewed};
@@ -19,8 +19,8 @@ where
 {
     running: Running<D>,
     entry: Entry,
-    /// The controls that the page knows.
-    known: Vec<ShownControl>,
+    /// The controls as the page has them: those of the last status, with what it has set since.
+    known: Vec<Control>,
 }
 
 impl<const D: usize> Sampled<D>
@@ -34,7 +34,7 @@ where
     pub fn new(entry: &Entry, sample: Box<dyn Sample<D>>) -> Result<Self, EngineError> {
         let mut running = Running::new(sample)?;
         drop(running.take_bytes());
-        let known = shown_controls(running.controls());
+        let known = running.controls().to_vec();
         Ok(Self { running, entry: *entry, known })
     }
 
@@ -53,38 +53,25 @@ where
         self.running.world()
     }
 
-    fn info(&self, bounds: [[f64; 3]; 2]) -> Info {
+    fn info(&self) -> Info {
         let Entry { name, title, about, .. } = self.entry;
         Info {
             kind: "sample",
-            step: step_of(&self.running),
-            notes: Vec::new(),
-            dimension: D,
-            scalar: "f32".to_owned(),
+            step: self.running.step(),
             name: name.to_owned(),
             title: title.to_owned(),
             about: about.to_owned(),
-            written_by: String::new(),
-            steps: None,
-            complete: false,
-            time_step: 1.0 / 60.0,
-            bounds,
-            up: [0.0, 1.0, 0.0],
-            marks: Vec::new(),
-            controls: shown_controls(self.running.controls()),
+            controls: self.running.controls().to_vec(),
+            ..Info::default()
         }
     }
 
     fn status(&mut self) -> Status {
-        let now = shown_controls(self.running.controls());
-        let changed = now != self.known;
-        let controls = if changed { now.clone() } else { Vec::new() };
-        self.known = now;
-        let readouts = self.running.readouts().into_iter();
-        let readouts =
-            readouts.map(|readout| ShownReadout { label: readout.label, value: readout.value });
-        let of_world = status(self.world(), step_of(&self.running));
-        Status { controls, readouts: readouts.collect(), ..of_world }
+        let now = self.running.controls();
+        let controls = if now == self.known { Vec::new() } else { now.to_vec() };
+        self.known = now.to_vec();
+        let readouts = self.running.readouts();
+        Status { controls, readouts, ..status(self.world(), self.running.step()) }
     }
 
     fn push(&mut self, _: &[u8]) -> Result<(), EngineError> {
@@ -109,15 +96,13 @@ where
         Ok(())
     }
 
-    /// The page knows the value that it has set.
+    /// The page has the value that it sets, so that the next status does not repeat it.
     fn control(&mut self, name: &str, value: &ControlValue) -> Result<(), EngineError> {
         self.running.set_control(name, value)?;
         self.drop_recording();
-        let now = shown_controls(self.running.controls());
-        for (known, now) in self.known.iter_mut().zip(now) {
-            if known.name == name {
-                *known = now;
-            }
+        let controls = self.known.iter_mut().zip(self.running.controls());
+        for (known, now) in controls.filter(|(known, _)| known.name == name) {
+            *known = *now;
         }
         Ok(())
     }
@@ -139,27 +124,4 @@ where
     fn stand_ins(&self) -> &[String] {
         &[]
     }
-}
-
-fn step_of<const D: usize>(running: &Running<D>) -> usize
-where
-    f32: Viewed<D>,
-{
-    usize::try_from(running.step()).unwrap_or(usize::MAX)
-}
-
-fn shown_controls(controls: &[Control]) -> Vec<ShownControl> {
-    controls.iter().map(shown_control).collect()
-}
-
-const fn shown_control(control: &Control) -> ShownControl {
-    let kind = match control.kind {
-        ControlKind::Number { value, min, max, step } => {
-            ShownKind::Number { value, min, max, step }
-        }
-        ControlKind::Choice { value, choices } => ShownKind::Choice { value, choices },
-        ControlKind::Flag { value } => ShownKind::Flag { value },
-        ControlKind::Button { .. } => ShownKind::Button,
-    };
-    ShownControl { name: control.name, label: control.label, kind }
 }

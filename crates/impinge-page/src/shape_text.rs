@@ -1,4 +1,4 @@
-//! Shapes in words.
+//! Shapes in words: a kind, and the sizes that its constructor takes, with four significant digits.
 
 use impinge::math::{Point, Real, Vector};
 use impinge::shape::{
@@ -10,7 +10,7 @@ use impinge_record::{Recordable, ShapeData};
 use crate::answer::ShapeText;
 use crate::explain::short;
 
-/// A shape: its kind and its sizes.
+/// A shape: its kind and its sizes. A type of the recorded program has a kind and no sizes.
 pub(crate) fn shape_text<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> ShapeText {
     let kind = kind_text(shape.geometry().kind());
     let sizes = solid_sizes(shape).or_else(|| composite_sizes(shape)).or_else(|| own_sizes(shape));
@@ -40,6 +40,7 @@ const fn kind_text(kind: ShapeKind) -> &'static str {
     }
 }
 
+/// The text of a shape whose type is known: the sizes stand for all that follows the kind.
 fn sizes(kind: &'static str, text: String) -> Option<ShapeText> {
     Some(ShapeText { kind, text })
 }
@@ -101,6 +102,7 @@ fn solid_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Opt
 
 /// The composites with vertices or children.
 fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
+    // A surface with both sides is the rule and goes without saying.
     let sides = |is_one_sided: bool| if is_one_sided { ", one-sided" } else { "" };
     if let Some(line) = shape.as_shape::<Polyline<N, D>>() {
         let text = format!("{} segments{}", line.num_segments(), sides(line.is_one_sided()));
@@ -129,11 +131,13 @@ fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
             sizes("cone", format!("{height} {}, {radius} {}", length(h), length(r)))
         }
         ShapeData::Tetrahedron([a, b, c, d]) => {
+            // Of each corner with those after it: six.
             let edges = [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
             let edges = edges.map(|[from, to]| distance(&from, &to)).join(", ");
             sizes("tetrahedron", format!("edges {edges}"))
         }
         ShapeData::HeightField(field) => {
+            // In 2D there is one row.
             let rows = field.heights.len() / field.columns.max(1);
             let grid = if rows > 1 {
                 format!("{rows} × {}", field.columns)

@@ -17,7 +17,8 @@ pub trait Viewed<const D: usize>: Recordable<D> {
     /// The isometry of a translation and a unit quaternion, of which 2D takes z and w alone.
     fn placed(translation: &Vector<Self, D>, quaternion: [f64; 4]) -> Self::Isometry;
 
-    /// The registry with a pair filter that lets all pairs through.
+    /// The registry with a pair filter that lets all pairs through. Closures are filters of one dimension each, and a
+    /// type that is one in both would conflict with them.
     fn with_open_filter<T>(registry: Registry<Self, D, T>, name: &str) -> Registry<Self, D, T>;
 
     /// The object at a point on the screen, where, and the normal there.

@@ -4,7 +4,7 @@ use impinge::debug_render::{DebugDrawing, DebugRender};
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::{CollisionObject, CollisionWorld};
 use impinge_record::RecordData;
-use impinge_samples::ControlValue;
+use impinge_samples::{ControlValue, TIME_STEP};
 
 use crate::EngineError;
 use crate::answer::{
@@ -77,8 +77,9 @@ pub trait Source<N: Viewed<D>, const D: usize> {
     /// The world.
     fn world(&self) -> &CollisionWorld<N, D, Self::Data>;
 
-    /// As [`Stage::info`], but for what is known of the world itself.
-    fn info(&self, bounds: [[f64; 3]; 2]) -> Info;
+    /// As [`Stage::info`], but for what every stage has in common: the dimension, the scalar, the time of a step, the
+    /// bounds and the axis up.
+    fn info(&self) -> Info;
 
     /// As [`Stage::status`].
     fn status(&mut self) -> Status;
@@ -124,7 +125,7 @@ pub trait Source<N: Viewed<D>, const D: usize> {
 ///     recorder.add(position, ball.clone(), CollisionGroups::new(), query, Vec::new())?;
 /// }
 /// recorder.update();
-/// let recorded = Recorded::<f64, 2>::open(recorder.finish().bytes, Registry::new())?;
+/// let recorded = Recorded::<f64, 2>::open(&recorder.finish().bytes, Registry::new())?;
 /// assert_eq!(Shown::new(recorded).pair(0, 1)?.distance, 3.0);
 /// # Ok::<(), impinge_page::EngineError>(())
 /// ```
@@ -148,7 +149,14 @@ impl<S: Source<N, D>, N: Viewed<D>, const D: usize> Shown<S, N, D> {
 
 impl<S: Source<N, D>, N: Viewed<D>, const D: usize> Stage for Shown<S, N, D> {
     fn info(&self) -> Info {
-        self.source.info(self.picture.bounds(self.source.world()))
+        Info {
+            dimension: D,
+            scalar: format!("f{}", 8 * N::BYTES),
+            time_step: TIME_STEP.into(),
+            bounds: self.picture.bounds(self.source.world()),
+            up: [0.0, 1.0, 0.0],
+            ..self.source.info()
+        }
     }
 
     fn status(&mut self) -> Status {

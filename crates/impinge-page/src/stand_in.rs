@@ -1,4 +1,4 @@
-//! What stands for code of the program that was recorded: its pair filters and its own shapes.
+//! Stand-ins for code of the program that was recorded: its pair filters and its own shapes.
 
 use impinge::math::Space;
 use impinge::shape::{Ball, ShapeHandle};
@@ -6,10 +6,10 @@ use impinge_record::{Problem, ReadError, Registry};
 
 use crate::space::Viewed;
 
-/// So many names of a recording are stood in for; each costs opening it again.
+/// The number of names of a recording that get a stand-in; for each the recording is read again.
 const MAX_STAND_INS: usize = 64;
 
-/// A registry, and the names for which something stands in.
+/// A registry, and the names in it that are stand-ins.
 #[derive(Clone, Debug)]
 pub(crate) struct StandIns<N: Space<D>, const D: usize> {
     pub(crate) registry: Registry<N, D, Vec<u8>>,
@@ -22,13 +22,11 @@ impl<N: Viewed<D>, const D: usize> StandIns<N, D> {
         Self { registry, filters: Vec::new(), shapes: Vec::new() }
     }
 
-    /// Lets something stand in for a name that the registry lacks.
-    ///
-    /// # Errors
-    /// The error itself, if it is another one or there are too many names.
-    pub(crate) fn resolve(&mut self, error: ReadError) -> Result<(), ReadError> {
+    /// Adds a stand-in for the name that an error says is missing; `false` if the error is another one, or there are
+    /// too many stand-ins.
+    pub(crate) fn add_for(&mut self, error: &ReadError) -> bool {
         if self.filters.len() + self.shapes.len() >= MAX_STAND_INS {
-            return Err(error);
+            return false;
         }
         let registry = self.registry.clone();
         match &error.problem {
@@ -41,19 +39,19 @@ impl<N: Viewed<D>, const D: usize> StandIns<N, D> {
                 self.registry = registry.with_shape(name, ball);
                 self.shapes.push(name.clone());
             }
-            _ => return Err(error),
+            _ => return false,
         }
-        Ok(())
+        true
     }
 
-    /// What people should know of it.
-    pub(crate) fn notes(&self) -> Vec<String> {
+    /// A sentence for each name, for people.
+    pub(crate) fn notes(&self) -> impl Iterator<Item = String> {
         let filters = self.filters.iter().map(|name| {
             format!("The pair filter {name} is code of the program that was recorded; here it lets all pairs through.")
         });
         let shapes = self.shapes.iter().map(|name| {
             format!("The shape {name} is code of the program that was recorded; here it is a ball of radius 0.5.")
         });
-        filters.chain(shapes).collect()
+        filters.chain(shapes)
     }
 }

@@ -95,6 +95,25 @@ impl Header {
         Self::fields(&mut Source::new(bytes, 0..bytes.len()))
     }
 
+    /// Whether bytes whose header cannot be read, with this error, are the beginning of a header: the rest may follow.
+    ///
+    /// ```
+    /// use impinge_record::{Header, Recorder, Registry};
+    ///
+    /// let recorder = Recorder::<f32, 3, ()>::new(0.02, Registry::new()).expect("a usable margin");
+    /// let bytes = recorder.finish().bytes;
+    /// let is_begun = |bytes: &[u8]| Header::read(bytes).is_err_and(|error| Header::is_begun(bytes, &error));
+    /// assert!(is_begun(&bytes[..3]) && is_begun(&bytes[..20]) && !is_begun(b"no recording"));
+    /// ```
+    #[must_use]
+    pub fn is_begun(bytes: &[u8], error: &ReadError) -> bool {
+        match error.problem {
+            Problem::Truncated => true,
+            Problem::NotARecording => MAGIC.starts_with(bytes),
+            _ => false,
+        }
+    }
+
     /// Where the checksum of the header begins, if the bytes have it.
     pub(crate) fn end(bytes: &[u8]) -> Result<usize, ReadError> {
         let mut source = Source::new(bytes, 0..bytes.len());
@@ -179,15 +198,6 @@ impl Cursor {
         let margin = source.number()?;
         self.pass(bytes, source.offset())?;
         Ok(margin)
-    }
-
-    /// The error of a header says only that more bytes are needed.
-    pub(crate) fn is_begun(bytes: &[u8], error: &ReadError) -> bool {
-        match error.problem {
-            Problem::Truncated => true,
-            Problem::NotARecording => MAGIC.starts_with(bytes),
-            _ => false,
-        }
     }
 
     /// Moves to the end of the checksum that follows the bytes up to `end`: it is that of all bytes so far.

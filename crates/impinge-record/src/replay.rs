@@ -6,7 +6,7 @@ use crate::RecordData;
 use crate::call::Call;
 use crate::divergence::Divergence;
 use crate::error::{Problem, ReadError};
-use crate::log::{Cursor, Raw};
+use crate::log::{Cursor, Header, Raw};
 use crate::marks::{FrameMark, Mark, Timeline};
 use crate::player::{Player, Resources};
 use crate::query::Asked;
@@ -211,7 +211,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
     fn scan(&mut self) -> Result<Reading, ReadError> {
         if self.cursor.offset() == 0 {
             match self.scan_header() {
-                Err(error) if Cursor::is_begun(&self.bytes, &error) => {
+                Err(error) if Header::is_begun(&self.bytes, &error) => {
                     return Ok(Reading::Waits(error));
                 }
                 header => header?,

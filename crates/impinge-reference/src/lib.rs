@@ -10,6 +10,7 @@
 //! - [`world`]: the naive collision world and its event log
 //! - [`random`]: the small deterministic generator that all tests share
 //! - [`topology`]: is this list of faces really a convex hull?
+#![forbid(unsafe_code)]
 
 pub mod geometry;
 pub mod precise;

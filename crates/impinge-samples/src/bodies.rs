@@ -13,10 +13,8 @@ use impinge::query::{ContactId, ContactPoint};
 use impinge_record::Recordable;
 
 use crate::place::pose_of;
-use crate::{Isometry, SampleError, World};
+use crate::{Isometry, SampleError, TIME_STEP, World};
 
-/// Seconds.
-pub(crate) const TIME_STEP: f32 = 1.0 / 60.0;
 const ITERATIONS: usize = 20;
 const GRAVITY: f32 = 10.0;
 const FRICTION: f32 = 0.5;

@@ -1,11 +1,15 @@
 //! Controls of a sample: numbers, choices, flags and buttons, by name.
 
+use std::collections::BTreeSet;
+
 use impinge::math::Real;
+use serde::Serialize;
 
 use crate::SampleError;
 
-/// What a control is, and its value.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a control is, and its value. It serializes with its name in lower case as the member `kind`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
 pub enum ControlKind {
     /// A number between bounds.
     Number {
@@ -30,21 +34,19 @@ pub enum ControlKind {
         /// The value.
         value: bool,
     },
-    /// Something to be done once.
-    Button {
-        /// It was pressed, and the sample has not yet done it.
-        is_pressed: bool,
-    },
+    /// Something to be done once, at the next step.
+    Button,
 }
 
-/// A control, as it is shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A control, as a page displays it. It serializes as one object of all its members.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Control {
     /// The name by which it is set; unique within a sample.
     pub name: &'static str,
     /// The text beside it.
     pub label: &'static str,
     /// Kind and value.
+    #[serde(flatten)]
     pub kind: ControlKind,
 }
 
@@ -80,13 +82,18 @@ pub enum ControlValue {
 /// # Ok::<(), SampleError>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Panel(Vec<Control>);
+pub struct Panel {
+    /// In the order in which they were declared.
+    controls: Vec<Control>,
+    /// The names of the buttons whose action is still to be done.
+    pressed: BTreeSet<&'static str>,
+}
 
 impl Panel {
     /// No controls.
     #[must_use]
     pub const fn new() -> Self {
-        Self(Vec::new())
+        Self { controls: Vec::new(), pressed: BTreeSet::new() }
     }
 
     /// With a number: its value at first, and the least value, the greatest, and the step.
@@ -122,18 +129,18 @@ impl Panel {
     /// With a button.
     #[must_use]
     pub fn button(self, name: &'static str, label: &'static str) -> Self {
-        self.with(name, label, ControlKind::Button { is_pressed: false })
+        self.with(name, label, ControlKind::Button)
     }
 
     fn with(mut self, name: &'static str, label: &'static str, kind: ControlKind) -> Self {
-        self.0.push(Control { name, label, kind });
+        self.controls.push(Control { name, label, kind });
         self
     }
 
     /// The controls, in order.
     #[must_use]
     pub fn controls(&self) -> &[Control] {
-        &self.0
+        &self.controls
     }
 
     /// Sets a control; nothing changes where that is refused.
@@ -141,7 +148,7 @@ impl Panel {
     /// # Errors
     /// If no control has the name, the value is of another kind, out of bounds, NaN, or none of the words.
     pub fn set(&mut self, name: &str, value: &ControlValue) -> Result<(), SampleError> {
-        let control = self.0.iter_mut().find(|control| control.name == name);
+        let control = self.controls.iter_mut().find(|control| control.name == name);
         let control = control.ok_or_else(|| SampleError::UnknownControl(name.to_owned()))?;
         let name = control.name;
         match (&mut control.kind, value) {
@@ -158,7 +165,9 @@ impl Panel {
                 *value = known.ok_or_else(refused)?;
             }
             (ControlKind::Flag { value }, ControlValue::Flag(wanted)) => *value = *wanted,
-            (ControlKind::Button { is_pressed }, ControlValue::Pressed) => *is_pressed = true,
+            (ControlKind::Button, ControlValue::Pressed) => {
+                self.pressed.insert(name);
+            }
             (_, wanted) => {
                 return Err(SampleError::WrongKind { name, value: wanted.clone() });
             }
@@ -167,7 +176,7 @@ impl Panel {
     }
 
     fn find(&self, name: &str) -> Option<&ControlKind> {
-        self.0.iter().find(|control| control.name == name).map(|control| &control.kind)
+        self.controls.iter().find(|control| control.name == name).map(|control| &control.kind)
     }
 
     /// The value of a number as a scalar of samples; 0 if there is no number of this name.
@@ -210,10 +219,6 @@ impl Panel {
 
     /// Whether a button was pressed since the last call.
     pub fn take_press(&mut self, name: &str) -> bool {
-        let control = self.0.iter_mut().find(|control| control.name == name);
-        match control.map(|control| &mut control.kind) {
-            Some(ControlKind::Button { is_pressed }) => std::mem::take(is_pressed),
-            _ => false,
-        }
+        self.pressed.remove(name)
     }
 }

@@ -1,4 +1,4 @@
-//! What samples need of a dimension: the solids there are, and grounds.
+//! What samples need of a dimension: its solids, surfaces and rotations.
 
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Vector};
@@ -9,7 +9,7 @@ use impinge::shape::{
     TriMesh, Triangle,
 };
 use impinge_record::Recordable;
-use impinge_scenes::{Placement, SceneShape};
+use impinge_scenes::Placement;
 
 use crate::place::{number, point, up, vector};
 
@@ -41,9 +41,6 @@ pub(crate) trait Dimension<const D: usize>: Recordable<D> {
         linear: Vector<f32, D>,
         turn: f32,
     ) -> Box<dyn RigidMotion<f32, D>>;
-
-    /// The shape of a scene that exists in one dimension only: a cylinder, a cone, or a ground.
-    fn scene_shape(shape: &SceneShape<D>) -> ShapeHandle<f32, D>;
 
     /// The position of a placement.
     fn placed(placement: &Placement<D>) -> Self::Isometry;
@@ -114,6 +111,7 @@ impl Dimension<2> for f32 {
     ];
 
     fn own_solid(kind: &str, size: Self) -> Option<ShapeHandle<Self, 2>> {
+        // Counter-clockwise, with sides of five directions, so that few pairs of sides are parallel.
         let corners = [[-1.0, 0.0], [-0.4, -0.8], [0.5, -0.7], [1.0, 0.1], [0.0, 0.9]];
         let corners = corners.map(|[x, y]| Point::<Self, 2>::new(x * size, y * size));
         (kind == "polygon").then(|| ShapeHandle::new(ConvexPolygon::from_points(&corners)))
@@ -156,16 +154,6 @@ impl Dimension<2> for f32 {
         Box::new(ConstantVelocities::<Self, 2>::new(start, linear, turn))
     }
 
-    fn scene_shape(shape: &SceneShape<2>) -> ShapeHandle<Self, 2> {
-        match shape {
-            SceneShape::Polyline { vertices } => {
-                let vertices = vertices.iter().map(|at| Point::from(at.map(Self::lit)));
-                ShapeHandle::new(Polyline::open(vertices.collect()))
-            }
-            other => unreachable!("{other:?} is of 3D, or of both dimensions"),
-        }
-    }
-
     fn placed(placement: &Placement<2>) -> Isometry2<Self> {
         let [x, y] = placement.translation.map(Self::lit);
         let [cosine, sine] = placement.complex().map(Self::lit);
@@ -195,6 +183,7 @@ impl Dimension<3> for f32 {
         let corner =
             |x: Self, y: Self, z: Self| Point::<Self, 3>::new(x * size, y * size, z * size);
         match kind {
+            // Half the height, then the radius; the axis of both is y.
             "cylinder" => Some(ShapeHandle::new(Cylinder::new(0.7 * size, 0.6 * size))),
             "cone" => Some(ShapeHandle::new(Cone::new(0.8 * size, 0.7 * size))),
             "tetrahedron" => Some(ShapeHandle::new(Tetrahedron::new([
@@ -228,6 +217,7 @@ impl Dimension<3> for f32 {
         let width = number(cells);
         let at = |n: usize| number(n) - 0.5 * width;
         // Row by row along z, in each row along x: the order of a height field's heights.
+        // A mesh takes the same vertices, so that both kinds are one surface.
         let vertices = (0..=cells).flat_map(|row| (0..=cells).map(move |column| [column, row]));
         let vertices = vertices.map(|[column, row]| {
             Point::<Self, 3>::new(at(column), height(at(column), at(row)), at(row))
@@ -256,25 +246,9 @@ impl Dimension<3> for f32 {
         linear: Vector<Self, 3>,
         turn: Self,
     ) -> Box<dyn RigidMotion<Self, 3>> {
-        // In 3D a turn from x to y is one about z.
+        // A turn from x to y is one about z.
         let angular = Vector::<Self, 3>::z() * turn;
         Box::new(ConstantVelocities::<Self, 3>::new(start, linear, angular))
-    }
-
-    fn scene_shape(shape: &SceneShape<3>) -> ShapeHandle<Self, 3> {
-        match shape {
-            SceneShape::Cylinder { half_height, radius } => {
-                ShapeHandle::new(Cylinder::new(Self::lit(*half_height), Self::lit(*radius)))
-            }
-            SceneShape::Cone { half_height, radius } => {
-                ShapeHandle::new(Cone::new(Self::lit(*half_height), Self::lit(*radius)))
-            }
-            SceneShape::TriMesh { vertices, triangles } => {
-                let vertices = vertices.iter().map(|at| Point::from(at.map(Self::lit)));
-                ShapeHandle::new(TriMesh::new(vertices.collect(), triangles.clone()))
-            }
-            other => unreachable!("{other:?} is of 2D, or of both dimensions"),
-        }
     }
 
     fn placed(placement: &Placement<3>) -> Isometry3<Self> {

@@ -1,5 +1,7 @@
 //! The samples in the order of the gallery.
 
+use serde::{Serialize, Serializer};
+
 use crate::Sample;
 use crate::catalog::ENTRIES;
 
@@ -23,6 +25,13 @@ impl Make {
     }
 }
 
+/// The number of its dimension.
+impl Serialize for Make {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.dimension().serialize(serializer)
+    }
+}
+
 /// What is to be seen of a sample within its first two seconds, for tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shows {
@@ -34,8 +43,8 @@ pub enum Shows {
     Drawing,
 }
 
-/// A sample of the gallery.
-#[derive(Clone, Copy, Debug)]
+/// A sample of the gallery. It serializes with its name, title, about and dimension.
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Entry {
     /// A word, unique in the gallery.
     pub name: &'static str,
@@ -44,8 +53,10 @@ pub struct Entry {
     /// What to see, in two sentences.
     pub about: &'static str,
     /// What is to be seen soon.
+    #[serde(skip)]
     pub shows: Shows,
     /// Makes it.
+    #[serde(rename = "dimension")]
     pub make: Make,
 }
 

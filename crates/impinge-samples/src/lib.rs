@@ -37,4 +37,4 @@ pub use control::{Control, ControlKind, ControlValue, Panel};
 pub use error::SampleError;
 pub use gallery::{Entry, Make, Shows, entries};
 pub use running::Running;
-pub use sample::{Canvas, Isometry, Readout, Sample, World};
+pub use sample::{Canvas, Isometry, Readout, Sample, TIME_STEP, World};

@@ -13,7 +13,7 @@ pub(crate) use crate::dimension::{Dimension, SurfaceKind, solid};
 pub(crate) use crate::place::{
     TAU, at, isometry, number, point, pose_of, scattered, to_and_fro, turn, turned, up, vector,
 };
-pub(crate) use crate::{Canvas, Isometry, Panel, Readout, Sample, SampleError, World};
+pub(crate) use crate::{Canvas, Isometry, Panel, Readout, Sample, SampleError, TIME_STEP, World};
 
 /// What is as it should be.
 pub(crate) const GREEN: Color = Color::rgb(90, 200, 120);

@@ -32,7 +32,7 @@ where
     sample: Box<dyn Sample<D>>,
     panel: Panel,
     world: World<D>,
-    step: u64,
+    step: usize,
 }
 
 impl<const D: usize> Running<D>
@@ -57,15 +57,12 @@ where
     /// # Errors
     /// Where the world refuses the objects.
     pub fn restart(&mut self) -> Result<(), SampleError> {
-        if !self.world.is_empty() {
-            self.world.retain(|_| false);
-        }
-        self.sample.build(&mut self.world, &self.panel)?;
+        self.sample.rebuild(&mut self.world, &self.panel)?;
         self.step = 0;
         self.update()
     }
 
-    /// Goes on by a sixtieth of a second.
+    /// Advances by a step of [`TIME_STEP`](crate::TIME_STEP).
     ///
     /// # Errors
     /// Where the world refuses a change.
@@ -131,7 +128,7 @@ where
 
     /// How many steps were made.
     #[must_use]
-    pub const fn step(&self) -> u64 {
+    pub const fn step(&self) -> usize {
         self.step
     }
 

@@ -6,11 +6,15 @@ use impinge::debug_render::{Color, DebugDrawing, DebugRender, Drawn};
 use impinge::math::{Point, Space};
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge_record::{Recordable, Recorder, Registry};
+use serde::Serialize;
 
 use crate::{Panel, SampleError};
 
 /// The world of a sample, which is recorded; the data of an object is its label.
 pub type World<const D: usize> = Recorder<f32, D, String>;
+
+/// Seconds of a step.
+pub const TIME_STEP: f32 = 1.0 / 60.0;
 
 /// The positions of a world.
 pub type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
@@ -18,7 +22,7 @@ pub type Isometry<const D: usize> = <f32 as Space<D>>::Isometry;
 /// A scene with controls, that shows one thing about the library.
 ///
 /// [`Running`](crate::Running) calls these methods, and updates the world after each that may change it. A step
-/// is a sixtieth of a second. The same calls lead to the same bits on every machine.
+/// is [`TIME_STEP`] long. The same calls lead to the same bits on every machine.
 pub trait Sample<const D: usize>: Send
 where
     f32: Recordable<D>,
@@ -43,6 +47,15 @@ where
     /// # Errors
     /// Where the world refuses an object.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError>;
+
+    /// Removes all objects and adds them again: what a sample of another size, or one that restarts, does.
+    ///
+    /// # Errors
+    /// As [`Self::build`].
+    fn rebuild(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
+        world.clear();
+        self.build(world, panel)
+    }
 
     /// A control was set, not a button: what can be seen at once, without a step, is changed.
     ///
@@ -146,9 +159,10 @@ where
 /// use impinge_samples::Readout;
 ///
 /// assert_eq!(Readout::number("Distance", 0.125_f32).value, "0.1250");
+/// assert_eq!(Readout::optional("Time of impact", None).value, "none");
 /// assert_eq!(Readout::new("Hits", 3).value, "3");
 /// ```
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Readout {
     /// What it is.
     pub label: &'static str,
@@ -168,5 +182,11 @@ impl Readout {
     pub fn number(label: &'static str, value: f32) -> Self {
         let is_hidden = value != 0.0 && !(0.001..1.0e5).contains(&value.abs());
         Self::new(label, if is_hidden { format!("{value:.3e}") } else { format!("{value:.4}") })
+    }
+
+    /// A number, or the word `none` where there is none.
+    #[must_use]
+    pub fn optional(label: &'static str, value: Option<f32>) -> Self {
+        value.map_or_else(|| Self::new(label, "none"), |value| Self::number(label, value))
     }
 }

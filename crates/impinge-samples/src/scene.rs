@@ -2,15 +2,18 @@
 
 use impinge::math::{Point, Real, Unit, Vector};
 use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
-use impinge::shape::{Ball, Capsule, Cuboid, Plane, Segment, ShapeHandle, Triangle};
+use impinge::shape::{
+    Ball, Capsule, Cuboid, Plane, Polyline, Segment, ShapeHandle, TriMesh, Triangle,
+};
 use impinge::world::CollisionGroups;
+use impinge_record::{Recordable, ShapeData};
 use impinge_scenes::{Scene, SceneObject, SceneQuery, SceneShape};
 
 use crate::dimension::Dimension;
 use crate::{SampleError, World};
 
 /// A scene that is played: each object is a function of the step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Play<const D: usize> {
     /// The objects with their motions.
     scene: Scene<D>,
@@ -54,13 +57,18 @@ where
     }
 }
 
-/// A shape of a scene has plain numbers, which the library's constructors take as they are.
+/// A shape of a scene. It has plain numbers, which the constructors of the library take as they are.
 fn shape_of<const D: usize>(shape: &SceneShape<D>) -> ShapeHandle<f32, D>
 where
     f32: Dimension<D>,
 {
     let vector = |xyz: &[f64; D]| Vector::<f32, D>::from_fn(|axis, _| f32::lit(xyz[axis]));
     let point = |xyz: &[f64; D]| Point::from(vector(xyz));
+    let points = |list: &[[f64; D]]| list.iter().map(point).collect::<Vec<_>>();
+    // Solids that one dimension lacks are made of the data that recordings have of them.
+    let own = |data: &ShapeData<f32, D>| {
+        f32::own_shape(data).expect("a scene has valid solids of its own dimension")
+    };
     match shape {
         SceneShape::Ball { radius } => ShapeHandle::new(Ball::new(f32::lit(*radius))),
         SceneShape::Cuboid { half_extents } => ShapeHandle::new(Cuboid::new(vector(half_extents))),
@@ -74,8 +82,20 @@ where
         SceneShape::Triangle { corners: [a, b, c] } => {
             ShapeHandle::new(Triangle::new(point(a), point(b), point(c)))
         }
-        SceneShape::Convex { points } => f32::hull(&points.iter().map(point).collect::<Vec<_>>()),
-        other => f32::scene_shape(other),
+        SceneShape::Convex { points: corners } => f32::hull(&points(corners)),
+        SceneShape::Cylinder { half_height, radius } => {
+            own(&ShapeData::Cylinder([half_height, radius].map(|length| f32::lit(*length))))
+        }
+        SceneShape::Cone { half_height, radius } => {
+            own(&ShapeData::Cone([half_height, radius].map(|length| f32::lit(*length))))
+        }
+        SceneShape::Polyline { vertices } => ShapeHandle::new(Polyline::open(points(vertices))),
+        SceneShape::TriMesh { vertices, triangles } => {
+            ShapeHandle::new(TriMesh::new(points(vertices), triangles.clone()))
+        }
+        SceneShape::HeightField { .. } => {
+            unreachable!("no scene of the gallery has a height field")
+        }
     }
 }
 

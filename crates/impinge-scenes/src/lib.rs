@@ -31,7 +31,7 @@ pub use scenes::{
 pub use shape::SceneShape;
 
 /// Objects and how they move.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Scene<const D: usize> {
     /// One or two words, for tables and messages.
     pub name: &'static str,

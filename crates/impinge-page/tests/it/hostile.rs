@@ -2,7 +2,7 @@
 
 use impinge::shape::Ball;
 use impinge_page::{Engine, message, parts};
-use impinge_record::Registry;
+use impinge_record::{Header, Registry};
 use serde_json::Value;
 
 use crate::support::{Asker, Scene};
@@ -154,20 +154,41 @@ fn random_bytes_are_answered() {
     }
 }
 
+/// The bytes of a header: its margin has four bytes, and its checksum as many.
+fn header_bytes(bytes: &[u8]) -> usize {
+    let is_whole = |length: &usize| Header::read(&bytes[..*length]).is_ok();
+    (0..).find(is_whole).expect("the header of a recording is whole") + 8
+}
+
 #[test]
-fn damaged_recordings_are_errors() {
+fn damaged_recordings_open_up_to_the_damage() {
     let bytes = recording();
     let open = r#"{"do": "open", "kind": "recording"}"#;
-    let mut asker = Asker::default();
-    for length in 0..bytes.len() {
-        let (answer, _) = asker.ask_with(open, &bytes[..length]);
-        assert!(answer["error"].is_string(), "{length} bytes");
-    }
+    let (header, mut asker) = (header_bytes(&bytes), Asker::default());
+    let mut check = |damaged: &[u8], place: usize| {
+        let (answer, _) = asker.ask_with(open, damaged);
+        if place < header {
+            assert!(answer["error"].is_string(), "byte {place} is of the header: {answer}");
+            return None;
+        }
+        let note = answer["notes"][0].as_str().expect("a note says what is lost");
+        assert!(note.starts_with("The recording has no end"), "byte {place}: {note}");
+        assert_eq!(answer["complete"], false, "byte {place}");
+        answer["steps"].as_u64()
+    };
+    // Two updates: there are none, one or both of them, the more the later the damage is.
+    let truncated = (0..bytes.len()).filter_map(|length| check(&bytes[..length], length));
+    let mut truncated: Vec<_> = truncated.collect();
+    assert!(truncated.is_sorted(), "{truncated:?}");
+    truncated.dedup();
+    assert_eq!(truncated, [0, 1, 2], "as many updates as are whole");
     for index in 0..bytes.len() {
         let mut damaged = bytes.clone();
         damaged[index] ^= 0x20;
-        let (answer, _) = asker.ask_with(open, &damaged);
-        assert!(answer["error"].is_string(), "byte {index}");
+        check(&damaged, index);
     }
-    assert_eq!(asker.ask(MESSAGES[1])["error"], "nothing is open");
+    // An engine that refuses a recording keeps what it had.
+    let refused = asker.ask_with(open, &bytes[..header - 1]).0;
+    assert!(refused["error"].is_string(), "{refused}");
+    assert_eq!(asker.ask(MESSAGES[1])["step"], 2, "the recording before is still open");
 }

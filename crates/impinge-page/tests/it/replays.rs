@@ -142,6 +142,29 @@ fn packed_recordings_open() {
 }
 
 #[test]
+fn a_recording_of_a_program_that_died_is_played_to_its_last_update() {
+    let bytes = scene::<f64, 3>();
+    let whole = seek(&mut Asker::of(&bytes), STEPS);
+    // The last record is left out: its kind, its length, a number of eight bytes, and a checksum.
+    let end = bytes.len() - (1 + 4 + 8 + 4);
+    let lossless = "The recording has no end: its program did not finish it.";
+    let last = format!(
+        "The recording has no end: its last 3 bytes cannot be read, at byte {}: the bytes end early.",
+        end + 1
+    );
+    for (cut, note) in [(end, lossless), (end + 3, last.as_str())] {
+        let mut asker = Asker::default();
+        let (info, _) = asker.ask_with(r#"{"do": "open", "kind": "recording"}"#, &bytes[..cut]);
+        assert_eq!(info["notes"], json!([note]));
+        assert_eq!((&info["steps"], &info["complete"]), (&json!(STEPS), &json!(false)));
+        assert_eq!(seek(&mut asker, STEPS), whole, "the same world");
+    }
+    let packed = pack(&bytes[..end]).expect("its records are whole");
+    let (info, _) = Asker::default().ask_with(r#"{"do": "open", "kind": "recording"}"#, &packed);
+    assert_eq!(info["notes"], json!([lossless]), "packed as well");
+}
+
+#[test]
 fn streams_grow_whatever_their_pieces_are() {
     let bytes = scene::<f64, 2>();
     for size in [1, 7, 1000] {

@@ -82,7 +82,6 @@ export interface Status {
   event_count: number;
   controls: Control[];
   readouts: Readout[];
-  milliseconds: number | null;
 }
 
 /** Byte offset in the payload, and the number of elements. */
@@ -108,7 +107,15 @@ export interface Label {
 export interface FrameText {
   origin: Vec3;
   meshes: FrameMesh[];
-  instances: { count: number; mesh: Section; object: Section; color: Section; pose: Section; flags: Section };
+  instances: {
+    count: number;
+    mesh: Section;
+    object: Section;
+    color: Section;
+    pose: Section;
+    scale: Section;
+    flags: Section;
+  };
   /** Ids of meshes that will not be used again. */
   dropped: number[];
   lines: { count: number; ends: Section; color: Section; layer: Section };

@@ -1,4 +1,4 @@
-// The objects of a frame as instances: one draw of faces and one of edges for each form and opacity.
+// The objects of a frame as instances: one draw of faces and one of edges for each mesh and opacity.
 
 import {
   BufferAttribute,
@@ -16,35 +16,39 @@ import {
 } from "three";
 import { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";
 import { LINEAR } from "./color";
-import { type Form, Forms, type ScaledForm } from "./forms";
-import { writePose } from "./pose";
-import type { Frame, Vec3 } from "./protocol";
+import { type Poses, writePose } from "./pose";
+import type { Frame } from "./protocol";
 
 /** Faces that meet at less than this angle, in radians, are shaded as one surface. */
 const CREASE = 0.6;
 /** Batches that no frame used for so many frames are released. */
 const PATIENCE = 240;
 const OPAQUE = 255;
-/** The key of a batch is its form times this, and its alpha. */
+/** The key of a batch is the id of its mesh times this, and its alpha. */
 const KEYS = 256;
 /** More instances than this cast no shadows. */
 const SHADOW_LIMIT = 3000;
 
-/** Batches by form and opacity. */
+/** A mesh, copied out of the engine's memory. Sizes are scales of instances: ten thousand boxes are one mesh. */
+interface Mesh {
+  vertices: Float32Array;
+  triangles: Uint32Array;
+  lines: Uint32Array;
+}
+
+/** Batches by mesh and opacity. */
 export class Solids {
   /** All batches, for the scene. */
   readonly group = new Group();
-  private readonly forms = new Forms();
+  private readonly meshes = new Map<number, Mesh>();
   private readonly batches = new Map<number, Batch>();
   /** Frames so far: the clock of what is released. */
   private frames = 0;
 
   constructor(private readonly flat: boolean) {}
 
-  /** How many meshes the page has. */
-  get known(): number {
-    return this.forms.known;
-  }
+  /** Meshes with ids below this number were received. */
+  known = 0;
 
   /** Replaces what is drawn by the instances of a frame; nothing is allocated while batches are large enough. */
   update(frame: Frame): void {
@@ -67,41 +71,42 @@ export class Solids {
 
   /** Copies new meshes out of the engine's memory, and forgets those that it dropped. */
   private receive({ meshes, dropped, payload }: Frame): void {
-    const gone = new Set(dropped.map((mesh) => this.forms.drop(mesh)));
-    for (const [key, batch] of this.batches) if (gone.has(formOf(key))) this.release(key, batch);
-    for (const mesh of meshes) this.forms.receive(mesh, payload);
+    for (const id of dropped) this.meshes.delete(id);
+    for (const [key, batch] of this.batches) if (!this.meshes.has(meshOf(key))) this.release(key, batch);
+    for (const { id, vertices, triangles, lines } of meshes) {
+      this.known = Math.max(this.known, id + 1);
+      const [indices, edges] = [payload.words(triangles).slice(), payload.words(lines).slice()];
+      this.meshes.set(id, { vertices: payload.floats(vertices).slice(), triangles: indices, lines: edges });
+    }
   }
 
   /** Writes each instance into its batch. */
   private scatter({ instances, payload }: Frame): void {
     const mesh = payload.words(instances.mesh);
     const color = payload.bytes(instances.color);
-    const pose = payload.floats(instances.pose);
-    let scaled: ScaledForm | undefined;
+    const poses = { pose: payload.floats(instances.pose), scale: payload.floats(instances.scale) };
     let batch: Batch | undefined;
-    let [lastMesh, lastKey] = [-1, -1];
+    let lastKey = -1;
     for (let index = 0; index < instances.count; index += 1) {
-      const id = mesh[index] ?? 0;
-      // Neighbours mostly share a mesh, or at least a form: the maps are asked when they do not.
-      if (id !== lastMesh) scaled = this.forms.get(id);
-      lastMesh = id;
-      if (!scaled) continue;
-      const key = scaled.form.id * KEYS + (color[4 * index + 3] ?? OPAQUE);
-      if (key !== lastKey || !batch) batch = this.batches.get(key) ?? this.begin(key, scaled.form);
+      const key = (mesh[index] ?? 0) * KEYS + (color[4 * index + 3] ?? OPAQUE);
+      // Neighbours mostly share a batch: the map is searched when they do not.
+      if (key !== lastKey) batch = this.batches.get(key) ?? this.begin(key);
       lastKey = key;
-      batch.add(pose, scaled.scale, color, index);
+      batch?.add(poses, color, index);
     }
   }
 
-  /** A batch for a key that has none. */
-  private begin(key: number, form: Form): Batch {
-    const batch = new Batch(form, key % KEYS, this.flat);
+  /** A batch for a key that has none; undefined for a mesh that was not received. */
+  private begin(key: number): Batch | undefined {
+    const mesh = this.meshes.get(meshOf(key));
+    if (!mesh) return undefined;
+    const batch = new Batch(mesh, key % KEYS, this.flat);
     this.batches.set(key, batch);
     this.group.add(batch.faces, batch.edges);
     return batch;
   }
 
-  /** Frees a batch; its form stays, since it may come again. */
+  /** Frees a batch; its mesh stays, since it may come again. */
   private release(key: number, batch: Batch): void {
     this.group.remove(batch.faces, batch.edges);
     batch.dispose();
@@ -109,12 +114,12 @@ export class Solids {
   }
 }
 
-/** The form of a batch's key. */
-function formOf(key: number): number {
+/** The id of the mesh of a batch's key. */
+function meshOf(key: number): number {
   return Math.floor(key / KEYS);
 }
 
-/** All instances of one form with one opacity. */
+/** All instances of one mesh with one opacity. */
 class Batch {
   faces: InstancedMesh;
   readonly edges: LineSegments<InstancedBufferGeometry, ShaderMaterial>;
@@ -128,7 +133,7 @@ class Batch {
   /** Linear light. */
   private color = new InstancedBufferAttribute(new Float32Array(0), 3);
 
-  constructor(data: Form, alpha: number, flat: boolean) {
+  constructor(data: Mesh, alpha: number, flat: boolean) {
     this.faces = new InstancedMesh(facesOf(data, flat), faceMaterial(alpha, flat), 0);
     this.faces.frustumCulled = false;
     this.faces.renderOrder = alpha < OPAQUE ? 2 : 0;
@@ -139,9 +144,9 @@ class Batch {
   }
 
   /** Adds an instance of a frame; the caller has them in any order. */
-  add(pose: Float32Array, scale: Vec3, color: Uint8Array, index: number): void {
+  add(poses: Poses, color: Uint8Array, index: number): void {
     if (this.count === this.capacity) this.grow(2 * this.capacity);
-    writePose(pose, 7 * index, scale, this.matrix.array as Float32Array, 16 * this.count);
+    writePose(poses, index, this.matrix.array as Float32Array, 16 * this.count);
     const into = this.color.array;
     into[3 * this.count] = LINEAR[color[4 * index] ?? 0] ?? 0;
     into[3 * this.count + 1] = LINEAR[color[4 * index + 1] ?? 0] ?? 0;
@@ -201,7 +206,7 @@ function send(attribute: InstancedBufferAttribute, count: number): void {
 }
 
 /** Triangles; in 3D with normals that are smooth but for creases. */
-function facesOf(data: Form, flat: boolean): BufferGeometry {
+function facesOf(data: Mesh, flat: boolean): BufferGeometry {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
   geometry.setIndex(new BufferAttribute(data.triangles, 1));
@@ -209,7 +214,7 @@ function facesOf(data: Form, flat: boolean): BufferGeometry {
 }
 
 /** The edges that the engine chose, such as those between faces at an angle. */
-function edgesOf(data: Form): InstancedBufferGeometry {
+function edgesOf(data: Mesh): InstancedBufferGeometry {
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(data.vertices, 3));
   geometry.setIndex(new BufferAttribute(data.lines, 1));

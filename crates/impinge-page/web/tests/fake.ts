@@ -136,7 +136,6 @@ class FakeEngine {
       event_count: 1,
       controls: [],
       readouts,
-      milliseconds: null,
     };
   }
 
@@ -162,6 +161,7 @@ class FakeEngine {
       object: writer.words(boxes.map((_, index) => index)),
       color: writer.words(boxes.map((_, index) => colors[index % 4]!)),
       pose: writer.floats(boxes.flatMap(({ at }) => [...at, 0, 0, 0, 1])),
+      scale: writer.floats(boxes.flatMap(() => [1, 1, 1])),
       flags: writer.words(boxes.map(() => 0)),
     };
     const at = boxes[0]!.at;

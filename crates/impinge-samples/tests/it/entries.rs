@@ -130,7 +130,7 @@ fn values(control: &Control) -> Vec<ControlValue> {
             choices.iter().map(|choice| ControlValue::Choice((*choice).to_owned())).collect()
         }
         ControlKind::Flag { .. } => [true, false].map(ControlValue::Flag).into(),
-        ControlKind::Button { .. } => vec![ControlValue::Pressed],
+        ControlKind::Button => vec![ControlValue::Pressed],
     }
 }
 
@@ -157,7 +157,7 @@ fn first_value(control: &Control) -> ControlValue {
         ControlKind::Number { value, .. } => ControlValue::Number(value),
         ControlKind::Choice { value, .. } => ControlValue::Choice(value.to_owned()),
         ControlKind::Flag { value } => ControlValue::Flag(value),
-        ControlKind::Button { .. } => ControlValue::Pressed,
+        ControlKind::Button => ControlValue::Pressed,
     }
 }
 

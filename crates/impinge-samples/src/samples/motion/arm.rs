@@ -116,7 +116,7 @@ where
 
     /// Queries are asked before the move; the contacts of the update confirm it afterwards.
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
-        let pace = panel.value("speed") / 60.0;
+        let pace = panel.value("speed") * TIME_STEP;
         let next = self.phase + if self.is_back { -pace } else { pace };
         if panel.chosen("when") == "it turns back" && self.would_hit(world, next) {
             self.is_back = !self.is_back;

@@ -1,6 +1,5 @@
 //! Bullets between walls that are thinner than a step is long.
 
-use crate::bodies::TIME_STEP;
 use crate::prelude::*;
 
 /// Of a bullet.

@@ -1,6 +1,5 @@
 //! A character that slides along walls.
 
-use crate::bodies::TIME_STEP;
 use crate::prelude::*;
 
 /// The distance kept from everything: casts that stop short of contact never start in contact.

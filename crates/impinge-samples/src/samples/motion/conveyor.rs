@@ -91,7 +91,7 @@ where
     }
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {
-        self.way += panel.value("speed") / 60.0;
+        self.way += panel.value("speed") * TIME_STEP;
         for (index, piece) in self.goods.iter().enumerate() {
             world.set_position(*piece, self.position(index))?;
         }

@@ -1,6 +1,5 @@
 //! Capsules that find their way past each other.
 
-use crate::bodies::TIME_STEP;
 use crate::prelude::*;
 
 /// Each looks so far, and gives way to so many.
@@ -39,6 +38,7 @@ where
             let away = unit_or(&(here - place), none);
             // Aside as well as away, so that two who meet head on pass each other.
             let side = turn::<D>([0, 1], TAU / 4.0) * away;
+            // From 0 at the greatest distance to 1 in contact; squared below, so that the nearest outweighs the rest.
             let weight = 1.0 - near.distance / SIGHT;
             velocity + (away * 1.5 + side * 0.5) * (weight * weight)
         });
@@ -82,8 +82,7 @@ where
         if panel.count("count") == self.people.len() {
             return Ok(());
         }
-        world.retain(|_| false);
-        self.build(world, panel)
+        self.rebuild(world, panel)
     }
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {

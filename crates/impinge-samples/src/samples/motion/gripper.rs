@@ -85,8 +85,7 @@ where
 
     /// Another object: the fingers start open again.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
-        world.retain(|_| false);
-        self.build(world, panel)
+        self.rebuild(world, panel)
     }
 
     /// Two thirds of the cycle close and hold, the rest opens.

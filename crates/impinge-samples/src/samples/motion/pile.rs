@@ -70,8 +70,7 @@ where
 
     /// Only the count can change; a press of the button is no change.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
-        world.retain(|_| false);
-        self.build(world, panel)
+        self.rebuild(world, panel)
     }
 
     fn advance(&mut self, world: &mut World<D>, panel: &mut Panel) -> Result<(), SampleError> {

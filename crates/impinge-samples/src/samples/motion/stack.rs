@@ -1,13 +1,7 @@
 //! A stack of boxes.
 
-use impinge::narrow_phase::{CollisionObjectHandle, ContactQuery};
-use impinge::shape::{Cuboid, Plane, ShapeHandle};
-use impinge::world::CollisionGroups;
-
 use crate::bodies::Bodies;
-use crate::dimension::Dimension;
-use crate::place::{at, number, up, vector};
-use crate::{Panel, Readout, Sample, SampleError, World};
+use crate::prelude::*;
 
 /// Boxes of size 1, each half a percent above the one below.
 #[derive(Debug, Default)]
@@ -50,8 +44,7 @@ where
 
     /// The world is emptied and built again: handles of removed objects are stale from then on.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
-        world.retain(|_| false);
-        self.build(world, panel)
+        self.rebuild(world, panel)
     }
 
     /// A push is a velocity; what follows from it is up to contacts and friction.

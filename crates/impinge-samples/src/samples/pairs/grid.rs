@@ -51,6 +51,7 @@ impl Grid {
     where
         f32: Dimension<D>,
     {
+        // A solid without an impact stays where it is.
         let moved = self
             .pairs
             .iter()

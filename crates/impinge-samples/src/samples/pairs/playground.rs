@@ -1,17 +1,8 @@
 //! Two shapes of any kind, and all that can be asked about two shapes.
 
-use impinge::debug_render::SweptShape;
-use impinge::math::{Pose, Space, Vector};
-use impinge::narrow_phase::{CollisionObjectHandle, ContactQuery};
-use impinge::query::{
-    Contact, Impact, ImpactOptions, Moving, closest_points, contact, distance, impact, proximity,
-};
-use impinge::shape::ShapeHandle;
-use impinge::world::CollisionGroups;
+use impinge::query::{closest_points, proximity};
 
-use crate::dimension::{Dimension, solid};
-use crate::place::{at, isometry, pose_of, to_and_fro, turn, turned, vector};
-use crate::{Canvas, Isometry, Panel, Readout, Sample, SampleError, World};
+use crate::prelude::*;
 
 /// Contacts are kept, and closest points shown, up to this distance.
 const MARGIN: f32 = 10.0;
@@ -121,6 +112,7 @@ where
     /// Shapes and query types of objects can be exchanged; the handles stay.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let &[first, second] = self.objects.as_slice() else { return Ok(()) };
+        // Both shapes are set whichever control was: a shape of equal size gives the same contacts.
         world.set_shape(first, solid(panel.chosen("first"), panel.value("size")))?;
         world.set_shape(second, solid(panel.chosen("second"), panel.value("size2")))?;
         let pose = Pose {
@@ -198,10 +190,7 @@ where
         let contacts = world.contact_views().map(|(_, _, manifold)| manifold.len()).sum::<usize>();
         readouts.push(Readout::new("Contact points", contacts));
         let time = time_of_impact(&pair, panel).map(|hit| hit.toi);
-        readouts.push(Readout::new(
-            "Time of impact",
-            time.map_or_else(|| "none".to_owned(), |time| format!("{time:.4}")),
-        ));
+        readouts.push(Readout::optional("Time of impact", time));
         readouts
     }
 }

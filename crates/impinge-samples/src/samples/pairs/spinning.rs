@@ -2,7 +2,6 @@
 
 use impinge::query::{RigidMotion, nonlinear_time_of_impact};
 
-use crate::bodies::TIME_STEP;
 use crate::prelude::*;
 
 /// The longest time looked ahead, and how long the picture stands still after an impact.
@@ -104,10 +103,7 @@ where
         let &[left, right] = self.bars.as_slice() else { return Vec::new() };
         let poses = [left, right].map(|object| isometry(&pose_of(world, object)));
         vec![
-            Readout::new(
-                "Time of impact",
-                self.hit.map_or_else(|| "none".to_owned(), |hit| format!("{:.5}", hit.toi)),
-            ),
+            Readout::optional("Time of impact", self.hit.map(|hit| hit.toi)),
             Readout::number("Time", min(self.time, self.end())),
             Readout::number("Distance", distance(&poses[0], &bar(), &poses[1], &bar())),
         ]

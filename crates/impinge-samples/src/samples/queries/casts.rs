@@ -8,24 +8,12 @@ use crate::prelude::*;
 const LENGTH: f32 = 9.0;
 
 /// Posts around the origin, and a solid that is cast from there in a direction that turns.
-#[derive(Debug)]
-pub(crate) struct Casts<const D: usize>
-where
-    f32: Space<D>,
-{
+#[derive(Debug, Default)]
+pub(crate) struct Casts<const D: usize> {
     /// The direction of the cast.
     angle: f32,
     /// The impacts of the last cast, the first one first.
     hits: Vec<Impact<f32, D>>,
-}
-
-impl<const D: usize> Default for Casts<D>
-where
-    f32: Space<D>,
-{
-    fn default() -> Self {
-        Self { angle: 0.0, hits: Vec::new() }
-    }
 }
 
 impl<const D: usize> Casts<D>
@@ -102,6 +90,7 @@ where
         let CastQuestion { start, velocity, .. } = self.question(panel);
         let (shape, position) = (&start.shape, start.position);
         let sweep = SweptShape { shape, position, velocity, max_time: 1.0 };
+        // Each impact is drawn with the whole sweep; without one the sweep is drawn alone.
         if self.hits.is_empty() {
             canvas.drawing.cast(&sweep, None, canvas.renderer);
         }
@@ -114,10 +103,7 @@ where
         let first = self.hits.first().map(|hit| hit.toi * LENGTH);
         vec![
             Readout::new("Objects hit", self.hits.len()),
-            Readout::new(
-                "Way to the first",
-                first.map_or_else(|| "free".to_owned(), |way| format!("{way:.4}")),
-            ),
+            Readout::optional("Way to the first", first),
         ]
     }
 }

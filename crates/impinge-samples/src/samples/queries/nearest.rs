@@ -19,7 +19,7 @@ struct Near<const D: usize> {
 #[derive(Debug, Default)]
 pub(crate) struct Nearest<const D: usize> {
     /// The asteroids.
-    play: Option<Play<D>>,
+    play: Play<D>,
     /// The ball that is measured from.
     probe: Option<CollisionObjectHandle>,
     /// The nearest first.
@@ -44,7 +44,7 @@ where
 
     fn build(&mut self, world: &mut World<D>, _: &Panel) -> Result<(), SampleError> {
         *self = Self::default();
-        self.play = Some(Play::start(asteroids(40), world)?);
+        self.play = Play::start(asteroids(40), world)?;
         let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
         let ball = ShapeHandle::new(Ball::new(0.4));
         let start = at([2.0, 8.0, 8.0]);
@@ -59,7 +59,7 @@ where
             let x = 2.0 + 14.0 * to_and_fro(number(self.step) / 900.0);
             world.set_position(probe, at([x, 8.0, 8.0]))?;
         }
-        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+        self.play.advance(world)
     }
 
     fn dragged(

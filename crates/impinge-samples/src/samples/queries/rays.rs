@@ -25,7 +25,7 @@ where
     f32: Space<D>,
 {
     /// The asteroids.
-    play: Option<Play<D>>,
+    play: Play<D>,
     /// Where all rays begin.
     eye: Point<f32, D>,
     /// The rays of the last update.
@@ -77,13 +77,13 @@ where
         let places = play.handles().iter().map(|object| pose_of(world, *object).translation);
         let sum = places.fold(Vector::<f32, D>::zeros(), |sum, place| sum + place);
         self.eye = Point::from(sum / number(play.handles().len()));
-        self.play = Some(play);
+        self.play = play;
         Ok(())
     }
 
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
         self.angle += 0.002;
-        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+        self.play.advance(world)
     }
 
     /// Asked after the update, about where the asteroids are now.

@@ -10,7 +10,7 @@ use crate::scene::Play;
 #[derive(Debug, Default)]
 pub(crate) struct BroadPhase<const D: usize> {
     /// The boxes in the world.
-    play: Option<Play<D>>,
+    play: Play<D>,
 }
 
 impl<const D: usize> Sample<D> for BroadPhase<D>
@@ -30,7 +30,7 @@ where
     }
 
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
-        self.play = Some(Play::start(few_moving(panel.count("count")), world)?);
+        self.play = Play::start(few_moving(panel.count("count")), world)?;
         Ok(())
     }
 
@@ -39,12 +39,11 @@ where
         if world.len() == panel.count("count") {
             return Ok(());
         }
-        world.retain(|_| false);
-        self.build(world, panel)
+        self.rebuild(world, panel)
     }
 
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
-        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+        self.play.advance(world)
     }
 
     /// The boxes of objects and nodes are among what a drawing of a world can have.

@@ -14,7 +14,7 @@ const TEAMS: usize = 3;
 #[derive(Debug, Default)]
 pub(crate) struct Groups<const D: usize> {
     /// The boxes in the world.
-    play: Option<Play<D>>,
+    play: Play<D>,
 }
 
 impl<const D: usize> Groups<D>
@@ -23,7 +23,7 @@ where
 {
     /// Each object is a member of its team's group, and whitelists what the rule says.
     fn assign(&self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
-        let handles = self.play.iter().flat_map(Play::handles);
+        let handles = self.play.handles().iter();
         for (index, object) in handles.enumerate() {
             // Two objects may touch if each is in a group that the other lists, and none that it forbids.
             let team = index % TEAMS;
@@ -90,7 +90,7 @@ where
 
     /// The scene lets all touch each other; the groups are given afterwards.
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
-        self.play = Some(Play::start(sparse_drift(90), world)?);
+        self.play = Play::start(sparse_drift(90), world)?;
         self.assign(world, panel)
     }
 
@@ -100,11 +100,12 @@ where
     }
 
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
-        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+        self.play.advance(world)
     }
 
     /// Counted by the labels of both objects, not by their groups: so the numbers test the rule.
     fn readouts(&self, world: &World<D>, _: &Panel) -> Vec<Readout> {
+        // Each manifold counts once, of whichever pair it is.
         let is_within: Vec<_> = world
             .contact_views()
             .map(|(one, two, _)| team(one.data()) == team(two.data()))

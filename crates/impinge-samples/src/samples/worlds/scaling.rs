@@ -77,8 +77,7 @@ where
     /// The motion goes on from where it was, at another size.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         let step = self.step;
-        world.retain(|_| false);
-        self.build(world, panel)?;
+        self.rebuild(world, panel)?;
         self.step = step;
         Ok(())
     }

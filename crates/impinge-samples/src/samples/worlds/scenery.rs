@@ -17,7 +17,7 @@ pub(crate) struct Scenery<const D: usize> {
     /// How many objects there are at first, and at most.
     counts: [u32; 2],
     /// The scene in the world.
-    play: Option<Play<D>>,
+    play: Play<D>,
     /// Pairs that came to touch since the start.
     started: usize,
     /// Pairs that parted since the start.
@@ -27,7 +27,7 @@ pub(crate) struct Scenery<const D: usize> {
 impl<const D: usize> Scenery<D> {
     /// With the number of objects at first, and the most.
     pub(crate) fn new(make: MakeScene<D>, counts: [u32; 2]) -> Self {
-        Self { make, counts, play: None, started: 0, stopped: 0 }
+        Self { make, counts, play: Play::default(), started: 0, stopped: 0 }
     }
 }
 
@@ -47,18 +47,17 @@ where
 
     fn build(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
         (self.started, self.stopped) = (0, 0);
-        self.play = Some(Play::start((self.make)(panel.count("count")), world)?);
+        self.play = Play::start((self.make)(panel.count("count")), world)?;
         Ok(())
     }
 
     /// A scene of another count is another scene.
     fn changed(&mut self, world: &mut World<D>, panel: &Panel) -> Result<(), SampleError> {
-        world.retain(|_| false);
-        self.build(world, panel)
+        self.rebuild(world, panel)
     }
 
     fn advance(&mut self, world: &mut World<D>, _: &mut Panel) -> Result<(), SampleError> {
-        self.play.as_mut().map_or(Ok(()), |play| play.advance(world))
+        self.play.advance(world)
     }
 
     /// Events of contacts and of proximities are counted alike: something came to touch, or parted.

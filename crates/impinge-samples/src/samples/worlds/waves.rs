@@ -10,11 +10,8 @@ const PERIOD: usize = 60;
 const CELLS: usize = 16;
 
 /// The shapes of one period, and where the balls are.
-#[derive(Debug)]
-pub(crate) struct Waves<const D: usize>
-where
-    f32: Space<D>,
-{
+#[derive(Debug, Default)]
+pub(crate) struct Waves<const D: usize> {
     /// The shapes of a period.
     surfaces: Vec<ShapeHandle<f32, D>>,
     /// The object whose shape is exchanged.
@@ -22,15 +19,6 @@ where
     /// The balls, from left to right.
     balls: Vec<CollisionObjectHandle>,
     step: usize,
-}
-
-impl<const D: usize> Default for Waves<D>
-where
-    f32: Space<D>,
-{
-    fn default() -> Self {
-        Self { surfaces: Vec::new(), surface: None, balls: Vec::new(), step: 0 }
-    }
 }
 
 /// The height of the wave at a point and a phase from 0 to 1.
