@@ -103,8 +103,6 @@ impl Task for InspectScene<'_> {
 }
 
 fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
-    // The first line has the numbers, and each of the others a problem.
-    let problems = report.to_string().lines().skip(1).map(str::to_owned).collect();
     MeshFields {
         file: file.to_owned(),
         name: name.to_owned(),
@@ -115,7 +113,7 @@ fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
         solid: report.is_solid(),
         volume: report.volume,
         boundary_edges: report.boundary_edges.count,
-        problems,
+        problems: report.problems(),
     }
 }
 

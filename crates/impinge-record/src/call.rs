@@ -4,7 +4,7 @@ use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::{Point, Space, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::ImpactOptions;
-use impinge::world::CollisionGroups;
+use impinge::world::{CollisionGroups, GroupError};
 
 use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError};
@@ -353,13 +353,14 @@ impl Sink {
 impl Source<'_> {
     /// Masks of groups that exist: a bit above 29 is an error.
     fn groups(&mut self) -> Result<CollisionGroups, ReadError> {
-        let error = self.error(Problem::BadValue { what: "a mask of groups" });
+        let offset = self.offset();
         let [membership, whitelist, blacklist] = [self.word()?, self.word()?, self.word()?];
         let groups = CollisionGroups::new()
             .try_with_membership_by_mask(membership)
             .and_then(|groups| groups.try_with_whitelist_by_mask(whitelist))
             .and_then(|groups| groups.try_with_blacklist_by_mask(blacklist));
-        let mut groups = groups.map_err(|_| error)?;
+        let refused = |error: GroupError| ReadError { offset, problem: error.into() };
+        let mut groups = groups.map_err(refused)?;
         if self.flag()? {
             groups.enable_self_collision();
         }

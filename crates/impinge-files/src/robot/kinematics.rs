@@ -1,6 +1,6 @@
 //! The tree of joints: from joint values to the frames of links.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use impinge::math::na::{Isometry3, Translation3, Vector3};
 use urdf_rs::{Joint, JointType, Mimic};
@@ -16,6 +16,7 @@ use crate::{FileError, Problem};
 pub(super) struct Tree {
     /// The names of the links, in the order of the file.
     pub(super) links: Vec<String>,
+    /// The index of the link of a name.
     index: BTreeMap<String, usize>,
     joints: BTreeMap<String, TreeJoint>,
     /// By link: the joint above it, none for the root.
@@ -24,8 +25,10 @@ pub(super) struct Tree {
     order: Vec<usize>,
 }
 
+/// A joint above a link.
 #[derive(Debug)]
 struct TreeJoint {
+    /// The link above it.
     parent: usize,
     /// The frame of the joint in that of its parent.
     origin: Isometry3<f64>,
@@ -56,6 +59,7 @@ impl Tree {
                 found.ok_or_else(|| wrong(Problem::UnknownLink(name.clone())))
             };
             let (parent, child) = (link(&joint.parent.link)?, link(&joint.child.link)?);
+            // With one joint above each link but the root, links form a tree unless a cycle hangs apart: `sorted` finds it.
             if above[child].replace(joint.name.clone()).is_some() {
                 return Err(wrong(Problem::NotATree { link: joint.child.link.clone() }));
             }
@@ -76,6 +80,7 @@ impl Tree {
     fn sorted(&self) -> Result<Vec<usize>, String> {
         let mut below = vec![Vec::new(); self.links.len()];
         let mut open = Vec::new();
+        // The only open link is the root at first.
         for (link, above) in self.above.iter().enumerate() {
             match above {
                 Some(joint) => below[self.joints[joint].parent].push(link),
@@ -91,7 +96,9 @@ impl Tree {
             order.push(link);
             open.append(&mut below[link]);
         }
-        let is_missing = |link: &usize| !order.contains(link);
+        let reached: BTreeSet<&usize> = order.iter().collect();
+        // Links of a cycle are below no root.
+        let is_missing = |link: &usize| !reached.contains(link);
         match (0..self.links.len()).find(is_missing) {
             Some(link) => Err(self.links[link].clone()),
             None => Ok(order),
@@ -104,6 +111,7 @@ impl Tree {
             let wrong = |problem| xml.error("joint", name, problem);
             let mut current = name;
             let mut steps = 0;
+            // Ends: more steps than joints pass one twice.
             while let Some(mimic) = &self.joints[current].mimic {
                 current = &mimic.joint;
                 if !self.joints.contains_key(current) {
@@ -118,7 +126,8 @@ impl Tree {
         Ok(())
     }
 
-    /// The frames of the links for joint values, those of others being 0, and a frame of the root.
+    /// The frames of the links for joint values, those of others being 0, and a frame of the root. Only joints that move
+    /// and follow no other have a value.
     pub(super) fn frames(
         &self,
         values: &BTreeMap<String, f64>,
@@ -134,6 +143,7 @@ impl Tree {
             }
         }
         let mut frames = vec![*base; self.links.len()];
+        // A link comes after its parent, so that the frame of the parent is known.
         for &link in &self.order {
             if let Some(name) = &self.above[link] {
                 let joint = &self.joints[name];
@@ -146,6 +156,7 @@ impl Tree {
 
     /// The value of a joint, which may follow another.
     fn value(&self, name: &str, values: &BTreeMap<String, f64>) -> f64 {
+        // value = factor * value of `name` + offset, along the chain of mimics.
         let (mut factor, mut offset, mut name) = (1.0, 0.0, name);
         // Ends: no joint mimics itself.
         while let Some(mimic) = &self.joints[name].mimic {
@@ -154,6 +165,11 @@ impl Tree {
             name = &mimic.joint;
         }
         factor * values.get(name).copied().unwrap_or(0.0) + offset
+    }
+
+    /// The file has a link of this name.
+    pub(super) fn has_link(&self, name: &str) -> bool {
+        self.index.contains_key(name)
     }
 
     /// The links above a link, the nearest first.
@@ -167,6 +183,7 @@ impl Tree {
     }
 }
 
+/// A joint below a link. Axes of joints that do not move are not looked at: many files have zeros there.
 fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
     let axis = || unit(Vector3::from(joint.axis.xyz.0));
     let motion = match joint.joint_type {
@@ -181,6 +198,7 @@ fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
 }
 
 impl JointMotion {
+    /// The motion by a value, in the frame of the joint.
     fn at(self, value: f64) -> Isometry3<f64> {
         match self {
             Self::Turn(axis) => Isometry3::from_parts(Translation3::identity(), about(axis, value)),

@@ -64,6 +64,19 @@ pub(crate) fn obj() -> String {
     text
 }
 
+/// The cube with its fronts inside, as a room has them.
+pub(crate) fn obj_inside_out() -> String {
+    let lines = obj();
+    let turned = lines.lines().map(|line| match line.strip_prefix("f ") {
+        Some(corners) => {
+            let reversed: Vec<&str> = corners.split(' ').rev().collect();
+            format!("f {}\n", reversed.join(" "))
+        }
+        None => format!("{line}\n"),
+    });
+    turned.collect()
+}
+
 pub(crate) fn stl_text() -> String {
     let mut text = String::from("solid cube\n");
     for corners in triangles() {

@@ -7,7 +7,7 @@ use impinge::dim3::query::distance;
 use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle, TriMesh};
 use impinge_files::{MeshFile, Scene, load};
 
-use crate::cube::{obj, samples};
+use crate::cube::{obj, obj_inside_out, samples};
 
 #[test]
 fn each_format_gives_the_same_solid() {
@@ -72,6 +72,33 @@ fn a_solid_has_an_inside_and_a_hull_of_it_is_convex() {
         let gap = distance(&Isometry::identity(), &*shape, &place, &Ball::new(0.5));
         assert!((gap - 1.5).abs() < 1e-12, "4 - 2 - 0.5, not {gap}");
     }
+}
+
+#[test]
+fn a_room_keeps_its_fronts_unless_it_shall_be_solid() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("room.obj"), obj_inside_out()).expect("it is written");
+    // A ball of radius 0.5 overlaps a wall of the room from 0 to 2 by 0.1, from inside or from outside.
+    let touches = |kind: &str, scale: [f64; 3], x: f64| {
+        let text = format!(
+            r#"{{"dimension": 3, "meshes": [{{"path": "room.obj", "as": "{kind}", "scale": {scale:?}}}],
+            "objects": [{{"name": "ball", "shape": {{"ball": {{"radius": 0.5}}}},
+                "position": {{"translation": [{x}, 1, 1]}}}}]}}"#
+        );
+        let scene = Scene::from_json(folder.path().join("scene.json"), &text).expect("a scene");
+        let mut world = scene.collision_world::<f64, 3>().expect("a world");
+        world.update();
+        world.contact_manifolds().count() == 1
+    };
+    let plain = [1.0; 3];
+    assert!(touches("one_sided", plain, 0.4) && !touches("one_sided", plain, -0.4), "from inside");
+    assert!(!touches("solid", plain, 0.4) && touches("solid", plain, -0.4), "from outside");
+    assert!(touches("surface", plain, 0.4) && touches("surface", plain, -0.4), "from both sides");
+    let mirrored = [-1.0, 1.0, 1.0];
+    assert!(
+        touches("one_sided", mirrored, -0.4) && !touches("one_sided", mirrored, 0.4),
+        "mirrored"
+    );
 }
 
 #[test]
