@@ -1,5 +1,6 @@
 //! Mesh files: their parts, and what is wrong with them.
 
+mod accessor;
 mod gltf;
 mod lines;
 mod obj;

@@ -7,7 +7,7 @@ use impinge::dim3::query::distance;
 use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle, TriMesh};
 use impinge_files::{MeshFile, Scene, load};
 
-use crate::cube::{obj, obj_inside_out, samples};
+use crate::cube::{gltf_sparse, obj, obj_inside_out, samples};
 
 #[test]
 fn each_format_gives_the_same_solid() {
@@ -99,6 +99,19 @@ fn a_room_keeps_its_fronts_unless_it_shall_be_solid() {
         touches("one_sided", mirrored, -0.4) && !touches("one_sided", mirrored, 0.4),
         "mirrored"
     );
+}
+
+#[test]
+fn sparse_elements_replace_those_of_the_view() {
+    // One element, with the index 6 and the value of the first corner, in front of the positions of the view.
+    let text = gltf_sparse()
+        .replace("\"count\": 7, \"indices\": {", "\"count\": 1, \"indices\": {\"byteOffset\": 5, ")
+        .replace("\"byteOffset\": 12}}", "\"byteOffset\": 0}}, \"bufferView\": 0");
+    let file = MeshFile::parse("moved.gltf".as_ref(), text.as_bytes()).expect("it can be read");
+    let vertices = &file.parts()[0].vertices;
+    assert_eq!(vertices.len(), 7, "two corners are one: {vertices:?}");
+    // The nodes mirror the cube in x = 1.
+    assert!(!vertices.contains(&[0.0, 2.0, 2.0]), "corner 6 has moved to corner 0: {vertices:?}");
 }
 
 #[test]
