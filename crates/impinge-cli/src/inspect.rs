@@ -38,6 +38,8 @@ struct SceneReport {
     space: KindFields,
     objects: Vec<ObjectFields>,
     meshes: Vec<MeshFields>,
+    /// Joints of robots at values outside their limits.
+    joints_beyond_limits: Vec<String>,
 }
 
 /// An object and the box around it; null where it has no bound.
@@ -97,8 +99,10 @@ impl Task for InspectScene<'_> {
             let path = path.display().to_string();
             meshes.extend(file.parts().iter().map(|part| fields(&path, &part.name, &part.report)));
         }
+        let joints = loaded.scene().joints_beyond_limits().iter();
+        let joints_beyond_limits = joints.map(ToString::to_string).collect();
         let (file, space) = (loaded.name(), loaded.kind.fields());
-        Ok(SceneReport { file, kind: "scene", space, objects, meshes })
+        Ok(SceneReport { file, kind: "scene", space, objects, meshes, joints_beyond_limits })
     }
 }
 
@@ -150,6 +154,9 @@ impl Report for SceneReport {
             );
         }
         self.meshes.iter().for_each(|mesh| mesh.write(&mut text));
+        for joint in &self.joints_beyond_limits {
+            let _ = writeln!(text, "{joint}");
+        }
         text
     }
 

@@ -42,4 +42,5 @@ pub use format::{
     ShapeFile, ShapeRef, UpAxis,
 };
 pub use mesh::{Defect, Defects, MAX_DEFECTS, MeshFile, MeshPart, MeshReport};
+pub use robot::JointBeyondLimits;
 pub use scene::{MAX_OBJECTS, NamedQuery, Scene, SceneSpace, SceneWorld, load};

@@ -24,7 +24,7 @@ pub struct RobotFile {
     /// Folders in which the packages of `package://` paths are looked for, relative to the folder of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub packages: Vec<PathBuf>,
-    /// The values of joints by name: radians or lengths, others are 0.
+    /// The values of joints by name: radians or lengths, others are 0. Values beyond the limits of a joint are no error.
     #[serde(default, deserialize_with = "unique_keys", skip_serializing_if = "BTreeMap::is_empty")]
     pub joints: BTreeMap<String, f64>,
     /// Where the root link is.

@@ -1,5 +1,6 @@
 //! The tree of joints: from joint values to the frames of links.
 
+use core::fmt;
 use std::collections::{BTreeMap, BTreeSet};
 
 use impinge::math::na::{Isometry3, Translation3, Vector3};
@@ -25,6 +26,22 @@ pub(super) struct Tree {
     order: Vec<usize>,
 }
 
+/// A joint of a robot at a value outside the limits of its URDF file.
+///
+/// The link below it is placed by the value all the same: limits are about what the drives of a robot can do, and a
+/// collision checker is asked about any pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointBeyondLimits {
+    /// What the names of the robot's objects begin with.
+    pub robot: String,
+    /// The joint.
+    pub joint: String,
+    /// Its value in the scene: radians, or a length. That of a joint that mimics another follows from it.
+    pub value: f64,
+    /// The least and the largest value of the URDF file.
+    pub limits: [f64; 2],
+}
+
 /// A joint above a link.
 #[derive(Debug)]
 struct TreeJoint {
@@ -33,6 +50,8 @@ struct TreeJoint {
     /// The frame of the joint in that of its parent.
     origin: Isometry3<f64>,
     motion: JointMotion,
+    /// The least and the largest value; `None` if the file gives none.
+    limits: Option<[f64; 2]>,
     mimic: Option<Mimic>,
 }
 
@@ -167,6 +186,23 @@ impl Tree {
         factor * values.get(name).copied().unwrap_or(0.0) + offset
     }
 
+    /// The joints that move and whose values are outside of their limits, in order of their names.
+    pub(super) fn beyond_limits(
+        &self,
+        robot: &str,
+        values: &BTreeMap<String, f64>,
+    ) -> Vec<JointBeyondLimits> {
+        let joints = self.joints.iter().filter_map(|(name, joint)| {
+            let (limits, value) = (joint.limits?, self.value(name, values));
+            let is_within = (limits[0]..=limits[1]).contains(&value);
+            (!is_within).then(|| {
+                let (robot, joint) = (robot.to_owned(), name.clone());
+                JointBeyondLimits { robot, joint, value, limits }
+            })
+        });
+        joints.collect()
+    }
+
     /// The file has a link of this name.
     pub(super) fn has_link(&self, name: &str) -> bool {
         self.index.contains_key(name)
@@ -194,7 +230,25 @@ fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
         }
     };
     let (origin, mimic) = (isometry(&joint.origin)?, joint.mimic.clone());
-    Ok(TreeJoint { parent, origin, motion, mimic })
+    Ok(TreeJoint { parent, origin, motion, limits: limits(joint), mimic })
+}
+
+/// The limits of joints that URDF has them for. A joint without a `limit` element, which many files lack, has 0 twice.
+fn limits(joint: &Joint) -> Option<[f64; 2]> {
+    let is_limited = matches!(joint.joint_type, JointType::Revolute | JointType::Prismatic);
+    let limits = [joint.limit.lower, joint.limit.upper];
+    (is_limited && limits != [0.0; 2]).then_some(limits)
+}
+
+impl fmt::Display for JointBeyondLimits {
+    /// Such as `the joint elbow of arm is at 3.5, outside its limits -2.5 to 2.5`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { robot, joint, value, limits: [lower, upper] } = self;
+        write!(
+            f,
+            "the joint {joint} of {robot} is at {value}, outside its limits {lower} to {upper}"
+        )
+    }
 }
 
 impl JointMotion {

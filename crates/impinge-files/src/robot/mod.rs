@@ -10,6 +10,8 @@ use std::path::Path;
 
 use impinge::math::na::Isometry3;
 
+pub use kinematics::JointBeyondLimits;
+
 use self::kinematics::Tree;
 use self::packages::Packages;
 use self::xml::XmlFile;
@@ -80,6 +82,11 @@ impl Robot {
             Some(RobotLink { name, shape, frame: frame * own })
         });
         Ok(links.collect())
+    }
+
+    /// The joints at values outside their limits; `name` is what the names of the robot's objects begin with.
+    pub(crate) fn beyond_limits(&self, file: &RobotFile, name: &str) -> Vec<JointBeyondLimits> {
+        self.tree.beyond_limits(name, &file.joints)
     }
 
     /// The pairs of links, by their index among those with collision elements, that have no contacts: those that a joint

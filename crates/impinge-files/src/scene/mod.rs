@@ -25,7 +25,7 @@ use self::pose::Motion;
 use crate::format::{QueryTypeFile, ShapeRef};
 use crate::source::Source;
 use crate::{
-    Dimension, FileError, MeshFile, MeshesFile, Problem, RobotFile, ScalarFile,
+    Dimension, FileError, JointBeyondLimits, MeshFile, MeshesFile, Problem, RobotFile, ScalarFile,
     SceneFile, UpAxis, input,
 };
 
@@ -60,6 +60,7 @@ pub struct Scene {
     forms: Vec<Form>,
     objects: Vec<SceneObject>,
     meshes: MeshTable,
+    joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
 /// A shape, and the path of what has it.
@@ -168,6 +169,12 @@ impl Scene {
     /// The mesh files that were read, by path, with the reports of their parts.
     pub fn mesh_files(&self) -> impl Iterator<Item = (&Path, &MeshFile)> {
         self.meshes.iter()
+    }
+
+    /// The joints of robots whose values are outside the limits of their URDF files. The scene is valid all the same.
+    #[must_use]
+    pub fn joints_beyond_limits(&self) -> &[JointBeyondLimits] {
+        &self.joints_beyond_limits
     }
 
     /// An object moves.

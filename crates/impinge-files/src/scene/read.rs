@@ -13,7 +13,7 @@ use crate::format::{
     GroupsFile, MeshSource, MeshesFile, ObjectFile, QueryFile, QueryTypeFile, RepeatFile,
     RobotFile, SceneFile, ShapeFile, ShapeRef,
 };
-use crate::robot::{Robot, RobotLink};
+use crate::robot::{JointBeyondLimits, Robot, RobotLink};
 use crate::source::Source;
 use crate::{Dimension, FileError, Problem};
 
@@ -42,6 +42,7 @@ struct Collected<'a> {
     objects: Vec<Draft<'a>>,
     disabled: BTreeSet<DisabledPair>,
     meshes: MeshTable,
+    joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
 /// An object without its groups, which depend on those of all.
@@ -73,8 +74,8 @@ impl Scene {
             ResolveError::Document(fault) => source.error(fault),
             ResolveError::File(error) => error,
         })?;
-        let Collected { forms, meshes, .. } = collected;
-        Ok(Self { source, file, forms, objects, meshes })
+        let Collected { forms, meshes, joints_beyond_limits, .. } = collected;
+        Ok(Self { source, file, forms, objects, meshes, joints_beyond_limits })
     }
 }
 
@@ -87,6 +88,7 @@ impl<'a> Collected<'a> {
             objects: Vec::new(),
             disabled: BTreeSet::new(),
             meshes: MeshTable::new(folder),
+            joints_beyond_limits: Vec::new(),
         }
     }
 
@@ -179,6 +181,7 @@ impl<'a> Collected<'a> {
         let first = self.objects.len();
         let pairs = read.disabled_pairs(&links).into_iter();
         self.disabled.extend(pairs.map(|pair| DisabledPair::new(pair.map(|link| first + link))));
+        self.joints_beyond_limits.extend(read.beyond_limits(robot, prefix));
         for RobotLink { name, shape, frame } in links {
             self.meshes.read_files(&shape)?;
             let form = self.form(ShapeRef::Inline(Box::new(shape)), path.to_owned(), "");
