@@ -38,6 +38,8 @@ struct SceneReport {
     space: KindFields,
     objects: Vec<ObjectFields>,
     meshes: Vec<MeshFields>,
+    /// Joints of robots at values outside their limits.
+    joints_beyond_limits: Vec<String>,
 }
 
 /// An object and the box around it; null where it has no bound.
@@ -97,14 +99,14 @@ impl Task for InspectScene<'_> {
             let path = path.display().to_string();
             meshes.extend(file.parts().iter().map(|part| fields(&path, &part.name, &part.report)));
         }
+        let joints = loaded.scene().joints_beyond_limits().iter();
+        let joints_beyond_limits = joints.map(ToString::to_string).collect();
         let (file, space) = (loaded.name(), loaded.kind.fields());
-        Ok(SceneReport { file, kind: "scene", space, objects, meshes })
+        Ok(SceneReport { file, kind: "scene", space, objects, meshes, joints_beyond_limits })
     }
 }
 
 fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
-    // The first line has the numbers, and each of the others a problem.
-    let problems = report.to_string().lines().skip(1).map(str::to_owned).collect();
     MeshFields {
         file: file.to_owned(),
         name: name.to_owned(),
@@ -115,7 +117,7 @@ fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
         solid: report.is_solid(),
         volume: report.volume,
         boundary_edges: report.boundary_edges.count,
-        problems,
+        problems: report.problems(),
     }
 }
 
@@ -152,6 +154,9 @@ impl Report for SceneReport {
             );
         }
         self.meshes.iter().for_each(|mesh| mesh.write(&mut text));
+        for joint in &self.joints_beyond_limits {
+            let _ = writeln!(text, "{joint}");
+        }
         text
     }
 

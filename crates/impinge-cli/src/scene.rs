@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use impinge::dim3::math::Vector;
 use impinge::world::{CollisionObject, CollisionWorld};
-use impinge_files::{Dimension, ScalarFile, Scene, SceneFile, SceneWorld, UpAxis};
-use serde_json::json;
+use impinge_files::{Dimension, RobotFile, ScalarFile, Scene, SceneFile, SceneWorld, UpAxis};
 
 use crate::args::{ScalarName, SceneArgs, is_stdin};
 use crate::error::CliError;
@@ -110,9 +109,7 @@ fn is_robot(path: &Path) -> bool {
 /// A robot whose packages are in folders that the user names.
 fn robot(path: &Path, packages: &[PathBuf]) -> Result<Scene, CliError> {
     let mut file = SceneFile::new(Dimension::Three);
-    let robot = serde_json::from_value(json!({"urdf": path, "packages": packages}));
-    let unusable = |error| CliError::argument("--packages", path.display(), error);
-    file.robots.push(robot.map_err(unusable)?);
+    file.robots.push(RobotFile { packages: packages.to_vec(), ..RobotFile::new(path) });
     Ok(file.resolve(Path::new(""))?)
 }
 

@@ -40,6 +40,26 @@ fn a_sound_mesh_and_one_with_a_hole() {
 }
 
 #[test]
+fn a_joint_beyond_its_limits() {
+    let desk = Desk::new();
+    let link = |name| {
+        format!(
+            "<link name=\"{name}\"><collision><geometry><sphere radius=\"1\"/></geometry></collision></link>"
+        )
+    };
+    let joint = "<joint name=\"knee\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>\
+                 <limit lower=\"0.5\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>";
+    desk.write(
+        "leg.urdf",
+        format!("<robot name=\"leg\">{}{}{joint}</robot>", link("a"), link("b")),
+    );
+    let message = "the joint knee of leg is at 0, outside its limits 0.5 to 2";
+    let report = desk.json("inspect leg.urdf", 0);
+    assert_eq!(report["joints_beyond_limits"], json!([message]), "it is no error");
+    assert!(desk.run("inspect leg.urdf").out.contains(message), "the text has it too");
+}
+
+#[test]
 fn the_header_of_a_recording() {
     let desk = Desk::new();
     assert_eq!(desk.run("record squares.json -o a.implog --steps 3").code, 0);
