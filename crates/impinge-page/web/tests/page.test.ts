@@ -209,8 +209,20 @@ test("a live recording is followed, and its end is said", options, async () => {
   server.close();
 });
 
-test("a file whose recording is damaged says so", options, async () => {
-  const recording = falling(2).slice(0, 40);
+test("a recording whose program died is played, and its loss is said", options, async () => {
+  const recording = falling(2).slice(0, -20);
+  const { page, errors } = await visit(
+    browser,
+    write({ scene: { open: "recording", title: "Died" }, recording, ...module }),
+  );
+  await until(page, /^step 1 of 39: 4 objects/);
+  assert.match(await textOf(page, ".about"), /^The recording has no end: its last \d+ bytes cannot be read/);
+  assert.deepEqual(errors, []);
+  await page.close();
+});
+
+test("a file whose recording has no header says so", options, async () => {
+  const recording = falling(2).slice(0, 30);
   const { page } = await visit(
     browser,
     write({ scene: { open: "recording", title: "Damaged" }, recording, ...module }),
