@@ -37,6 +37,22 @@ fn a_sound_mesh_and_one_with_a_hole() {
     let flat = desk.json("inspect flat.obj", 1);
     let problem = flat["meshes"][0]["problems"][0].as_str().expect("a problem");
     assert!(problem.contains("degenerate") && problem.contains("line 17"), "{problem}");
+    // Faces whose corners are in the other order.
+    let turned = whole.lines().map(|line| match line.strip_prefix("f ") {
+        Some(corners) => {
+            let corners: Vec<_> = corners.rsplit(' ').collect();
+            format!("f {}\n", corners.join(" "))
+        }
+        None => format!("{line}\n"),
+    });
+    desk.write("turned.obj", turned.collect::<String>());
+    let text = desk.run("inspect turned.obj");
+    assert!(
+        text.out.contains(
+            "part base: 8 vertices, 12 triangles, 1 pieces, closed, inside out, volume 1"
+        ),
+        "{text:?}"
+    );
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A scene at work: a recorded world whose objects have names and move.
 
+use core::num::NonZeroU64;
 use core::ops::Deref;
 use std::collections::BTreeMap;
 
@@ -77,6 +78,13 @@ impl Scene {
 }
 
 impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
+    /// Writes a key frame before every update whose number is a multiple of `updates`; see
+    /// [`Recorder::with_key_frames`].
+    #[must_use]
+    pub fn with_key_frames(self, updates: NonZeroU64) -> Self {
+        Self { recorder: self.recorder.with_key_frames(updates), ..self }
+    }
+
     /// Moves the objects by their motions over some seconds, and updates the world. A step of 0 seconds updates it
     /// alone, as the first step mostly does. Positions are computed from the start and the time since.
     ///
