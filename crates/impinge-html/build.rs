@@ -7,7 +7,7 @@ mod engine {
     use std::process::Command;
     use std::{env, fs};
 
-    /// The path of a module that is built already, taken instead of building one.
+    /// The variable with the path of a module, which is taken instead of building one.
     const READY: &str = "IMPINGE_PAGE_MODULE";
 
     const TARGET: &str = "wasm32-unknown-unknown";
@@ -24,11 +24,11 @@ mod engine {
         let bytes = fs::read(&module).map_err(|error| format!("{}: {error}", module.display()))?;
         let file = fs::File::create(folder.join("page.wasm.gz"));
         let level = flate2::Compression::best();
-        let mut encoder = flate2::write::GzEncoder::new(file.map_err(told)?, level);
-        encoder.write_all(&bytes).and_then(|()| encoder.finish()).map(drop).map_err(told)
+        let mut encoder = flate2::write::GzEncoder::new(file.map_err(text)?, level);
+        encoder.write_all(&bytes).and_then(|()| encoder.finish()).map(drop).map_err(text)
     }
 
-    fn told(error: impl std::fmt::Display) -> String {
+    fn text(error: impl std::fmt::Display) -> String {
         error.to_string()
     }
 
@@ -48,18 +48,18 @@ mod engine {
         cargo.current_dir(&crates);
         cargo.args(["build", "--profile", "page", "-p", "impinge-page", "--lib"]);
         cargo.args(["--target", TARGET, "--target-dir"]).arg(folder);
-        // What the outer build is for: its flags, linter and target are not those of the engine.
+        // The flags and the linter of the outer build are not those of the engine.
         for name in
             ["CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER", "CLIPPY_ARGS"]
         {
             cargo.env_remove(name);
         }
         cargo.env("RUSTFLAGS", "-C target-feature=+simd128");
-        let status = cargo.status().map_err(told)?;
+        let status = cargo.status().map_err(text)?;
         if !status.success() {
             return Err(format!(
                 "the engine of the page was not built. It needs the target {TARGET} \
-                 (rustup target add {TARGET}). With {READY}=FILE a module that is built already is taken."
+                 (rustup target add {TARGET}). With {READY}=FILE that module is taken, and none is built."
             ));
         }
         Ok(folder.join(TARGET).join("page").join("impinge_page.wasm"))

@@ -6,7 +6,7 @@ use crate::args::Numbers;
 use crate::error::CliError;
 use crate::number::significant;
 
-/// A number of an argument; an error where the scalar has no such finite number.
+/// A number of an argument; an error if the scalar has no finite number so large.
 pub(crate) fn scalar<N: Real>(name: &'static str, value: f64) -> Result<N, CliError> {
     let converted = N::lit(value);
     if converted.is_finite_number() {
@@ -20,15 +20,25 @@ pub(crate) fn vector<N: Real, const D: usize>(
     name: &'static str,
     numbers: &Numbers,
 ) -> Result<Vector<N, D>, CliError> {
-    let Numbers(numbers) = numbers;
-    if numbers.len() != D {
-        let text: Vec<_> = numbers.iter().copied().map(significant).collect();
+    if numbers.0.len() != D {
         let reason = format!("the scene has {D} dimensions, so {D} numbers are needed");
-        return Err(CliError::argument(name, text.join(","), reason));
+        return Err(CliError::argument(name, numbers, reason));
     }
     let mut vector = Vector::<N, D>::zeros();
-    for (component, number) in vector.iter_mut().zip(numbers) {
+    for (component, number) in vector.iter_mut().zip(&numbers.0) {
         *component = scalar(name, *number)?;
     }
     Ok(vector)
+}
+
+/// A vector of an argument that must not be zero. Its length is free.
+pub(crate) fn direction<N: Real, const D: usize>(
+    name: &'static str,
+    numbers: &Numbers,
+) -> Result<Vector<N, D>, CliError> {
+    let direction = vector(name, numbers)?;
+    if direction == Vector::<N, D>::zeros() {
+        return Err(CliError::argument(name, numbers, "a direction must not be zero"));
+    }
+    Ok(direction)
 }

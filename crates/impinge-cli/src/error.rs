@@ -1,8 +1,8 @@
-//! Why the command cannot answer.
+//! What keeps the command from an answer.
 
 use core::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use impinge_html::HtmlError;
 use impinge_record::{ReadError, RecordError};
@@ -40,6 +40,11 @@ pub(crate) enum CliError {
 }
 
 impl CliError {
+    /// A file cannot be read.
+    pub(crate) fn reading(path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |error| Self::Read { path: path.to_owned(), error }
+    }
+
     /// An argument does not suit the scene.
     pub(crate) fn argument(
         name: &'static str,

@@ -1,19 +1,17 @@
 //! What rays and moving shapes hit: the fields of `ray` and `cast`.
 
-use core::fmt::Write as _;
+use core::fmt;
 
 use serde::Serialize;
 
 use crate::number::{Number, tuple};
-use crate::output::{CLEAR, FAINT, NAME, Outcome, Report, TOUCHES};
-use crate::space::KindFields;
+use crate::output::{CLEAR, FAINT, NAME, Outcome, Report, Subject, TOUCHES};
 
 /// The objects that are hit, in order of time.
 #[derive(Debug, Serialize)]
 pub(crate) struct Hits<H> {
-    pub(crate) file: String,
     #[serde(flatten)]
-    pub(crate) kind: KindFields,
+    pub(crate) subject: Subject,
     pub(crate) hits: Vec<H>,
 }
 
@@ -27,6 +25,7 @@ pub(crate) struct RayHit {
     pub(crate) point: Vec<Number>,
     /// Out of the object; zero if the ray starts inside.
     pub(crate) normal: Vec<Number>,
+    /// The part of the object that is hit; 0 of a convex shape.
     pub(crate) part: u32,
 }
 
@@ -43,49 +42,45 @@ pub(crate) struct CastHit {
     pub(crate) point: Vec<Number>,
     /// From the moving shape to the object.
     pub(crate) normal: Vec<Number>,
+    /// The part of the object that is hit; 0 of a convex shape.
     pub(crate) part: u32,
 }
 
-/// One hit as text.
-pub(crate) trait Line {
-    /// A line of text.
-    fn line(&self, text: &mut String);
-}
-
-impl Line for RayHit {
-    fn line(&self, text: &mut String) {
+impl fmt::Display for RayHit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { object, time, length, .. } = self;
-        let (point, normal) = (tuple(&self.point), tuple(&self.normal));
-        let _ = writeln!(
-            text,
+        let [point, normal] = [&self.point, &self.normal].map(|numbers| tuple(numbers));
+        writeln!(
+            f,
             "{TOUCHES}hit{TOUCHES:#} {NAME}{object}{NAME:#} at {point} after {length} \
              {FAINT}(time {time}, normal {normal}){FAINT:#}"
-        );
+        )
     }
 }
 
-impl Line for CastHit {
-    fn line(&self, text: &mut String) {
+impl fmt::Display for CastHit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { object, time, moved, .. } = self;
-        let [at, point, normal] = [&self.position, &self.point, &self.normal].map(|x| tuple(x));
-        let _ = writeln!(
-            text,
-            "{TOUCHES}hit{TOUCHES:#} {NAME}{object}{NAME:#} at {point} after {moved}, from {at} \
+        let vectors = [&self.position, &self.point, &self.normal];
+        let [position, point, normal] = vectors.map(|numbers| tuple(numbers));
+        writeln!(
+            f,
+            "{TOUCHES}hit{TOUCHES:#} {NAME}{object}{NAME:#} at {point} after {moved}, from {position} \
              {FAINT}(time {time}, normal {normal}){FAINT:#}"
-        );
+        )
     }
 }
 
-impl<H: Line + Serialize> Report for Hits<H> {
-    fn text(&self) -> String {
-        let mut text = String::new();
-        self.hits.iter().for_each(|hit| hit.line(&mut text));
+impl<H: fmt::Display> fmt::Display for Hits<H> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.hits.is_empty() {
-            let _ = writeln!(text, "{CLEAR}nothing{CLEAR:#} is hit in {}", self.file);
+            return writeln!(f, "{CLEAR}nothing{CLEAR:#} is hit in {}", self.subject.file);
         }
-        text
+        self.hits.iter().try_for_each(|hit| hit.fmt(f))
     }
+}
 
+impl<H: fmt::Display + Serialize> Report for Hits<H> {
     fn outcome(&self) -> Outcome {
         (!self.hits.is_empty()).into()
     }

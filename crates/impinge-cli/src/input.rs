@@ -1,14 +1,14 @@
-//! Files that may be scenes or recordings.
+//! What the command reads: files or standard input, which are scenes or recordings.
 
-use std::fs::File;
-use std::io::Read as _;
+use std::fs::{self, File};
+use std::io::{self, Read as _};
+use std::path::Path;
 
 use impinge_record::{Header, Problem};
 
 use crate::args::{SceneArgs, is_stdin};
 use crate::error::CliError;
-use crate::output;
-use crate::recording::Log;
+use crate::log::Log;
 use crate::scene::Loaded;
 
 /// A scene or a recording.
@@ -20,25 +20,51 @@ pub(crate) enum Input {
     Recording(Box<Log>),
 }
 
-/// A recording is known by fewer bytes.
+/// The bytes in which the header of a recording begins: enough to know it by.
 const HEAD: u64 = 64;
 
 impl Input {
-    /// Reads a file as what its first bytes say. On standard input there is a scene.
+    /// Reads a file as what its first bytes say.
+    ///
+    /// Of a scene they are read twice, since its reader takes a path: that of a mesh leads to other files.
     pub(crate) fn open(args: &SceneArgs) -> Result<Self, CliError> {
         let path = &args.scene;
         if is_stdin(path) {
-            return Ok(Self::Scene(Box::new(Loaded::read(args)?)));
+            // A stream is read once.
+            let bytes = read(path)?;
+            return if is_recording(&bytes) {
+                Ok(Self::Recording(Box::new(Log::of_bytes(path, bytes)?)))
+            } else {
+                Ok(Self::Scene(Box::new(Loaded::of_stdin(bytes, &args.reading)?)))
+            };
         }
-        let failed = |error| CliError::Read { path: path.clone(), error };
-        let mut head = Vec::new();
-        File::open(path).map_err(failed)?.take(HEAD).read_to_end(&mut head).map_err(failed)?;
-        let is_scene =
-            Header::read(&head).is_err_and(|error| error.problem == Problem::NotARecording);
-        Ok(if is_scene {
-            Self::Scene(Box::new(Loaded::read(args)?))
+        Ok(if is_recording(&head(path)?) {
+            Self::Recording(Box::new(Log::read(path)?))
         } else {
-            Self::Recording(Box::new(Log::of_bytes(path, output::read(path)?)?))
+            Self::Scene(Box::new(Loaded::read(args)?))
         })
     }
+}
+
+/// Also of one that is cut off, or of an unknown version: their errors are those of recordings.
+fn is_recording(head: &[u8]) -> bool {
+    !Header::read(head).is_err_and(|error| error.problem == Problem::NotARecording)
+}
+
+/// The first bytes of a file.
+fn head(path: &Path) -> Result<Vec<u8>, CliError> {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    read.map_err(CliError::reading(path))?;
+    Ok(head)
+}
+
+/// The bytes of a file, or of standard input for `-`.
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
+    if !is_stdin(path) {
+        return fs::read(path).map_err(CliError::reading(path));
+    }
+    let mut bytes = Vec::new();
+    io::stdin().lock().read_to_end(&mut bytes).map_err(CliError::reading(path))?;
+    Ok(bytes)
 }

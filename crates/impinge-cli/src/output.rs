@@ -1,15 +1,17 @@
-//! What is printed: text or JSON, at once, on standard output.
+//! What the command writes: reports as text or JSON, notes and errors, files.
 
+use core::fmt;
 use std::fs;
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Write as _};
 use std::path::Path;
 use std::process::ExitCode;
 
 use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 
-use crate::args::{Format, is_stdin};
+use crate::args::Format;
 use crate::error::CliError;
+use crate::space::Kind;
 
 /// What touches, is hit or differs.
 pub(crate) const TOUCHES: Style = AnsiColor::Red.on_default().bold();
@@ -46,18 +48,33 @@ impl From<Outcome> for ExitCode {
     }
 }
 
-/// An answer of the command. Its fields in JSON are those that `--help` documents.
-pub(crate) trait Report: Serialize {
-    /// The answer as text, with escape codes for colours.
-    fn text(&self) -> String;
-
+/// An answer of the command: as text by `Display`, with escape codes for colours, and as JSON by `Serialize`, with
+/// the fields that `--help` documents.
+pub(crate) trait Report: Serialize + fmt::Display {
     /// The exit code.
-    fn outcome(&self) -> Outcome;
+    fn outcome(&self) -> Outcome {
+        Outcome::Clear
+    }
 }
 
-/// Prints a report, and says whether it found something.
+/// With what a report begins: its file, and the dimension and scalar of the computation.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Subject {
+    pub(crate) file: String,
+    #[serde(flatten)]
+    pub(crate) kind: Kind,
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, kind } = self;
+        write!(f, "{NAME}{file}{NAME:#} {FAINT}({kind}){FAINT:#}")
+    }
+}
+
+/// Prints a report, and returns its exit code.
 pub(crate) fn finish<R: Report>(report: &R, format: Format) -> Result<Outcome, CliError> {
-    let text = if format.json { json(report)? } else { report.text() };
+    let text = if format.json { json(report)? } else { report.to_string() };
     print(&text)?;
     Ok(report.outcome())
 }
@@ -68,7 +85,7 @@ fn json<R: Report>(report: &R) -> Result<String, CliError> {
     Ok(text)
 }
 
-/// Writes a text to standard output, with colours where these are seen.
+/// Writes a text to standard output, with colours if that is a terminal.
 ///
 /// A reader that is gone, as of `impinge … | head`, is no error.
 pub(crate) fn print(text: &str) -> Result<(), CliError> {
@@ -79,19 +96,22 @@ pub(crate) fn print(text: &str) -> Result<(), CliError> {
     }
 }
 
-/// The bytes of a file, or of standard input for `-`.
-pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
-    let failed = |error| CliError::Read { path: path.to_owned(), error };
-    if !is_stdin(path) {
-        return fs::read(path).map_err(failed);
-    }
-    let mut bytes = Vec::new();
-    io::stdin().lock().read_to_end(&mut bytes).map_err(failed)?;
-    Ok(bytes)
+/// Writes a note to standard error: the answer is there, but not of all that was asked for.
+pub(crate) fn note(text: impl fmt::Display) {
+    message(NEAR, "note", &text);
+}
+
+/// Writes an error to standard error.
+pub(crate) fn complain(error: &CliError) {
+    message(TOUCHES, "error", error);
+}
+
+fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
+    // Nobody is left to hear that standard error is closed.
+    let _ = writeln!(anstream::stderr(), "{style}{kind}{style:#}: {text}");
 }
 
 /// Writes a file.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    let failed = |error| CliError::Write { path: path.to_owned(), error };
-    fs::write(path, bytes).map_err(failed)
+    fs::write(path, bytes).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }

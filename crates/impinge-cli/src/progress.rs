@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// What takes less long has no bar.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Work that takes less long has no bar.
+const DELAY: Duration = Duration::from_secs(1);
 
 /// A bar that appears after a second, on a terminal alone, and is gone at the end.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ impl Progress {
 
     /// One step is done.
     pub(crate) fn step(&mut self) {
-        if !self.is_shown && self.begun.elapsed() > PATIENCE {
+        if !self.is_shown && self.begun.elapsed() > DELAY {
             self.is_shown = true;
             // Draws nothing where standard error is not a terminal.
             self.bar.set_draw_target(ProgressDrawTarget::stderr());

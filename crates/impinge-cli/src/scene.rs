@@ -1,18 +1,19 @@
 //! Scenes as the command reads them: scene files, meshes, robots.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 use impinge::dim3::math::Vector;
 use impinge::world::{CollisionObject, CollisionWorld};
-use impinge_files::{Dimension, ScalarFile, Scene, SceneFile, SceneWorld, UpAxis};
-use serde_json::json;
+use impinge_files::{Dimension, RobotFile, ScalarFile, Scene, SceneFile, SceneWorld, UpAxis};
 
-use crate::args::{ScalarName, SceneArgs, is_stdin};
+use crate::args::{KeyFrames, Reading, SceneArgs, is_stdin};
 use crate::error::CliError;
-use crate::output;
+use crate::input;
+use crate::output::Subject;
 use crate::space::{Kind, Stage};
 
-/// A scene, and the scalar and dimension in which it is looked at.
+/// A scene, and the scalar and dimension in which the command computes with it.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     path: PathBuf,
@@ -20,45 +21,57 @@ pub(crate) struct Loaded {
     pub(crate) kind: Kind,
 }
 
-/// Names with more edits than a third of their length are not similar.
+/// The name of a scene from standard input.
+const STDIN: &str = "stdin";
+
+/// A name is similar to one with at most a third as many edits as it has characters.
 const SIMILAR: usize = 3;
 
 impl Loaded {
     /// Reads a scene from a file or from standard input.
     pub(crate) fn read(args: &SceneArgs) -> Result<Self, CliError> {
-        let path = args.scene.clone();
-        let scene = if is_stdin(&path) {
-            let bytes = output::read(&path)?;
-            Scene::from_json("stdin", &String::from_utf8_lossy(&bytes))?
-        } else if !args.packages.is_empty() && is_robot(&path) {
-            robot(&path, &args.packages)?
+        let SceneArgs { scene: path, reading: Reading { scalar, packages } } = args;
+        if is_stdin(path) {
+            return Self::of_stdin(input::read(path)?, &args.reading);
+        }
+        let scene = if !packages.is_empty() && is_robot(path) {
+            robot(path, packages)?
         } else {
-            impinge_files::load(&path)?
+            impinge_files::load(path)?
         };
-        Ok(Self::new(path, scene, args.scalar))
+        Ok(Self::new(path.clone(), scene, *scalar))
     }
 
-    /// A scene that the command has.
+    /// The scene that standard input has.
+    pub(crate) fn of_stdin(bytes: Vec<u8>, reading: &Reading) -> Result<Self, CliError> {
+        let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
+        let text = String::from_utf8(bytes).map_err(invalid);
+        Self::of_text(STDIN, &text.map_err(CliError::reading(Path::new(STDIN)))?, reading.scalar)
+    }
+
+    /// A scene in JSON that is no file.
     pub(crate) fn of_text(
         name: &str,
         text: &str,
-        scalar: Option<ScalarName>,
+        scalar: Option<ScalarFile>,
     ) -> Result<Self, CliError> {
         Ok(Self::new(name.into(), Scene::from_json(name, text)?, scalar))
     }
 
-    fn new(path: PathBuf, scene: Scene, scalar: Option<ScalarName>) -> Self {
-        let own = match scene.scalar() {
-            ScalarFile::F32 => ScalarName::F32,
-            ScalarFile::F64 => ScalarName::F64,
-        };
-        let kind = Kind { scalar: scalar.unwrap_or(own), dimension: scene.dimension() };
+    fn new(path: PathBuf, scene: Scene, scalar: Option<ScalarFile>) -> Self {
+        let scalar = scalar.unwrap_or(scene.scalar());
+        let kind = Kind { dimension: scene.dimension(), scalar };
         Self { path, scene, kind }
     }
 
     /// The file, as reports name it.
     pub(crate) fn name(&self) -> String {
         self.path.display().to_string()
+    }
+
+    /// With what a report on the scene begins.
+    pub(crate) fn subject(&self) -> Subject {
+        Subject { file: self.name(), kind: self.kind }
     }
 
     /// The scene.
@@ -73,9 +86,16 @@ impl Loaded {
         Ok(self.scene.collision_world()?)
     }
 
-    /// A world whose objects move and are recorded.
-    pub(crate) fn moving<N: Stage<D>, const D: usize>(&self) -> Result<SceneWorld<N, D>, CliError> {
-        Ok(self.scene.world()?)
+    /// A world whose objects move and are recorded, with these key frames.
+    pub(crate) fn moving<N: Stage<D>, const D: usize>(
+        &self,
+        key_frames: KeyFrames,
+    ) -> Result<SceneWorld<N, D>, CliError> {
+        let world = self.scene.world()?;
+        Ok(match key_frames.every {
+            Some(updates) => world.with_key_frames(updates),
+            None => world,
+        })
     }
 
     /// The direction that points up in pictures.
@@ -87,7 +107,7 @@ impl Loaded {
         }
     }
 
-    /// The object of a name; the error has the name that is most similar.
+    /// The object of a name; the error has the most similar name, if one is similar.
     pub(crate) fn object<'a, N: Stage<D>, const D: usize>(
         &self,
         world: &'a CollisionWorld<N, D, String>,
@@ -110,27 +130,27 @@ fn is_robot(path: &Path) -> bool {
 /// A robot whose packages are in folders that the user names.
 fn robot(path: &Path, packages: &[PathBuf]) -> Result<Scene, CliError> {
     let mut file = SceneFile::new(Dimension::Three);
-    let robot = serde_json::from_value(json!({"urdf": path, "packages": packages}));
-    let unusable = |error| CliError::argument("--packages", path.display(), error);
-    file.robots.push(robot.map_err(unusable)?);
+    file.robots.push(RobotFile { packages: packages.to_vec(), ..RobotFile::new(path) });
     Ok(file.resolve(Path::new(""))?)
 }
 
-/// How many characters have to be added, removed or changed (Levenshtein, "Binary codes capable of
-/// correcting deletions, insertions, and reversals", 1966).
+/// The edit distance: how many characters have to be added, removed or changed (Levenshtein, "Binary codes capable
+/// of correcting deletions, insertions, and reversals", 1966).
 fn edits(one: &str, other: &str) -> usize {
     let other: Vec<char> = other.chars().collect();
-    let mut row: Vec<usize> = (0..=other.len()).collect();
-    for (index, letter) in one.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = index + 1;
-        for (place, own) in other.iter().enumerate() {
+    // The distances of the first `row` characters of `one` to every prefix of `other`: a row of the usual table,
+    // overwritten from left to right, with what stood above and to the left in `diagonal`.
+    let mut distances: Vec<usize> = (0..=other.len()).collect();
+    for (row, letter) in one.chars().enumerate() {
+        let mut diagonal = distances[0];
+        distances[0] = row + 1;
+        for (column, own) in other.iter().enumerate() {
             let changed = diagonal + usize::from(letter != *own);
-            diagonal = row[place + 1];
-            row[place + 1] = changed.min(diagonal + 1).min(row[place] + 1);
+            diagonal = distances[column + 1];
+            distances[column + 1] = changed.min(diagonal + 1).min(distances[column] + 1);
         }
     }
-    row[other.len()]
+    distances[other.len()]
 }
 
 #[cfg(test)]

@@ -4,24 +4,33 @@ use core::fmt;
 
 use impinge::query::{Witness, witness};
 use impinge::world::CollisionObject;
-use impinge_files::{Dimension, SceneSpace};
+use impinge_files::{Dimension, ScalarFile, SceneSpace};
 use impinge_record::Scalar;
 use impinge_view::{Camera, SvgPicture};
 use serde::Serialize;
 
-use crate::args::ScalarName;
 use crate::error::CliError;
 
-/// A scalar and a dimension.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A dimension and a scalar: fields of nearly every report.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub(crate) struct Kind {
-    pub(crate) scalar: ScalarName,
     pub(crate) dimension: Dimension,
+    pub(crate) scalar: ScalarFile,
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let scalar = match self.scalar {
+            ScalarFile::F32 => "f32",
+            ScalarFile::F64 => "f64",
+        };
+        write!(f, "{}D, {scalar}", self.dimension.number())
+    }
 }
 
 /// A scalar and a dimension in which the command works.
 pub(crate) trait Stage<const D: usize>: SceneSpace<D> {
-    /// What the user may ask for of the camera, or the one that this dimension has anyway.
+    /// The camera of a picture: in 3D this one, in 2D that of the plane.
     fn camera(spatial: Camera) -> Camera;
 
     /// A picture of lines of this width in pixels.
@@ -73,45 +82,22 @@ impl<N: Scalar> Stage<3> for N {
     }
 }
 
-/// What is done in a scalar and a dimension that are known when the program runs.
+/// A computation that is generic over the scalar and the dimension, which are known when the program runs. It is a
+/// type, because a closure cannot be generic.
 pub(crate) trait Task {
-    /// What comes of it.
+    /// Its result.
     type Answer;
 
-    /// Does it.
+    /// Computes it.
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Self::Answer, CliError>;
 }
 
-/// Does a task in a scalar and a dimension.
+/// Runs a task in a scalar and a dimension.
 pub(crate) fn run_in<T: Task>(kind: Kind, task: T) -> Result<T::Answer, CliError> {
     match (kind.scalar, kind.dimension) {
-        (ScalarName::F32, Dimension::Two) => task.run::<f32, 2>(),
-        (ScalarName::F32, Dimension::Three) => task.run::<f32, 3>(),
-        (ScalarName::F64, Dimension::Two) => task.run::<f64, 2>(),
-        (ScalarName::F64, Dimension::Three) => task.run::<f64, 3>(),
-    }
-}
-
-/// The fields of every report that say what it was computed in.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct KindFields {
-    pub(crate) dimension: usize,
-    pub(crate) scalar: &'static str,
-}
-
-impl Kind {
-    /// As fields of a report.
-    pub(crate) const fn fields(self) -> KindFields {
-        let scalar = match self.scalar {
-            ScalarName::F32 => "f32",
-            ScalarName::F64 => "f64",
-        };
-        KindFields { dimension: self.dimension.number(), scalar }
-    }
-}
-
-impl fmt::Display for KindFields {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}D, {}", self.dimension, self.scalar)
+        (ScalarFile::F32, Dimension::Two) => task.run::<f32, 2>(),
+        (ScalarFile::F32, Dimension::Three) => task.run::<f32, 3>(),
+        (ScalarFile::F64, Dimension::Two) => task.run::<f64, 2>(),
+        (ScalarFile::F64, Dimension::Three) => task.run::<f64, 3>(),
     }
 }

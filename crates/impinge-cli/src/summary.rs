@@ -1,4 +1,6 @@
-//! What a world says after an update, in numbers and by pairs.
+//! The pairs of a world after an update, and their numbers.
+
+use core::fmt;
 
 use impinge::narrow_phase::{ContactEvent, ProximityEvent};
 use impinge::query::Proximity;
@@ -6,40 +8,23 @@ use impinge::world::{CollisionObject, CollisionWorld};
 use impinge_record::Recordable;
 use serde::Serialize;
 
+use crate::log::{Label, name_of};
 use crate::number::Number;
-use crate::recording::Named;
-
-/// How the objects of a pair are to each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum State {
-    /// Their distance is zero.
-    Touch,
-    /// They are apart, but within what was asked.
-    Near,
-    /// They are farther apart.
-    Apart,
-}
-
-impl State {
-    /// The state as printed.
-    pub(crate) const fn word(self) -> &'static str {
-        match self {
-            Self::Touch => "touch",
-            Self::Near => "near",
-            Self::Apart => "apart",
-        }
-    }
-}
+use crate::state::State;
 
 /// The numbers of a step.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct StepSummary {
+    /// The number of updates so far.
     pub(crate) step: usize,
     pub(crate) objects: usize,
+    /// Pairs that touch, by contacts or by proximity.
     pub(crate) touching: usize,
+    /// Pairs that are apart, but have predicted contacts or are within their margin.
     pub(crate) near: usize,
+    /// Contact points of all pairs.
     pub(crate) contacts: usize,
+    /// Events by which a pair came to touch.
     pub(crate) started: usize,
     pub(crate) stopped: usize,
 }
@@ -49,6 +34,13 @@ pub(crate) struct StepSummary {
 pub(crate) struct PairSummary {
     pub(crate) first: String,
     pub(crate) second: String,
+    #[serde(flatten)]
+    pub(crate) numbers: PairNumbers,
+}
+
+/// The numbers of a pair.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct PairNumbers {
     pub(crate) state: State,
     /// The number of contact points; 0 for pairs of which proximity alone is wanted.
     pub(crate) contacts: usize,
@@ -57,43 +49,51 @@ pub(crate) struct PairSummary {
 }
 
 /// The pairs of a world that touch or are near: those with contacts first, each in order of the handles.
-pub(crate) fn pairs<N: Recordable<D>, const D: usize, T>(
+fn near_pairs<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
-) -> Vec<PairSummary>
-where
-    CollisionObject<N, D, T>: Named,
-{
-    let mut pairs = Vec::new();
-    for (first, second, pair) in world.contact_pairs() {
+) -> impl Iterator<Item = ([&CollisionObject<N, D, T>; 2], PairNumbers)> {
+    let contacts = world.contact_pairs().filter_map(|(first, second, pair)| {
         let depths = pair.views().map(|view| view.deepest_contact().contact.depth);
-        let deepest = depths.reduce(impinge::math::max);
-        let Some(depth) = deepest else { continue };
+        let depth = depths.reduce(impinge::math::max)?;
         let state = if depth < N::ZERO { State::Near } else { State::Touch };
         let (contacts, depth) = (pair.num_contacts(), Some(Number::new(depth)));
-        let (first, second) = (first.name(), second.name());
-        pairs.push(PairSummary { first, second, state, contacts, depth });
-    }
-    for (first, second, pair) in world.proximity_pairs() {
+        Some(([first, second], PairNumbers { state, contacts, depth }))
+    });
+    let proximities = world.proximity_pairs().filter_map(|(first, second, pair)| {
         let state = match pair.proximity() {
             Proximity::Intersecting => State::Touch,
             Proximity::WithinMargin => State::Near,
-            Proximity::Disjoint => continue,
+            Proximity::Disjoint => return None,
         };
-        let (first, second) = (first.name(), second.name());
-        pairs.push(PairSummary { first, second, state, contacts: 0, depth: None });
-    }
-    pairs
+        Some(([first, second], PairNumbers { state, contacts: 0, depth: None }))
+    });
+    contacts.chain(proximities)
+}
+
+/// The pairs of a recorded world that touch or are near, with names.
+pub(crate) fn pairs<N: Recordable<D>, const D: usize>(
+    world: &CollisionWorld<N, D, Label>,
+) -> Vec<PairSummary> {
+    let named = near_pairs(world).map(|(objects, numbers)| {
+        let [first, second] = objects.map(name_of);
+        PairSummary { first, second, numbers }
+    });
+    named.collect()
+}
+
+/// Whether any two objects touch. Ends at the first pair that does.
+pub(crate) fn touches<N: Recordable<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+) -> bool {
+    near_pairs(world).any(|(_, pair)| pair.state == State::Touch)
 }
 
 /// The numbers of a world after so many updates.
 pub(crate) fn summary<N: Recordable<D>, const D: usize, T>(
     world: &CollisionWorld<N, D, T>,
     step: usize,
-) -> StepSummary
-where
-    CollisionObject<N, D, T>: Named,
-{
-    let pairs = pairs(world);
+) -> StepSummary {
+    let pairs: Vec<_> = near_pairs(world).map(|(_, pair)| pair).collect();
     let count = |state| pairs.iter().filter(|pair| pair.state == state).count();
     let events = world.contact_events().iter();
     let started = events.filter(|event| matches!(event, ContactEvent::Started(..))).count();
@@ -110,5 +110,16 @@ where
         contacts: pairs.iter().map(|pair| pair.contacts).sum(),
         started: started + entered,
         stopped: world.contact_events().len() - started + left,
+    }
+}
+
+impl fmt::Display for PairSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let PairNumbers { state, contacts, depth } = self.numbers;
+        state.headline(f, &self.first, &self.second)?;
+        if let Some(depth) = depth {
+            write!(f, ", {contacts} contacts, depth {depth}")?;
+        }
+        writeln!(f)
     }
 }

@@ -4,9 +4,7 @@ use core::fmt;
 use std::io;
 use std::path::PathBuf;
 
-use impinge::shape::{MeshError, ShapeError};
-use impinge::world::{GroupError, WorldError};
-use impinge_record::RecordError;
+use impinge_record::{LibraryError, RecordError};
 
 use crate::Dimension;
 
@@ -14,6 +12,7 @@ use crate::Dimension;
 ///
 /// ```
 /// use impinge_files::{Problem, Scene};
+/// use impinge_record::LibraryError;
 ///
 /// let text = r#"{"dimension": 2, "objects": [
 ///     {"name": "ball", "shape": {"ball": {"radius": -1}}}
@@ -23,7 +22,7 @@ use crate::Dimension;
 /// assert_eq!((error.line, error.column), (Some(2), Some(51)));
 /// assert_eq!(error.path, "objects[0].shape.ball.radius");
 /// assert_eq!(error.value.as_deref(), Some("-1"));
-/// assert!(matches!(*error.problem, Problem::Shape(_)));
+/// assert!(matches!(*error.problem, Problem::Library(LibraryError::Shape(_))));
 /// assert_eq!(
 ///     error.to_string(),
 ///     "scene.json:2:51: objects[0].shape.ball.radius: the radius is -1, below zero"
@@ -64,16 +63,10 @@ pub enum Problem {
     },
     /// The file is not of its format, in the words of the parser.
     Syntax(String),
-    /// The library refuses the numbers of a shape.
-    Shape(ShapeError),
-    /// The library refuses the numbers of a mesh or line.
-    Mesh(MeshError),
-    /// The world refuses an object.
-    World(WorldError),
+    /// The library refuses the numbers of a shape, mesh or group, or the world an object.
+    Library(LibraryError),
     /// The recorder refuses an object.
     Record(RecordError),
-    /// There is no such group.
-    Group(GroupError),
     /// A point or vector has another number of coordinates.
     WrongLength {
         /// How many it takes.
@@ -147,6 +140,14 @@ pub enum Problem {
     UnknownPackage(String),
 }
 
+impl FileError {
+    /// An error of a whole file.
+    pub(crate) fn whole(file: impl Into<PathBuf>, problem: Problem) -> Self {
+        let (file, path, problem) = (file.into(), String::new(), Box::new(problem));
+        Self { file, line: None, column: None, path, value: None, problem }
+    }
+}
+
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file.display())?;
@@ -174,11 +175,8 @@ impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Io { message, .. } | Self::Syntax(message) => write!(f, "{message}"),
-            Self::Shape(error) => error.fmt(f),
-            Self::Mesh(error) => error.fmt(f),
-            Self::World(error) => error.fmt(f),
+            Self::Library(error) => error.fmt(f),
             Self::Record(error) => error.fmt(f),
-            Self::Group(error) => error.fmt(f),
             Self::WrongLength { needed, given } => {
                 write!(f, "{given} coordinates were given, {needed} are needed")
             }
@@ -237,42 +235,25 @@ impl Problem {
     pub(crate) fn io(error: &io::Error) -> Self {
         Self::Io { kind: error.kind(), message: error.to_string() }
     }
-}
 
-impl From<ShapeError> for Problem {
-    fn from(error: ShapeError) -> Self {
-        Self::Shape(error)
-    }
-}
-
-impl From<MeshError> for Problem {
-    fn from(error: MeshError) -> Self {
-        Self::Mesh(error)
-    }
-}
-
-impl From<WorldError> for Problem {
-    fn from(error: WorldError) -> Self {
-        Self::World(error)
-    }
-}
-
-impl From<RecordError> for Problem {
-    fn from(error: RecordError) -> Self {
+    /// The error of a recorder. What its world refuses is the same as without a recorder.
+    pub(crate) fn recorded(error: RecordError) -> Self {
         match error {
-            RecordError::World(error) => Self::World(error),
+            RecordError::World(error) => error.into(),
             error => Self::Record(error),
         }
     }
 }
 
-impl From<GroupError> for Problem {
-    fn from(error: GroupError) -> Self {
-        Self::Group(error)
+impl<E: Into<LibraryError>> From<E> for Problem {
+    fn from(error: E) -> Self {
+        Self::Library(error.into())
     }
 }
 
 /// A problem at a path of a document, before the file and the line are known.
+///
+/// It begins with an empty path where the problem is found. Each caller that went down by a member puts this in front.
 #[derive(Clone, Debug)]
 pub(crate) struct Fault {
     pub(crate) path: String,

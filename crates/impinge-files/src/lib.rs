@@ -28,6 +28,7 @@
 
 mod error;
 mod format;
+mod input;
 mod mesh;
 mod robot;
 mod scene;
@@ -35,10 +36,11 @@ mod source;
 
 pub use error::{FileError, Problem};
 pub use format::{
-    AngularVelocity, CastFile, ChildFile, DiagonalsFile, Dimension, GroupsFile, MeshKind,
-    MeshSource, MeshesFile, MotionFile, ObjectFile, PoseFile, QueryFile, QueryTypeFile, RayFile,
-    RepeatFile, RobotFile, RotationFile, RotationOrder, ScalarFile, ScaleFile, SceneFile,
+    AngularVelocity, CastFile, ChildFile, DiagonalsFile, Dimension, GroupsFile, HeightFieldFile,
+    MeshKind, MeshSource, MeshesFile, MotionFile, ObjectFile, PoseFile, QueryFile, QueryTypeFile,
+    RayFile, RepeatFile, RobotFile, RotationFile, RotationOrder, ScalarFile, ScaleFile, SceneFile,
     ShapeFile, ShapeRef, UpAxis,
 };
-pub use mesh::{Finding, Findings, MAX_FINDINGS, MeshFile, MeshPart, MeshReport};
+pub use mesh::{Defect, Defects, MAX_DEFECTS, MeshFile, MeshPart, MeshReport};
+pub use robot::JointBeyondLimits;
 pub use scene::{MAX_OBJECTS, NamedQuery, Scene, SceneSpace, SceneWorld, load};

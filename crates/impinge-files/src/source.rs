@@ -57,29 +57,22 @@ impl Source {
         // The place is given apart from the words.
         let place = format!(" at line {line} column {column}");
         let message = message.strip_suffix(&place).unwrap_or(&message).to_owned();
-        FileError {
-            file: self.file.clone(),
-            line: (line > 0).then_some(line),
-            column: (line > 0).then_some(column.max(1)),
-            path,
-            value: None,
-            problem: Box::new(Problem::Syntax(message)),
-        }
+        let (line, column) = (line > 0).then_some((line, column.max(1))).unzip();
+        FileError { line, column, path, ..FileError::whole(&self.file, Problem::Syntax(message)) }
     }
 
     /// The error with its line, column and value. Of a path whose end the document does not have, since a member
     /// has its default, the part counts that it has.
     pub(crate) fn error(&self, fault: Fault) -> FileError {
         let Fault { path, problem, .. } = fault;
-        let text = self.text.as_deref();
-        let found = text.and_then(|text| find(text, &path));
-        let (line, column) = found.as_ref().map(|found| found.place).unzip();
-        let value = found.as_ref().map(|found| found.value.clone());
-        let path = found.map_or(path, |found| found.path);
+        let error = FileError::whole(&self.file, problem);
+        let found = self.text.as_deref().and_then(|text| find(text, &path));
+        let Some(Found { path, place: (line, column), value }) = found else {
+            return FileError { path, ..error };
+        };
         // The whole document is no value to quote.
-        let value = value.filter(|_| !path.is_empty());
-        let (file, problem) = (self.file.clone(), Box::new(problem));
-        FileError { file, line, column, path, value, problem }
+        let value = Some(value).filter(|_| !path.is_empty());
+        FileError { line: Some(line), column: Some(column), path, value, ..error }
     }
 }
 

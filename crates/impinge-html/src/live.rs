@@ -12,16 +12,16 @@ use crate::assets::Assets;
 use crate::error::HtmlError;
 use crate::log::SharedLog;
 use crate::page::Page;
-use crate::request::{self, Wish};
+use crate::request::{self, Route};
 
-/// So many connections are served at once.
+/// The connections that are served at once; further ones are closed.
 const MAX_CLIENTS: usize = 32;
 
-/// A client that takes or sends nothing for so long is given up.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// The connection of a client that neither takes nor sends anything for this long is closed.
+const IO_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// So long a server that ends waits for clients to take what is left.
-const FAREWELL: Duration = Duration::from_secs(1);
+/// A server that ends waits this long for clients to take the rest.
+const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A server that shows the recording of a running program in a browser on the same machine.
 ///
@@ -95,12 +95,12 @@ impl Drop for Live {
     fn drop(&mut self) {
         self.log.close();
         // A connection wakes up the thread that waits for one.
-        let woken = TcpStream::connect_timeout(&self.address, FAREWELL).is_ok();
+        let woken = TcpStream::connect_timeout(&self.address, DRAIN_TIMEOUT).is_ok();
         if let Some(acceptor) = self.acceptor.take().filter(|_| woken) {
             // It ends without a panic, or there is nothing to clean up.
             let _ended = acceptor.join();
         }
-        self.log.wait_for_clients(FAREWELL);
+        self.log.wait_for_clients(DRAIN_TIMEOUT);
     }
 }
 
@@ -133,13 +133,13 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
 
 impl Server {
     fn serve(&self, mut stream: TcpStream) -> io::Result<()> {
-        stream.set_read_timeout(Some(PATIENCE))?;
-        stream.set_write_timeout(Some(PATIENCE))?;
+        stream.set_read_timeout(Some(IO_TIMEOUT))?;
+        stream.set_write_timeout(Some(IO_TIMEOUT))?;
         stream.set_nodelay(true)?;
         match request::read(&mut stream, self.port)? {
-            Wish::Page => respond(&mut stream, "200 OK", self.page.as_bytes()),
-            Wish::Log => self.stream_log(&mut stream),
-            Wish::Refused(status) => respond(&mut stream, status, status.as_bytes()),
+            Route::Page => respond(&mut stream, "200 OK", self.page.as_bytes()),
+            Route::Log => self.stream_log(&mut stream),
+            Route::Refused(status) => respond(&mut stream, status, status.as_bytes()),
         }
     }
 

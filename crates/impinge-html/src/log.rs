@@ -1,9 +1,9 @@
-//! A recording that grows, and those who wait for more of it.
+//! A recording that grows, and its readers, which wait for more of it.
 
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// So many bytes are copied at once for a reader.
+/// The bytes that are copied at once for a reader, while the lock is held.
 const PIECE: usize = 64 * 1024;
 
 /// Bytes to which more are appended, for any number of readers, until it is closed.
@@ -22,7 +22,7 @@ struct State {
 }
 
 impl SharedLog {
-    /// The lock is held for short copies only, which do not panic.
+    /// The lock is held for short copies only, which do not panic: it is never poisoned.
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -55,9 +55,9 @@ impl SharedLog {
     /// Counts a client, unless there are `limit` already.
     pub(crate) fn enter(&self, limit: usize) -> bool {
         let mut state = self.state();
-        let has_room = state.clients < limit;
-        state.clients += usize::from(has_room);
-        has_room
+        let is_admitted = state.clients < limit;
+        state.clients += usize::from(is_admitted);
+        is_admitted
     }
 
     /// A client has gone.

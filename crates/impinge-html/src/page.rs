@@ -71,7 +71,8 @@ pub(crate) struct Page<'a> {
 impl Page<'_> {
     /// The whole page. The parts are put in in one pass: a part that contains a placeholder stays as it is.
     pub(crate) fn html(&self, assets: &Assets) -> Result<String, HtmlError> {
-        // In JSON a letter may be written by its number, and in strings of scripts and styles after a backslash.
+        // No part may end its element. In JSON a character may be written by its number, and in strings of scripts
+        // and styles after a backslash; elsewhere in these the sequences do not occur.
         let scene = self.scene.to_string().replace('<', "\\u003c");
         let script = assets.script.replace("</script", "<\\/script").replace("<!--", "<\\!--");
         let parts = [
@@ -82,18 +83,18 @@ impl Page<'_> {
             ("WASM", STANDARD.encode(&assets.module)),
             ("SCRIPT", script),
         ];
-        let mut places = Vec::with_capacity(parts.len());
+        let mut placeholders = Vec::with_capacity(parts.len());
         for (name, part) in parts {
             let placeholder = format!("{{{{{name}}}}}");
             let found: Vec<_> = assets.template.match_indices(&placeholder).collect();
             let [(start, _)] = found[..] else {
                 return Err(HtmlError::Placeholder { name, count: found.len() });
             };
-            places.push((start..start + placeholder.len(), part));
+            placeholders.push((start..start + placeholder.len(), part));
         }
-        places.sort_by_key(|(range, _)| range.start);
+        placeholders.sort_by_key(|(range, _)| range.start);
         let (mut html, mut end) = (String::new(), 0);
-        for (range, part) in places {
+        for (range, part) in placeholders {
             html.push_str(&assets.template[end..range.start]);
             html.push_str(&part);
             end = range.end;

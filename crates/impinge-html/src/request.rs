@@ -3,15 +3,15 @@
 use std::io::{self, Read};
 use std::net::TcpStream;
 
-/// So many bytes may the head of a request have.
+/// The bytes that the head of a request may have.
 const MAX_HEAD: usize = 16 * 1024;
 
-/// So many headers may a request have.
+/// The headers that a request may have.
 const MAX_HEADERS: usize = 64;
 
-/// What a request asks for.
+/// What a request is answered with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wish {
+pub(crate) enum Route {
     /// The page.
     Page,
     /// The recording as it grows.
@@ -20,11 +20,11 @@ pub(crate) enum Wish {
     Refused(&'static str),
 }
 
-/// Reads the head of a request and decides what it asks for, at a server on `port`.
+/// Reads the head of a request to a server on `port`, and decides what answers it.
 ///
 /// # Errors
 /// If the connection ends or is too slow.
-pub(crate) fn read(stream: &mut TcpStream, port: u16) -> io::Result<Wish> {
+pub(crate) fn read(stream: &mut TcpStream, port: u16) -> io::Result<Route> {
     let mut head = Vec::new();
     let mut piece = [0; 1024];
     loop {
@@ -33,40 +33,40 @@ pub(crate) fn read(stream: &mut TcpStream, port: u16) -> io::Result<Wish> {
             return Err(io::ErrorKind::UnexpectedEof.into());
         }
         head.extend(&piece[..count]);
-        match wish(&head, port) {
-            Some(wish) => return Ok(wish),
+        match route(&head, port) {
+            Some(route) => return Ok(route),
             None if head.len() > MAX_HEAD => {
-                return Ok(Wish::Refused("431 Request Header Fields Too Large"));
+                return Ok(Route::Refused("431 Request Header Fields Too Large"));
             }
             None => {}
         }
     }
 }
 
-/// What a head asks for; `None` if it is not whole.
-fn wish(head: &[u8], port: u16) -> Option<Wish> {
+/// What answers a request with this head; `None` if it is not whole.
+fn route(head: &[u8], port: u16) -> Option<Route> {
     let mut headers = [httparse::EMPTY_HEADER; MAX_HEADERS];
     let mut request = httparse::Request::new(&mut headers);
     match request.parse(head) {
         Ok(httparse::Status::Partial) => return None,
         Ok(httparse::Status::Complete(_)) => {}
-        Err(_) => return Some(Wish::Refused("400 Bad Request")),
+        Err(_) => return Some(Route::Refused("400 Bad Request")),
     }
     let is_own = |header: &httparse::Header<'_>| is_own_host(header.value, port);
     let mut hosts = request.headers.iter().filter(|one| one.name.eq_ignore_ascii_case("host"));
     Some(match (request.method, request.path, hosts.next()) {
         (_, _, host) if !host.is_some_and(is_own) || hosts.next().is_some() => {
-            Wish::Refused("403 Forbidden")
+            Route::Refused("403 Forbidden")
         }
-        (Some("GET"), Some("/"), _) => Wish::Page,
-        (Some("GET"), Some("/log"), _) => Wish::Log,
-        (Some("GET"), _, _) => Wish::Refused("404 Not Found"),
-        _ => Wish::Refused("405 Method Not Allowed"),
+        (Some("GET"), Some("/"), _) => Route::Page,
+        (Some("GET"), Some("/log"), _) => Route::Log,
+        (Some("GET"), _, _) => Route::Refused("404 Not Found"),
+        _ => Route::Refused("405 Method Not Allowed"),
     })
 }
 
-/// A name of this machine. Another name that leads here is of a foreign page, which must not read what is served: DNS
-/// rebinding.
+/// The `Host` of a request is a name of this machine. Another name that resolves to it belongs to a foreign page, which
+/// must not read what is served (DNS rebinding). Browsers leave out the port 80.
 fn is_own_host(host: &[u8], port: u16) -> bool {
     ["127.0.0.1", "localhost"].iter().any(|name| host == format!("{name}:{port}").as_bytes())
         || (port == 80 && [&b"127.0.0.1"[..], b"localhost"].contains(&host))
@@ -74,23 +74,23 @@ fn is_own_host(host: &[u8], port: u16) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Wish, wish};
+    use super::{Route, route};
 
     #[test]
-    fn what_heads_ask_for() {
+    fn routes_by_hand() {
         let ask = |line: &str, host: &str| {
-            wish(format!("{line} HTTP/1.1\r\nAccept: */*\r\nHost: {host}\r\n\r\n").as_bytes(), 81)
+            route(format!("{line} HTTP/1.1\r\nAccept: */*\r\nHost: {host}\r\n\r\n").as_bytes(), 81)
         };
-        assert_eq!(ask("GET /", "127.0.0.1:81"), Some(Wish::Page));
-        assert_eq!(ask("GET /log", "localhost:81"), Some(Wish::Log));
-        assert_eq!(ask("GET /other", "localhost:81"), Some(Wish::Refused("404 Not Found")));
-        assert_eq!(ask("POST /", "localhost:81"), Some(Wish::Refused("405 Method Not Allowed")));
+        assert_eq!(ask("GET /", "127.0.0.1:81"), Some(Route::Page));
+        assert_eq!(ask("GET /log", "localhost:81"), Some(Route::Log));
+        assert_eq!(ask("GET /other", "localhost:81"), Some(Route::Refused("404 Not Found")));
+        assert_eq!(ask("POST /", "localhost:81"), Some(Route::Refused("405 Method Not Allowed")));
         for host in ["", "evil.example:81", "localhost", "localhost:82", "localhost:81.example"] {
-            assert_eq!(ask("GET /log", host), Some(Wish::Refused("403 Forbidden")), "{host}");
+            assert_eq!(ask("GET /log", host), Some(Route::Refused("403 Forbidden")), "{host}");
         }
         let twice = ask("GET /", "localhost:81\r\nHost: localhost:81");
-        assert_eq!(twice, Some(Wish::Refused("403 Forbidden")), "which one is meant?");
-        assert_eq!(wish(b"GET / HTTP/1.1\r\nHost: loc", 81), None, "not whole");
-        assert_eq!(wish(b"\x16\x03\x01\x02", 81), Some(Wish::Refused("400 Bad Request")));
+        assert_eq!(twice, Some(Route::Refused("403 Forbidden")), "which one is meant?");
+        assert_eq!(route(b"GET / HTTP/1.1\r\nHost: loc", 81), None, "not whole");
+        assert_eq!(route(b"\x16\x03\x01\x02", 81), Some(Route::Refused("400 Bad Request")));
     }
 }

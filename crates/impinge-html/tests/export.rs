@@ -1,36 +1,20 @@
 //! The file has all parts, and the recording comes out of it as it went in.
 
 use std::fs;
-use std::path::PathBuf;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use impinge_html::{Assets, HtmlError, export, gallery};
 use impinge_record::{Recorder, Registry, pack, unpack, validate};
+use tempfile::TempDir;
 
 const TEMPLATE: &str = "<title>{{TITLE}}</title><style>{{STYLE}}</style>\
     <script id=scene>{{SCENE}}</script><script id=recording>{{RECORDING}}</script>\
     <script id=wasm>{{WASM}}</script><script id=program>{{SCRIPT}}</script>";
 
-/// A folder that is removed in the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("impinge-html-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).expect("a temporary folder");
-        Self(path)
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
-        fs::write(self.0.join(name), bytes).expect("a temporary file");
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _gone = fs::remove_dir_all(&self.0);
-    }
+/// The parts of a page without style, script and engine.
+fn plain(template: String) -> Assets {
+    Assets { template, style: String::new(), script: String::new(), module: Vec::new() }
 }
 
 fn recording() -> Vec<u8> {
@@ -48,12 +32,15 @@ fn part<'a>(html: &'a str, id: &str) -> &'a str {
 
 #[test]
 fn all_parts_are_in_the_file() {
-    let folder = Folder::new("export");
-    folder.write("page.html", TEMPLATE);
-    folder.write("page.css", "body { content: '{{SCRIPT}}</style>' }");
-    folder.write("page.js", "run('</script><!-- {{TITLE}}')");
-    folder.write("page.wasm.gz", [0x1f, 0x8b, 0xff]);
-    let assets = Assets::from_folder(&folder.0).expect("four files");
+    let folder = TempDir::new().expect("a temporary folder");
+    let write = |name: &str, bytes: &[u8]| {
+        fs::write(folder.path().join(name), bytes).expect("a temporary file");
+    };
+    write("page.html", TEMPLATE.as_bytes());
+    write("page.css", b"body { content: '{{SCRIPT}}</style>' }");
+    write("page.js", b"run('</script><!-- {{TITLE}}')");
+    write("page.wasm.gz", &[0x1f, 0x8b, 0xff]);
+    let assets = Assets::from_folder(&folder).expect("four files");
     let html = export(&assets, &recording(), "a </title><b> & \"c\"").expect("a recording");
 
     assert!(
@@ -79,15 +66,10 @@ fn all_parts_are_in_the_file() {
 
 #[test]
 fn the_gallery_is_a_folder() {
-    let folder = Folder::new("gallery");
-    let assets = Assets {
-        template: TEMPLATE.to_owned(),
-        style: String::new(),
-        script: String::new(),
-        module: vec![7],
-    };
-    gallery(&assets, folder.0.join("deep/site")).expect("the folder is made");
-    let html = fs::read_to_string(folder.0.join("deep/site/index.html")).expect("it is written");
+    let folder = TempDir::new().expect("a temporary folder");
+    let site = folder.path().join("deep/site");
+    gallery(&plain(TEMPLATE.to_owned()), &site).expect("the folder is made");
+    let html = fs::read_to_string(site.join("index.html")).expect("it is written");
     let scene: serde_json::Value = serde_json::from_str(part(&html, "scene")).expect("JSON");
     assert_eq!(scene["open"], "samples");
     assert_eq!(part(&html, "recording"), "");
@@ -95,28 +77,22 @@ fn the_gallery_is_a_folder() {
 
 #[test]
 fn errors_say_what_is_wrong() {
-    let folder = Folder::new("errors");
-    folder.write("page.html", TEMPLATE);
-    let missing = Assets::from_folder(&folder.0).expect_err("three files are missing");
+    let folder = TempDir::new().expect("a temporary folder");
+    let page = folder.path().join("page.html");
+    fs::write(&page, TEMPLATE).expect("a temporary file");
+    let missing = Assets::from_folder(&folder).expect_err("three files are missing");
     assert!(missing.to_string().contains("page.css"), "{missing}");
-    let with = |template: String| Assets {
-        template,
-        style: String::new(),
-        script: String::new(),
-        module: Vec::new(),
-    };
     for (template, count) in
         [(TEMPLATE.replace("{{WASM}}", ""), 0), (TEMPLATE.replace("{{SCRIPT}}", "{{WASM}}"), 2)]
     {
-        let error = export(&with(template), &recording(), "").expect_err("a broken template");
+        let error = export(&plain(template), &recording(), "").expect_err("a broken template");
         let HtmlError::Placeholder { name: "WASM", count: found } = error else {
             panic!("{error}")
         };
         assert_eq!(found, count);
     }
-    let error = export(&with(TEMPLATE.to_owned()), b"text", "").expect_err("no recording");
+    let error = export(&plain(TEMPLATE.to_owned()), b"text", "").expect_err("no recording");
     assert!(matches!(error, HtmlError::Recording(_)), "{error}");
-    folder.write("file", "");
-    let error = gallery(&with(TEMPLATE.to_owned()), folder.0.join("file")).expect_err("a file");
-    assert!(error.to_string().contains("file"), "{error}");
+    let error = gallery(&plain(TEMPLATE.to_owned()), &page).expect_err("a file is no folder");
+    assert!(error.to_string().contains("page.html"), "{error}");
 }

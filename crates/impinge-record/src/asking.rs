@@ -69,14 +69,10 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
                 max_time: asked.max_time,
                 solid: asked.solid,
             },
-            Question::Containing(point) => {
-                QuestionData::Containing(point.coords.as_slice().to_vec())
+            Question::Containing(point) => QuestionData::Containing(*point),
+            Question::ProjectPoint { point, max_distance, solid } => {
+                QuestionData::Project { point: *point, max_distance: *max_distance, solid: *solid }
             }
-            Question::ProjectPoint { point, max_distance, solid } => QuestionData::Project {
-                point: point.coords.as_slice().to_vec(),
-                max_distance: *max_distance,
-                solid: *solid,
-            },
             Question::InAabb(aabb) => QuestionData::InAabb(*aabb),
             Question::Overlapping(PlacedShape { position, shape }) => {
                 QuestionData::Overlapping { position: *position, shape: self.number(shape)? }
@@ -102,7 +98,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
             all,
             position: cast.start.position,
             shape: self.number(&cast.start.shape)?,
-            velocity: cast.velocity.as_slice().to_vec(),
+            velocity: cast.velocity,
             options: cast.options,
         })
     }

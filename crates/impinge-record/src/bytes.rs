@@ -5,6 +5,16 @@ use std::ops::Range;
 use crate::Scalar;
 use crate::error::{Problem, ReadError};
 
+/// A signed number as an unsigned one, so that small numbers of both signs are small: 0, -1, 1, -2, ...
+pub(crate) const fn zigzag(number: i64) -> u64 {
+    ((number << 1) ^ (number >> 63)).cast_unsigned()
+}
+
+/// The number of [`zigzag`].
+pub(crate) const fn from_zigzag(zigzag: u64) -> i64 {
+    (zigzag >> 1).cast_signed() ^ -(zigzag & 1).cast_signed()
+}
+
 /// What is written: the bytes of one record.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sink {

@@ -1,10 +1,10 @@
 //! The records after the header, and their fields.
 
 use impinge::bounding_volume::{Aabb, Ray};
-use impinge::math::Space;
+use impinge::math::{Point, Space, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::ImpactOptions;
-use impinge::world::CollisionGroups;
+use impinge::world::{CollisionGroups, GroupError};
 
 use crate::bytes::{Sink, Source};
 use crate::error::{Problem, ReadError};
@@ -67,10 +67,9 @@ pub(crate) enum QuestionData<N: Space<D>, const D: usize> {
         max_time: N,
         solid: bool,
     },
-    /// The coordinates of a point.
-    Containing(Vec<N>),
+    Containing(Point<N, D>),
     Project {
-        point: Vec<N>,
+        point: Point<N, D>,
         max_distance: N,
         solid: bool,
     },
@@ -94,7 +93,7 @@ pub(crate) struct CastData<N: Space<D>, const D: usize> {
     pub(crate) all: bool,
     pub(crate) position: N::Isometry,
     pub(crate) shape: u32,
-    pub(crate) velocity: Vec<N>,
+    pub(crate) velocity: Vector<N, D>,
     pub(crate) options: ImpactOptions<N>,
 }
 
@@ -303,18 +302,18 @@ impl Sink {
         match question {
             QuestionData::Ray { all, ray, max_time, solid } => {
                 self.byte(u8::from(*all));
-                self.numbers(ray.origin.coords.as_slice());
+                self.points(&[ray.origin]);
                 self.numbers(ray.dir.as_slice());
                 self.number(*max_time);
                 self.flag(*solid);
             }
             QuestionData::Containing(point) => {
                 self.byte(2);
-                self.numbers(point);
+                self.points(&[*point]);
             }
             QuestionData::Project { point, max_distance, solid } => {
                 self.byte(3);
-                self.numbers(point);
+                self.points(&[*point]);
                 self.number(*max_distance);
                 self.flag(*solid);
             }
@@ -342,7 +341,7 @@ impl Sink {
         self.byte(if cast.all { 8 } else { 7 });
         self.isometry::<N, D>(&cast.position);
         self.word(cast.shape);
-        self.numbers(&cast.velocity);
+        self.numbers(cast.velocity.as_slice());
         self.numbers(&[cast.options.max_time, cast.options.target_distance]);
         self.flag(cast.options.tolerance.is_some());
         self.number(cast.options.tolerance.unwrap_or(N::ZERO));
@@ -354,13 +353,14 @@ impl Sink {
 impl Source<'_> {
     /// Masks of groups that exist: a bit above 29 is an error.
     fn groups(&mut self) -> Result<CollisionGroups, ReadError> {
-        let error = self.error(Problem::BadValue { what: "a mask of groups" });
+        let offset = self.offset();
         let [membership, whitelist, blacklist] = [self.word()?, self.word()?, self.word()?];
         let groups = CollisionGroups::new()
             .try_with_membership_by_mask(membership)
             .and_then(|groups| groups.try_with_whitelist_by_mask(whitelist))
             .and_then(|groups| groups.try_with_blacklist_by_mask(blacklist));
-        let mut groups = groups.map_err(|_| error)?;
+        let refused = |error: GroupError| ReadError { offset, problem: error.into() };
+        let mut groups = groups.map_err(refused)?;
         if self.flag()? {
             groups.enable_self_collision();
         }
@@ -434,9 +434,9 @@ impl Source<'_> {
                 max_time: self.number()?,
                 solid: self.flag()?,
             },
-            2 => QuestionData::Containing(self.numbers(D)?),
+            2 => QuestionData::Containing(self.point()?),
             3 => QuestionData::Project {
-                point: self.numbers(D)?,
+                point: self.point()?,
                 max_distance: self.number()?,
                 solid: self.flag()?,
             },
@@ -472,7 +472,7 @@ impl Source<'_> {
         all: bool,
     ) -> Result<CastData<N, D>, ReadError> {
         let (position, shape) = (self.isometry::<N, D>()?, self.word()?);
-        let (velocity, options) = (self.numbers(D)?, ImpactOptions::new());
+        let (velocity, options) = (self.vector()?, ImpactOptions::new());
         let options = options.with_max_time(self.number()?).with_target_distance(self.number()?);
         let (has_tolerance, tolerance) = (self.flag()?, self.number()?);
         let options = if has_tolerance { options.with_tolerance(tolerance) } else { options };

@@ -3,7 +3,58 @@
 use core::fmt;
 
 use impinge::shape::{MeshError, ShapeError};
-use impinge::world::WorldError;
+use impinge::world::{GroupError, WorldError};
+
+/// Why the library refuses what a file or recording says: the error of the constructor or method that was called.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LibraryError {
+    /// The numbers of a shape.
+    Shape(ShapeError),
+    /// The numbers of a mesh or line.
+    Mesh(MeshError),
+    /// The numbers of groups.
+    Group(GroupError),
+    /// A call of a world.
+    World(WorldError),
+}
+
+impl fmt::Display for LibraryError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shape(error) => error.fmt(f),
+            Self::Mesh(error) => error.fmt(f),
+            Self::Group(error) => error.fmt(f),
+            Self::World(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for LibraryError {}
+
+impl From<ShapeError> for LibraryError {
+    fn from(error: ShapeError) -> Self {
+        Self::Shape(error)
+    }
+}
+
+impl From<MeshError> for LibraryError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
+    }
+}
+
+impl From<GroupError> for LibraryError {
+    fn from(error: GroupError) -> Self {
+        Self::Group(error)
+    }
+}
+
+impl From<WorldError> for LibraryError {
+    fn from(error: WorldError) -> Self {
+        Self::World(error)
+    }
+}
 
 /// Why a call was not recorded. The world and the recording are unchanged then.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,12 +163,8 @@ pub enum Problem {
         /// The index in the replayed world.
         replayed: usize,
     },
-    /// The library refuses the numbers of a shape.
-    Shape(ShapeError),
-    /// The library refuses the numbers of a mesh or line.
-    Mesh(MeshError),
-    /// The world refuses a call.
-    World(WorldError),
+    /// The library refuses a shape, groups or a call.
+    Library(LibraryError),
     /// A shape is nested too deep or has too many parts.
     TooComplex,
     /// The registry does not name this shape.
@@ -145,9 +192,7 @@ impl fmt::Display for Problem {
             Self::OtherIndex { recorded, replayed } => {
                 write!(f, "object {recorded} became object {replayed}")
             }
-            Self::Shape(error) => error.fmt(f),
-            Self::Mesh(error) => error.fmt(f),
-            Self::World(error) => error.fmt(f),
+            Self::Library(error) => error.fmt(f),
             Self::TooComplex => write!(f, "the shape is nested too deep or has too many parts"),
             Self::UnknownShape(name) => write!(f, "the registry does not name the shape {name:?}"),
             Self::UnknownFilter(name) => write!(f, "the registry has no pair filter {name:?}"),
@@ -163,20 +208,8 @@ impl fmt::Display for ReadError {
 
 impl std::error::Error for ReadError {}
 
-impl From<ShapeError> for Problem {
-    fn from(error: ShapeError) -> Self {
-        Self::Shape(error)
-    }
-}
-
-impl From<MeshError> for Problem {
-    fn from(error: MeshError) -> Self {
-        Self::Mesh(error)
-    }
-}
-
-impl From<WorldError> for Problem {
-    fn from(error: WorldError) -> Self {
-        Self::World(error)
+impl<E: Into<LibraryError>> From<E> for Problem {
+    fn from(error: E) -> Self {
+        Self::Library(error.into())
     }
 }

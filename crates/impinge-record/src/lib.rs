@@ -41,7 +41,7 @@ mod state;
 
 pub use data::RecordData;
 pub use divergence::{Difference, Divergence, ObjectField};
-pub use error::{Problem, ReadError, RecordError};
+pub use error::{LibraryError, Problem, ReadError, RecordError};
 pub use log::{FORMAT_VERSION, Header, reseal};
 pub use marks::{EventCounts, Mark};
 pub use pack::{MAX_UNPACKED, is_packed, pack, unpack};

@@ -214,7 +214,7 @@ impl Cursor {
     }
 }
 
-/// Writes the checksums of a recording anew, as far as its records can be told apart: so that tests reach what
+/// Writes the checksums of a recording anew, up to the first record that is not whole: so that tests reach what
 /// lies behind the checksums with bytes of their own.
 #[doc(hidden)]
 pub fn reseal(bytes: &mut [u8]) {

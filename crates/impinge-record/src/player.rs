@@ -2,7 +2,7 @@
 
 use impinge::bounding_volume::Aabb;
 use impinge::broad_phase::DBVTBroadPhase;
-use impinge::math::{Point, Pose, Vector};
+use impinge::math::Pose;
 use impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
 use impinge::shape::{Ball, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionWorld};
@@ -250,15 +250,14 @@ fn question_of<N: Recordable<D>, const D: usize>(
     let placed = |position: &N::Isometry, shape: u32| -> Result<PlacedShape<N, D>, Problem> {
         Ok(PlacedShape { position: *position, shape: shapes.get(shape)?.clone() })
     };
-    let point = |numbers: &[N]| Point::from(Vector::<N, D>::from_column_slice(numbers));
     Ok(match question {
         QuestionData::Ray { all, ray, max_time, solid } => {
             let question = RayQuestion { ray: *ray, max_time: *max_time, solid: *solid };
             if *all { Question::RayHits(question) } else { Question::FirstRayHit(question) }
         }
-        QuestionData::Containing(numbers) => Question::Containing(point(numbers)),
-        QuestionData::Project { point: at, max_distance, solid } => {
-            Question::ProjectPoint { point: point(at), max_distance: *max_distance, solid: *solid }
+        QuestionData::Containing(point) => Question::Containing(*point),
+        QuestionData::Project { point, max_distance, solid } => {
+            Question::ProjectPoint { point: *point, max_distance: *max_distance, solid: *solid }
         }
         QuestionData::InAabb(aabb) => Question::InAabb(*aabb),
         QuestionData::Overlapping { position, shape } => {
@@ -271,8 +270,7 @@ fn question_of<N: Recordable<D>, const D: usize>(
         },
         QuestionData::Cast(cast) => {
             let start = placed(&cast.position, cast.shape)?;
-            let velocity = Vector::<N, D>::from_column_slice(&cast.velocity);
-            let question = CastQuestion { start, velocity, options: cast.options };
+            let question = CastQuestion { start, velocity: cast.velocity, options: cast.options };
             if cast.all { Question::CastShapeAll(question) } else { Question::CastShape(question) }
         }
     })

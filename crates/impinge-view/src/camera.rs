@@ -5,7 +5,7 @@ use impinge::math::unit;
 
 /// A direction of view and a projection; the place follows from what is to be seen.
 ///
-/// The scene's frame is the world's. A 2D scene lies in the plane `z = 0`, which
+/// The scene's frame is the world's. A 2D scene has `z = 0`, which
 /// [`Camera::plane`] sees with x to the right and y upwards.
 ///
 /// ```

@@ -6,7 +6,7 @@ use impinge::dim3::math::{Point, Vector};
 use impinge::math::Real;
 use std::collections::BTreeMap;
 
-/// A mesh in `f64`, in space, with what is needed to shade it and to find its outline.
+/// A mesh in `f64` and 3D, with what is needed to shade it and to find its outline.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct KeptMesh {
     pub(crate) vertices: Vec<Point<f64>>,

@@ -104,12 +104,13 @@ impl Picture<Png> {
         let lens = self.lens();
         let flat = flatten(&self.recording, &lens);
         let (entries, height) = self.legend();
+        let in_pixels = lens.clone().within(&self.format.window(height, 1.0));
         let view = lens.within(&self.format.window(height, SAMPLES as f64));
         let size = self.format.size.map(|side| side as usize * SAMPLES);
         let mut raster = Raster::new(size, self.format.background.rgb);
         draw(&pieces(&flat, &self.recording.dots, &view, SAMPLES as f64), &mut raster);
         let mut image = Image::opaque(self.format.size, &raster.reduced(SAMPLES));
-        self.draw_texts(&self.lens().within(&self.format.window(height, 1.0)), &mut image);
+        self.draw_texts(&in_pixels, &mut image);
         self.draw_legend(&entries, height, &mut image);
         image
     }

@@ -7,7 +7,7 @@ use impinge::math::{self, Real, Space};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-/// Everything that was drawn, in `f64`, in space: 2D lies in the plane `z = 0`.
+/// Everything that was drawn, in `f64` and 3D: 2D has `z = 0`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Recording {
     pub(crate) meshes: BTreeMap<u64, KeptMesh>,
@@ -68,7 +68,7 @@ pub(crate) struct Label {
 /// of `f64`, and a scene of meters is smaller than the orbit of Neptune.
 pub(crate) const MAX_COORDINATE: f64 = 1e13;
 
-/// A point in space; none if it is NaN, infinite or huge.
+/// A point in 3D; `None` if it is NaN, infinite or huge.
 pub(crate) fn embed<N: Real, const D: usize>(point: &math::Point<N, D>) -> Option<Point<f64>> {
     let embedded = Point::from(embed_vector(&point.coords));
     let is_good = embedded.iter().all(|x| x.abs() <= MAX_COORDINATE);

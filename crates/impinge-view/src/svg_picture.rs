@@ -100,14 +100,14 @@ impl Picture<Svg> {
         let size = window.size.map(|side| side + 2.0 * MARGIN);
         let pixels = size.map(|side| whole(side.ceil(), usize::MAX));
         let depths = (!self.format.fills).then(|| depths(&flat, &view, pixels));
-        let sheet = Sheet { flat, view, depths };
-        let labels = placed_labels(&self.recording, &sheet.view, size, LETTER);
+        let page = Page { flat, view, depths };
+        let labels = placed_labels(&self.recording, &page.view, size, LETTER);
         let mut body = Body::new(size);
         for layer in self.recording.layers() {
             body.open(Layer::of(layer));
-            self.fill_layer(layer, &sheet, &mut body);
-            stroke_layer(layer, &sheet, &mut body);
-            self.dot_layer(layer, &sheet, &mut body);
+            self.fill_layer(layer, &page, &mut body);
+            stroke_layer(layer, &page, &mut body);
+            self.dot_layer(layer, &page, &mut body);
             label_layer(layer, &labels, &mut body);
             body.close();
         }
@@ -117,7 +117,7 @@ impl Picture<Svg> {
         document(body, &self.format.title, &self.description())
     }
 
-    fn fill_layer(&self, layer: Drawn, sheet: &Sheet, body: &mut Body) {
+    fn fill_layer(&self, layer: Drawn, page: &Page, body: &mut Body) {
         if !self.format.fills {
             return;
         }
@@ -125,24 +125,24 @@ impl Picture<Svg> {
             let Some(kept) = self.recording.meshes.get(&placed.id) else { continue };
             let vertices = placed.vertices(kept);
             let corners = kept.triangles.iter().map(|indices| indices.map(|i| vertices[i]));
-            let corners = corners.map(|corners| sheet.view.triangle(&corners, 0.0));
+            let corners = corners.map(|corners| page.view.triangle(&corners, 0.0));
             body.fill(placed.color, &corners.collect::<Vec<_>>());
         }
         for triangle in self.recording.triangles.iter().filter(|triangle| triangle.what == layer) {
-            body.fill(triangle.color, &[sheet.view.triangle(&triangle.corners, 0.0)]);
+            body.fill(triangle.color, &[page.view.triangle(&triangle.corners, 0.0)]);
         }
     }
 
-    fn dot_layer(&self, layer: Drawn, sheet: &Sheet, body: &mut Body) {
+    fn dot_layer(&self, layer: Drawn, page: &Page, body: &mut Body) {
         let mut found: Vec<_> =
             self.recording.dots.iter().filter(|dot| dot.what == layer).collect();
-        found.retain(|dot| sheet.view.point(&dot.at, 0.0).is_some());
-        let depth = |at| sheet.view.point(at, 0.0).map_or(0.0, |on| on.depth);
+        found.retain(|dot| page.view.point(&dot.at, 0.0).is_some());
+        let depth = |at| page.view.point(at, 0.0).map_or(0.0, |on| on.depth);
         found.sort_by(|a, b| depth(&b.at).total_cmp(&depth(&a.at)));
         for dot in found {
-            let Some(center) = sheet.view.point(&dot.at, LINE_BIAS) else { continue };
-            let radius = larger(sheet.view.pixels(dot.size, &dot.at) * 0.5, MIN_DOT_RADIUS);
-            let is_hidden = sheet.runs(&[center, center]).iter().any(|(hidden, _)| *hidden);
+            let Some(center) = page.view.point(&dot.at, LINE_BIAS) else { continue };
+            let radius = larger(page.view.pixels(dot.size, &dot.at) * 0.5, MIN_DOT_RADIUS);
+            let is_hidden = page.runs(&[center, center]).iter().any(|(hidden, _)| *hidden);
             body.dot(center, radius, Key { color: dot.color, is_hidden });
         }
     }
@@ -176,15 +176,15 @@ impl Svg {
     }
 }
 
-/// A scene on its page.
-struct Sheet {
+/// A scene as it is seen on its page.
+struct Page {
     flat: Flat,
     view: View,
     /// The depths of what hides lines, if anything does.
     depths: Option<Raster>,
 }
 
-impl Sheet {
+impl Page {
     /// The parts of a line and whether they are hidden.
     fn runs(&self, ends: &[OnScreen; 2]) -> Vec<(bool, [OnScreen; 2])> {
         match &self.depths {
@@ -203,17 +203,17 @@ fn label_layer(layer: Drawn, labels: &[PlacedLabel<'_>], body: &mut Body) {
 }
 
 /// The lines of a layer: hidden ones first, each from far to near. Triangles have sides.
-fn stroke_layer(layer: Drawn, sheet: &Sheet, body: &mut Body) {
-    let strokes = sheet.flat.strokes.iter().filter(|stroke| stroke.what == layer);
+fn stroke_layer(layer: Drawn, page: &Page, body: &mut Body) {
+    let strokes = page.flat.strokes.iter().filter(|stroke| stroke.what == layer);
     let mut lines: Vec<_> = strokes.map(|stroke| (stroke.ends, stroke.color)).collect();
-    for face in sheet.flat.faces.iter().filter(|face| face.is_alone && face.what == layer) {
+    for face in page.flat.faces.iter().filter(|face| face.is_alone && face.what == layer) {
         let [a, b, c] = face.corners;
         lines.extend([[a, b], [b, c], [c, a]].map(|ends| (ends, edge_color(face.color))));
     }
-    let on_screen = |(ends, color)| Some((sheet.view.line(&ends, LINE_BIAS)?, color));
+    let on_screen = |(ends, color)| Some((page.view.line(&ends, LINE_BIAS)?, color));
     let lines = lines.into_iter().filter_map(on_screen);
     let mut parts: Vec<_> = lines
-        .flat_map(|(ends, color)| sheet.runs(&ends).into_iter().map(move |run| (run, color)))
+        .flat_map(|(ends, color)| page.runs(&ends).into_iter().map(move |run| (run, color)))
         .collect();
     let depth = |ends: &[OnScreen; 2]| ends[0].depth + ends[1].depth;
     parts.sort_by(|((hidden1, ends1), _), ((hidden2, ends2), _)| {

@@ -206,7 +206,7 @@ pub(crate) fn document(body: Body, title: &str, description: &str) -> String {
     svg
 }
 
-/// FNV-1a, by Fowler, Noll and Vo: an id that tells documents on one page apart.
+/// FNV-1a, by Fowler, Noll and Vo: the id of a document, so that the styles of several on one page do not mix.
 fn hash(texts: &[&str]) -> u64 {
     let bytes = texts.iter().flat_map(|text| text.bytes().chain([0]));
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {

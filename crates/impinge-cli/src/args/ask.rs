@@ -1,10 +1,11 @@
-//! Arguments of the verbs that ask about one object, shape or ray.
+//! Arguments of the verbs that query one pair, shape or ray.
 
+use core::fmt;
 use core::str::FromStr;
 
 use clap::Args;
 
-use super::{Format, NumberError, Numbers, Positive, SceneArgs};
+use super::{Format, NonNegative, NumberError, Numbers, SceneArgs};
 
 /// How far apart two objects are, and where.
 ///
@@ -16,8 +17,8 @@ Examples:
   impinge distance balls.json left right
   impinge distance balls.json left right --json
 
-Fields of --json: file, first, second, state (\"touch\", \"near\" or \"apart\"), distance, depth, point1, point2,
-normal (from the first to the second), part1, part2. Exit code 1 if they touch.")]
+Fields of --json: file, dimension, scalar, first, second, state (\"touch\", \"near\" or \"apart\"), distance, depth,
+point1, point2, normal (from the first to the second), part1, part2. Exit code 1 if they touch.")]
 pub(crate) struct DistanceArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -27,7 +28,7 @@ pub(crate) struct DistanceArgs {
     pub(crate) second: String,
     /// Objects that are so far apart or nearer are called near
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
-    pub(crate) margin: Positive,
+    pub(crate) margin: NonNegative,
     #[command(flatten)]
     pub(crate) format: Format,
 }
@@ -35,7 +36,7 @@ pub(crate) struct DistanceArgs {
 /// What a moving shape or object hits first.
 ///
 /// It moves along a straight line and does not turn. An object of the scene interacts by its groups, a shape with
-/// everything. Time 0 is the start and time 1 the end of the way.
+/// everything. Time 0 is the start of its path and time 1 the end.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -47,7 +48,7 @@ Examples:
 Shapes: ball:RADIUS, box:HALF_EXTENTS, capsule:HALF_HEIGHT,RADIUS, the name of a shape of the scene, or a shape
 in JSON as a scene file has it.
 
-Fields of --json: file, dimension, scalar, hits with object, time, moved (the length of the way), position, point (on the moving
+Fields of --json: file, dimension, scalar, hits with object, time, moved (the length of the path), position, point (on the moving
 shape), normal (from it to the object), part. Exit code 1 if something is hit.")]
 pub(crate) struct CastArgs {
     #[command(flatten)]
@@ -64,19 +65,19 @@ pub(crate) struct CastArgs {
     /// Where the shape starts
     #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
     pub(crate) from: Option<Numbers>,
-    /// Where its way ends
+    /// Where its path ends
     #[arg(long, value_name = "POINT", allow_hyphen_values = true, requires = "shape")]
     pub(crate) to: Option<Numbers>,
     /// An object of the scene to move, by its name
     #[arg(long, value_name = "NAME", conflicts_with = "shape", requires = "by")]
     pub(crate) object: Option<String>,
-    /// The way of the object
+    /// The translation of the object, from start to end
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true, requires = "object")]
     pub(crate) by: Option<Numbers>,
     /// Objects count as hit when they are so near
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
-    pub(crate) distance: Positive,
-    /// Print everything on the way, not the first alone
+    pub(crate) distance: NonNegative,
+    /// Print everything on the path, not the first alone
     #[arg(long)]
     pub(crate) all: bool,
     #[command(flatten)]
@@ -125,14 +126,16 @@ pub(crate) struct RayArgs {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ShapeSpec {
     /// In a few characters.
-    Sizes {
-        /// What it is.
-        kind: ShapeKind,
-        /// Its sizes.
-        sizes: Vec<f64>,
-    },
+    Short(ShortShape),
     /// By its name in the scene, or in JSON as a scene has it.
     Scene(String),
+}
+
+/// A kind of shape with its sizes, which may be too many or too few.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ShortShape {
+    pub(crate) kind: ShapeKind,
+    pub(crate) sizes: Numbers,
 }
 
 /// The shapes that have a short form.
@@ -150,12 +153,19 @@ impl ShapeKind {
     const ALL: [Self; 3] = [Self::Ball, Self::Cuboid, Self::Capsule];
 
     /// The name before the colon.
-    pub(crate) const fn name(self) -> &'static str {
+    const fn name(self) -> &'static str {
         match self {
             Self::Ball => "ball",
             Self::Cuboid => "box",
             Self::Capsule => "capsule",
         }
+    }
+}
+
+/// As on the command line.
+impl fmt::Display for ShortShape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.kind.name(), self.sizes)
     }
 }
 
@@ -167,9 +177,9 @@ impl FromStr for ShapeSpec {
             let kind = ShapeKind::ALL.into_iter().find(|kind| kind.name() == name)?;
             Some((kind, sizes))
         });
+        // JSON has colons too, but no kind before the first.
         let Some((kind, sizes)) = short else { return Ok(Self::Scene(text.to_owned())) };
-        let Numbers(sizes) = sizes.parse()?;
-        Ok(Self::Sizes { kind, sizes })
+        Ok(Self::Short(ShortShape { kind, sizes: sizes.parse()? }))
     }
 }
 
@@ -179,8 +189,9 @@ mod tests {
 
     #[test]
     fn shapes_by_hand() {
-        let cuboid = ShapeSpec::Sizes { kind: ShapeKind::Cuboid, sizes: vec![1.0, 2.0, 3.0] };
-        assert_eq!("box:1,2,3".parse(), Ok(cuboid));
+        let cuboid = ShortShape { kind: ShapeKind::Cuboid, sizes: Numbers(vec![1.0, 2.0, 3.0]) };
+        assert_eq!(cuboid.to_string(), "box:1,2,3");
+        assert_eq!("box:1,2,3".parse(), Ok(ShapeSpec::Short(cuboid)));
         for text in ["wheel", "cube:1", "{\"ball\": {\"radius\": 1}}"] {
             assert_eq!(text.parse(), Ok(ShapeSpec::Scene(text.into())));
         }

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::{Format, Positive, ScalarName, SceneArgs};
+use super::{Format, NonNegative, Reading, SceneArgs, Stepping};
 
 /// Which objects touch, or come within a clearance.
 ///
-/// Every pair of objects that may interact by their groups is looked at; pairs that are far apart are culled by
-/// the broad phase. `touch` means that the distance is zero: the depth is the length of the shortest
-/// translation that parts the two. `near` means that they are apart, by the clearance at most.
+/// Every pair of objects that may interact by their groups is checked; distant pairs are culled by the broad
+/// phase. `touch` means that the distance is zero: the depth is the length of the shortest translation that parts
+/// the two. `near` means that they are apart, by the clearance at most.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -27,7 +27,7 @@ pub(crate) struct CheckArgs {
     pub(crate) scene: SceneArgs,
     /// Report pairs that are so far apart or nearer; 0 reports those that touch
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true, default_value = "0")]
-    pub(crate) clearance: Positive,
+    pub(crate) clearance: NonNegative,
     /// Print all pairs
     #[arg(long, conflicts_with = "limit")]
     pub(crate) all: bool,
@@ -60,8 +60,8 @@ pub(crate) struct InspectArgs {
 
 /// How long updates of a scene take.
 ///
-/// Objects move by their motions. Each run makes the world anew; times of updates are medians over all runs,
-/// with the quartiles. Times depend on the machine and its load: compare those of one machine.
+/// Objects move by their motions. Each run makes the world anew and updates it `--steps` times; times of updates
+/// are medians over all runs, with the quartiles. Times depend on the machine and its load: compare those of one machine.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -71,26 +71,16 @@ Examples:
 Fields of --json: scenes with name, objects, dimension, scalar, steps, runs, build_ms, first_update_ms, median_ms,
 lower_quartile_ms, upper_quartile_ms, pairs.")]
 pub(crate) struct BenchArgs {
-    /// A scene; without, a few that the command has
+    /// A scene; without, a few that are part of the command
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: Option<PathBuf>,
-    /// Compute with numbers of this type, whatever the scene says
-    #[arg(long, value_enum)]
-    pub(crate) scalar: Option<ScalarName>,
-    /// Updates of each run
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(crate) steps: u32,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    #[command(flatten)]
+    pub(crate) stepping: Stepping,
     /// Runs of each scene
     #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,
-    /// Seconds from one step to the next
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        allow_negative_numbers = true,
-        default_value = "0.016666666666666666"
-    )]
-    pub(crate) dt: Positive,
     #[command(flatten)]
     pub(crate) format: Format,
 }

@@ -1,15 +1,14 @@
 //! Arguments of pictures.
 
-use std::path::PathBuf;
+use clap::{Args, ValueEnum};
 
-use clap::{Args, ValueEnum, ValueHint};
-
-use super::{Numbers, SceneArgs, Size};
+use super::{NonNegative, Numbers, OutputFile, SceneArgs, Size};
 
 /// Draw a scene or a step of a recording.
 ///
-/// 2D scenes are drawn to scale with y upwards. 3D scenes are seen from everything's front, above and right, or
-/// along a direction of yours; the camera frames itself. No GPU is asked: the same file gives the same bytes.
+/// A file that ends in .png shows surfaces, one that ends in .svg lines. 2D scenes are drawn to scale with y
+/// upwards. 3D scenes are seen from the front, above and right, or along `--look`; the camera frames all objects.
+/// No GPU is used: the same file gives the same bytes.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -20,9 +19,8 @@ Examples:
 pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// The file to write: .png for surfaces, .svg for lines
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) output: OutputFile,
     /// Width and height in pixels, 8192 at most; the height of an SVG follows from the scene
     #[arg(long, value_name = "WxH", default_value = "1200x900")]
     pub(crate) size: Size,
@@ -32,9 +30,9 @@ pub(crate) struct RenderArgs {
     /// The upper side of the picture, in 3D; what the scene says by default
     #[arg(long, value_name = "VECTOR", allow_hyphen_values = true)]
     pub(crate) up: Option<Numbers>,
-    /// The angle of view in degrees, in 3D; 0 is without perspective
-    #[arg(long, value_name = "DEGREES", default_value_t = 30.0)]
-    pub(crate) angle: f64,
+    /// The angle of view in degrees, in 3D, clamped to 143; 0 is without perspective
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, default_value = "30")]
+    pub(crate) angle: NonNegative,
     /// The step of a recording; the last by default
     #[arg(long, value_name = "N")]
     pub(crate) step: Option<usize>,

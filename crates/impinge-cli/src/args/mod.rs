@@ -9,17 +9,19 @@ mod numbers;
 mod pages;
 mod recordings;
 
+use core::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 
-use clap::builder::Styles;
 use clap::builder::styling::{AnsiColor, Style};
-use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use clap::builder::{PossibleValuesParser, Styles, TypedValueParser};
+use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
 use clap_complete::Shell;
+use impinge_files::ScalarFile;
 
-pub(crate) use ask::{CastArgs, DistanceArgs, RayArgs, ShapeKind, ShapeSpec};
+pub(crate) use ask::{CastArgs, DistanceArgs, RayArgs, ShapeKind, ShapeSpec, ShortShape};
 pub(crate) use check::{BenchArgs, CheckArgs, InspectArgs};
 pub(crate) use draw::{LayerName, RenderArgs};
-pub(crate) use numbers::{NumberError, Numbers, Positive, Size};
+pub(crate) use numbers::{NonNegative, NumberError, Numbers, Size};
 pub(crate) use pages::{ExportArgs, PageArgs, SamplesArgs, ViewArgs};
 pub(crate) use recordings::{RecordArgs, ReplayArgs, ValidateArgs};
 
@@ -78,27 +80,74 @@ Examples:
     },
 }
 
-/// Where a scene is read from.
+/// The file of a verb, and how it is read.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SceneArgs {
-    /// A scene in JSON, a mesh (OBJ, STL, PLY, glTF) or a robot (URDF); `-` reads a scene from standard input
+    /// A scene in JSON, a mesh (OBJ, STL, PLY, glTF) or a robot (URDF); `-` is standard input
     #[arg(value_hint = ValueHint::FilePath)]
     pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+}
+
+/// How a scene is read.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct Reading {
     /// Compute with numbers of this type, whatever the scene says
-    #[arg(long, value_enum)]
-    pub(crate) scalar: Option<ScalarName>,
+    #[arg(long, value_parser = scalar_parser())]
+    pub(crate) scalar: Option<ScalarFile>,
     /// A folder with packages, for `package://` paths of robots; may be repeated
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) packages: Vec<PathBuf>,
 }
 
-/// A type of numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ScalarName {
-    /// 32 bits
-    F32,
-    /// 64 bits
-    F64,
+/// The scalars by the names that scene files have for them.
+fn scalar_parser() -> impl TypedValueParser<Value = ScalarFile> {
+    PossibleValuesParser::new(["f32", "f64"]).map(|name| match name.as_str() {
+        "f32" => ScalarFile::F32,
+        _ => ScalarFile::F64,
+    })
+}
+
+/// The time from one update of a scene to the next.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct TimeStep {
+    // The default is 1/60, to the last bit.
+    /// Seconds from one update to the next
+    #[arg(
+        long = "dt",
+        value_name = "SECONDS",
+        allow_negative_numbers = true,
+        default_value = "0.016666666666666666"
+    )]
+    pub(crate) seconds: NonNegative,
+}
+
+/// The updates of a scene whose objects move.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct Stepping {
+    /// How many updates
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = value_parser!(u32).range(1..))]
+    pub(crate) steps: u32,
+    #[command(flatten)]
+    pub(crate) time_step: TimeStep,
+}
+
+/// The key frames of a recording.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct KeyFrames {
+    /// Write all objects anew every N updates, so that a player goes back by at most N updates; without, it goes
+    /// back to the start
+    #[arg(long = "key-frames", value_name = "N")]
+    pub(crate) every: Option<NonZeroU64>,
+}
+
+/// The file that a verb writes.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct OutputFile {
+    /// The file to write
+    #[arg(short = 'o', long = "output", value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub(crate) path: PathBuf,
 }
 
 /// How the answer is printed.
@@ -116,13 +165,21 @@ pub(crate) fn is_stdin(path: &Path) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use clap::CommandFactory as _;
+
+    use super::*;
 
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
         let verbs = Cli::command().get_subcommands().count();
         assert!(verbs >= 15, "all verbs are there: {verbs}");
+    }
+
+    #[test]
+    fn the_default_time_step_is_a_sixtieth() {
+        let cli = Cli::try_parse_from(["impinge", "record", "a.json", "-o", "a.implog"]);
+        let Ok(Cli { verb: Verb::Record(args) }) = &cli else { panic!("{cli:?}") };
+        assert_eq!(args.stepping.time_step.seconds.0, 1.0 / 60.0);
     }
 }

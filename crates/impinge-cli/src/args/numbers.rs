@@ -1,7 +1,9 @@
-//! Numbers on the command line: `1,2.5,-3`, positive lengths, sizes of pictures.
+//! Numbers on the command line: `1,2.5,-3`, lengths, sizes of pictures.
 
 use core::fmt;
 use core::str::FromStr;
+
+use crate::number::significant;
 
 /// Finite numbers between commas: a point, a vector or the sizes of a shape.
 ///
@@ -11,22 +13,25 @@ pub(crate) struct Numbers(pub(crate) Vec<f64>);
 
 /// A finite number that is zero or more.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Positive(pub(crate) f64);
+pub(crate) struct NonNegative(pub(crate) f64);
 
-/// A width and a height in pixels.
+/// A width and a height in pixels, from 1 to [`MAX_SIDE`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size(pub(crate) [u32; 2]);
 
-/// Why a text is not what an argument asks for.
+/// Pictures clamp larger sides to this one: four bytes a pixel are 256 MiB.
+const MAX_SIDE: u32 = 8192;
+
+/// Why a text is not what an argument takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum NumberError {
-    /// It is no number.
+    /// It does not parse as a number.
     NotANumber(String),
     /// It is NaN or infinite.
     NotFinite(String),
     /// It is negative.
     Negative(String),
-    /// It is not a width and a height.
+    /// It is not a width and a height, or one of them is 0 or too large.
     NotASize(String),
 }
 
@@ -36,7 +41,12 @@ impl fmt::Display for NumberError {
             Self::NotANumber(text) => write!(f, "{text:?} is not a number"),
             Self::NotFinite(text) => write!(f, "{text} is not finite"),
             Self::Negative(text) => write!(f, "{text} is negative"),
-            Self::NotASize(text) => write!(f, "{text:?} is not a size such as 800x600"),
+            Self::NotASize(text) => {
+                write!(
+                    f,
+                    "{text:?} is not a size such as 800x600, of at most {MAX_SIDE} pixels a side"
+                )
+            }
         }
     }
 }
@@ -50,6 +60,14 @@ fn finite(text: &str) -> Result<f64, NumberError> {
     if number.is_finite() { Ok(number) } else { Err(NumberError::NotFinite(text.to_owned())) }
 }
 
+/// As on the command line, with six digits.
+impl fmt::Display for Numbers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words: Vec<_> = self.0.iter().copied().map(significant).collect();
+        f.write_str(&words.join(","))
+    }
+}
+
 impl FromStr for Numbers {
     type Err = NumberError;
 
@@ -58,7 +76,7 @@ impl FromStr for Numbers {
     }
 }
 
-impl FromStr for Positive {
+impl FromStr for NonNegative {
     type Err = NumberError;
 
     fn from_str(text: &str) -> Result<Self, NumberError> {
@@ -73,7 +91,8 @@ impl FromStr for Size {
     fn from_str(text: &str) -> Result<Self, NumberError> {
         let refused = || NumberError::NotASize(text.to_owned());
         let (width, height) = text.split_once('x').ok_or_else(refused)?;
-        let side = |text: &str| text.parse::<u32>().ok().filter(|side| *side > 0);
+        let side =
+            |text: &str| text.parse::<u32>().ok().filter(|side| (1..=MAX_SIDE).contains(side));
         let sides = side(width).zip(side(height)).ok_or_else(refused)?;
         Ok(Self([sides.0, sides.1]))
     }
@@ -86,6 +105,7 @@ mod tests {
     #[test]
     fn numbers_by_hand() {
         assert_eq!("1, -2.5,3e2".parse(), Ok(Numbers(vec![1.0, -2.5, 300.0])));
+        assert_eq!(Numbers(vec![1.0, -2.5, 1e300]).to_string(), "1,-2.5,1e300");
         let refused = |text: &str| text.parse::<Numbers>().map_err(|error| error.to_string());
         assert_eq!(refused("1,,2"), Err("\"\" is not a number".into()));
         assert_eq!(refused("1,inf"), Err("inf is not finite".into()));
@@ -94,10 +114,11 @@ mod tests {
 
     #[test]
     fn lengths_and_sizes() {
-        assert_eq!("0.5".parse(), Ok(Positive(0.5)));
-        assert_eq!("-0.5".parse::<Positive>(), Err(NumberError::Negative("-0.5".into())));
+        assert_eq!("0.5".parse(), Ok(NonNegative(0.5)));
+        assert_eq!("-0.5".parse::<NonNegative>(), Err(NumberError::Negative("-0.5".into())));
         assert_eq!("800x600".parse(), Ok(Size([800, 600])));
-        for text in ["800", "0x600", "800x", "800x-1", "800x600x1"] {
+        assert_eq!("8192x1".parse(), Ok(Size([8192, 1])));
+        for text in ["800", "0x600", "800x", "800x-1", "800x600x1", "1x8193"] {
             assert_eq!(text.parse::<Size>(), Err(NumberError::NotASize(text.into())));
         }
     }

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::{Format, Positive, SceneArgs, Size};
+use super::{Format, KeyFrames, OutputFile, SceneArgs, Size, Stepping, TimeStep};
 
 /// Where the page comes from.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct PageArgs {
-    /// A folder with `page.html`, `page.css`, `page.js` and `page.wasm.gz`, instead of the page that the command has
+    /// A folder with `page.html`, `page.css`, `page.js` and `page.wasm.gz`, instead of the page built in
     #[arg(
         long = "page",
         value_name = "FOLDER",
@@ -23,7 +23,8 @@ pub(crate) struct PageArgs {
 /// One HTML file that shows a recording and answers questions about it.
 ///
 /// The file carries the recording and the library: it opens from disk, without a network. A reader plays it, selects
-/// objects, asks why two of them touch or do not, shoots rays and moves objects. A scene is recorded first.
+/// objects, asks why two of them touch or do not, casts rays and moves objects. A scene is recorded first, by
+/// `--steps`, `--dt` and `--key-frames`.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -34,23 +35,15 @@ Fields of --json: file, output, bytes, recording (its bytes, packed).")]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// The page to write
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) output: OutputFile,
     /// The heading of the page; without it the name of the file
     #[arg(long)]
     pub(crate) title: Option<String>,
-    /// How many updates of a scene are recorded
-    #[arg(long, value_name = "N", default_value_t = 120)]
-    pub(crate) steps: u32,
-    /// Seconds from one step of a scene to the next
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        allow_negative_numbers = true,
-        default_value = "0.016666666666666666"
-    )]
-    pub(crate) dt: Positive,
+    #[command(flatten)]
+    pub(crate) stepping: Stepping,
+    #[command(flatten)]
+    pub(crate) key_frames: KeyFrames,
     #[command(flatten)]
     pub(crate) page: PageArgs,
     #[command(flatten)]
@@ -59,8 +52,8 @@ pub(crate) struct ExportArgs {
 
 /// Show a scene that runs, or a recording, in a browser on this machine.
 ///
-/// The address that is printed is of a port of this machine alone. The objects of a scene move by its motions until the
-/// command is interrupted; the page follows, and keeps all steps to go back to.
+/// The address that is printed is of a port of this machine alone. The objects of a scene move by its motions, once in
+/// `--dt` seconds, until the command is interrupted; the page follows, and keeps all steps to go back to.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -75,14 +68,10 @@ pub(crate) struct ViewArgs {
     /// End after so many updates of a scene
     #[arg(long, value_name = "N")]
     pub(crate) steps: Option<u64>,
-    /// Seconds from one step to the next, of the scene and of the clock
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        allow_negative_numbers = true,
-        default_value = "0.016666666666666666"
-    )]
-    pub(crate) dt: Positive,
+    #[command(flatten)]
+    pub(crate) time_step: TimeStep,
+    #[command(flatten)]
+    pub(crate) key_frames: KeyFrames,
     #[command(flatten)]
     pub(crate) page: PageArgs,
 }
@@ -102,7 +91,7 @@ pub(crate) struct SamplesArgs {
     #[arg(short, long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) output: Option<PathBuf>,
     /// The size of the small pictures in pixels
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "320x200")]
+    #[arg(long, value_name = "WxH", default_value = "320x200")]
     pub(crate) size: Size,
     #[command(flatten)]
     pub(crate) page: PageArgs,

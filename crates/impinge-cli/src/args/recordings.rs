@@ -4,43 +4,38 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueHint};
 
-use super::{Format, Positive, SceneArgs};
+use super::{Format, KeyFrames, OutputFile, SceneArgs, Stepping};
 
 /// Move the objects of a scene and record every step.
 ///
 /// Objects move by the motions of the scene. A recording holds each call that changed the world and the hashes
-/// of what came of it: `replay` and `validate` read it, on any machine.
+/// of its results: `replay` and `validate` read it, on any machine.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
   impinge record balls.json -o balls.implog --steps 30
   impinge record balls.json -o slow.implog --steps 10 --dt 0.001
+  impinge record balls.json -o long.implog --steps 600 --key-frames 60
 
 Fields of --json: file, dimension, scalar, output, steps, bytes, objects, touched (steps with a contact or an intersection).")]
 pub(crate) struct RecordArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// The recording to write
-    #[arg(short, long, value_name = "FILE", value_hint = ValueHint::FilePath)]
-    pub(crate) output: PathBuf,
-    /// How many updates
-    #[arg(long, value_name = "N")]
-    pub(crate) steps: u32,
-    /// Seconds from one step to the next
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        allow_negative_numbers = true,
-        default_value = "0.016666666666666666"
-    )]
-    pub(crate) dt: Positive,
+    #[command(flatten)]
+    pub(crate) output: OutputFile,
+    #[command(flatten)]
+    pub(crate) stepping: Stepping,
+    #[command(flatten)]
+    pub(crate) key_frames: KeyFrames,
     #[command(flatten)]
     pub(crate) format: Format,
 }
 
 /// What happened at the steps of a recording.
 ///
-/// Without `--step` a line for each step; with it the objects and pairs after that step.
+/// Without `--step` a line for each step; with it the objects and pairs after that step. Of a recording that lacks
+/// its end, because the program that wrote it died, or whose end is damaged, the steps before are replayed; a note
+/// on standard error says how many.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:
@@ -64,8 +59,8 @@ pub(crate) struct ReplayArgs {
 
 /// Whether recordings replay to the same bits.
 ///
-/// Every call of a recording is made again, and what comes of it is compared by its hashes: positions, pairs,
-/// contacts, proximities, events and answers of queries.
+/// Every call of a recording is made again, and its results are compared by their hashes: positions, pairs,
+/// contacts, proximities, events and answers of queries. A recording that lacks its end is refused.
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Examples:

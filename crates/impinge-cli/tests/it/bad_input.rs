@@ -46,7 +46,9 @@ fn scenes_with_the_place_of_the_mistake() {
     refused(&desk, "check dimension.json", &["dimension.json:1:", "4"]);
     let ran = desk.run_with("check -", b"{]");
     assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{ran:?}");
-    assert!(ran.err.starts_with("error: ") && ran.err.contains(":1:2"), "{ran:?}");
+    assert!(ran.err.starts_with("error: stdin:1:2"), "{ran:?}");
+    let ran = desk.run_with("check -", b"{\"dimension\": \xff}");
+    assert!(ran.code == 2 && ran.err.contains("stdin: cannot be read: invalid utf-8"), "{ran:?}");
 }
 
 #[test]
@@ -79,8 +81,22 @@ fn numbers_on_the_command_line() {
     refused(&desk, "ray boxes.json --from 0,inf,0 --to 1,0,0", &["inf is not finite"]);
     refused(&desk, "ray boxes.json --from 0,0,0", &["--to"]);
     refused(&desk, "render boxes.json -o a.png --size 0x10", &["\"0x10\""]);
+    refused(&desk, "render boxes.json -o a.png --size 8193x10", &["\"8193x10\"", "8192"]);
+    refused(&desk, "render boxes.json -o a.png --angle -1", &["-1 is negative"]);
     refused(&desk, "bench boxes.json --steps 0", &["0"]);
+    refused(&desk, "record boxes.json -o a.implog --key-frames 0", &["--key-frames", "0"]);
     refused(&desk, "record boxes.json -o a.implog --steps 1 --dt inf", &["inf is not finite"]);
+}
+
+#[test]
+fn directions_of_length_zero() {
+    let desk = Desk::new();
+    let words = ["--direction 0,0,0", "a direction must not be zero"];
+    refused(&desk, "ray balls.json --from 1,0,0 --direction 0,0,0", &words);
+    let words = ["--to 1,0,0", "is where the ray starts"];
+    refused(&desk, "ray balls.json --from 1,0,0 --to 1,0,0", &words);
+    refused(&desk, "render balls.json -o a.png --look 0,0,0", &["--look 0,0,0"]);
+    refused(&desk, "render balls.json -o a.png --up 0,0,0", &["--up 0,0,0"]);
 }
 
 #[test]

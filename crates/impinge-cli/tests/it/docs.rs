@@ -28,8 +28,7 @@ fn run_line(desk: &Desk, line: &str) -> Ran {
 
 #[test]
 fn every_verb_has_examples_that_run() {
-    let desk = Desk::new();
-    assert_eq!(desk.run("record balls.json -o balls.implog --steps 30").code, 0);
+    let desk = Desk::recorded();
     let verbs = verbs(&desk);
     assert!(verbs.len() >= 15, "{verbs:?}");
     for verb in verbs {
@@ -50,8 +49,7 @@ fn every_verb_has_examples_that_run() {
 
 #[test]
 fn the_fields_of_json_are_documented() {
-    let desk = Desk::new();
-    assert_eq!(desk.run("record balls.json -o balls.implog --steps 30").code, 0);
+    let desk = Desk::recorded();
     for arguments in [
         "check boxes.json",
         "distance balls.json left right",

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
-use std::process::Stdio;
+use std::process::{ChildStdout, Stdio};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -30,8 +30,7 @@ fn recording(page: &str) -> Vec<u8> {
 
 #[test]
 fn a_page_has_the_recording_of_a_file() {
-    let desk = Desk::new();
-    assert_eq!(desk.run("record balls.json -o balls.implog --steps 30").code, 0);
+    let desk = Desk::recorded();
     let report = desk.json("export balls.implog -o balls.html --title A<B", 0);
     let page = fs::read_to_string(desk.path("balls.html")).expect("a page");
     assert_eq!(report["bytes"], page.len());
@@ -47,6 +46,56 @@ fn a_page_has_the_recording_of_a_scene() {
     let page = fs::read_to_string(desk.path("balls.html")).expect("a page");
     assert!(page.starts_with("balls.json\n"), "the file is the title");
     assert_eq!(steps(recording(&page)), 12);
+}
+
+/// A desk with a recording of 30 updates, the last of which is not whole, and the bytes of the others.
+fn cut() -> (Desk, Vec<u8>) {
+    let desk = Desk::recorded();
+    let mut bytes = fs::read(desk.path("balls.implog")).expect("a recording");
+    let end = Replay::<f64, 3, Vec<u8>>::salvage(&bytes[..bytes.len() - 20], &Registry::new());
+    let end = end.expect("a header");
+    assert_eq!(end.len(), 29, "an update is lost");
+    // Half a record follows.
+    bytes.truncate(end.bytes().len() + 3);
+    desk.write("cut.implog", &bytes);
+    (desk, end.bytes().to_vec())
+}
+
+#[test]
+fn a_page_has_what_is_left_of_a_recording() {
+    let (desk, kept) = cut();
+    let ran = desk.run("export cut.implog -o cut.html");
+    assert_eq!(ran.code, 0, "{ran:?}");
+    assert!(ran.err.contains("29 steps are kept, 3 bytes left out"), "{ran:?}");
+    let page = fs::read_to_string(desk.path("cut.html")).expect("a page");
+    // Packing leaves the hashes of objects out.
+    let packed = impinge_record::pack(&kept).expect("whole records");
+    assert!(recording(&page) == unpack(&packed).expect("just packed"), "whole records alone");
+}
+
+#[test]
+fn a_browser_sees_what_is_left_of_a_recording() {
+    let (desk, kept) = cut();
+    let mut command = desk.command();
+    command.args(["view", "cut.implog"]).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the command");
+    let mut stream = follow(child.stdout.take().expect("a pipe"));
+    // The stream goes on until the command ends: read the head and the first chunk.
+    let mut answer = Vec::new();
+    let is_sent = |answer: &[u8]| answer.windows(kept.len()).any(|bytes| bytes == kept);
+    while !is_sent(&answer) {
+        let mut piece = [0; 4096];
+        let count = stream.read(&mut piece).expect("an answer");
+        assert!(count > 0, "the stream ends");
+        answer.extend(&piece[..count]);
+    }
+    child.kill().expect("it runs");
+    let mut err = String::new();
+    child.stderr.take().expect("a pipe").read_to_string(&mut err).expect("text");
+    assert!(err.contains("29 steps are kept, 3 bytes left out"), "{err}");
+    child.wait().expect("an end");
+    let tail = [&kept[..], b"\r\n"].concat();
+    assert!(answer.ends_with(&tail), "whole records alone");
 }
 
 #[test]
@@ -99,18 +148,23 @@ fn body(answer: &[u8]) -> Vec<u8> {
     }
 }
 
+/// Asks for the recording at the address that a command prints.
+fn follow(out: ChildStdout) -> TcpStream {
+    let mut line = String::new();
+    BufReader::new(out).read_line(&mut line).expect("the address");
+    let address = line.trim().trim_start_matches("http://").trim_end_matches('/');
+    let mut stream = TcpStream::connect(address).expect("a server");
+    write!(stream, "GET /log HTTP/1.1\r\nHost: {address}\r\n\r\n").expect("a request");
+    stream
+}
+
 #[test]
 fn a_browser_follows_a_scene() {
     let desk = Desk::new();
     let mut command = desk.command();
     command.args(["view", "balls.json", "--steps", "40"]).stdout(Stdio::piped());
     let mut child = command.spawn().expect("the command");
-    let mut line = String::new();
-    let mut out = BufReader::new(child.stdout.take().expect("a pipe"));
-    out.read_line(&mut line).expect("the address");
-    let address = line.trim().trim_start_matches("http://").trim_end_matches('/');
-    let mut stream = TcpStream::connect(address).expect("a server");
-    write!(stream, "GET /log HTTP/1.1\r\nHost: {address}\r\n\r\n").expect("a request");
+    let mut stream = follow(child.stdout.take().expect("a pipe"));
     let mut answer = Vec::new();
     stream.read_to_end(&mut answer).expect("an answer");
     assert_eq!(child.wait().expect("an end").code(), Some(0));

@@ -49,6 +49,10 @@ fn balls_half_a_unit_apart() {
         assert_eq!(below["near"], 0, "a clearance below the distance");
         let measured = desk.json("distance scene.json a b", 0);
         assert_eq!((&measured["state"], &measured["distance"]), (&json!("apart"), &json!(0.5)));
+        assert_eq!(
+            (&measured["dimension"], &measured["scalar"]),
+            (&json!(dimension), &json!(scalar))
+        );
         let swapped = desk.json("distance scene.json b a --margin 0.5", 0);
         assert_eq!(swapped["state"], "near");
         assert_eq!(numbers(&swapped["normal"])[0], -1.0, "from the first named");

@@ -58,8 +58,7 @@ fn lines_in_svg_with_layers() {
 
 #[test]
 fn a_step_of_a_recording() {
-    let desk = Desk::new();
-    assert_eq!(desk.run("record balls.json -o balls.implog --steps 30").code, 0);
+    let desk = Desk::recorded();
     let at = |step: &str| {
         let arguments = format!("render balls.implog -o a.png --size 90x60 {step}");
         rendered(&desk, &arguments, "a.png")

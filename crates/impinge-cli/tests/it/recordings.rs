@@ -2,24 +2,30 @@
 
 use std::fs;
 
-use impinge_record::reseal;
-use serde_json::json;
+use impinge::dim3::bounding_volume::Aabb;
+use impinge::dim3::math::Isometry;
+use impinge::dim3::shape::{Ball, Geometry, ShapeHandle};
+use impinge::dim3::world::{CollisionGroups, GeometricQueryType};
+use impinge::shape::Shape;
+use impinge_record::{Recorder, Registry, reseal};
+use serde_json::{Value, json};
 
 use crate::support::{Desk, numbers};
 
-/// The left ball moves by 2 a second; the gap of 0.5 is closed after a quarter of a second: 15 steps.
-fn recorded() -> Desk {
+#[test]
+fn a_recording_has_the_steps_and_objects_that_are_reported() {
     let desk = Desk::new();
     let report = desk.json("record balls.json -o balls.implog --steps 30", 0);
     let size = fs::metadata(desk.path("balls.implog")).expect("it was written").len();
     assert_eq!((&report["steps"], &report["objects"]), (&json!(30), &json!(2)), "{report}");
     assert_eq!(report["bytes"], size, "what was written");
-    desk
+    let touched = report["touched"].as_u64().expect("a number");
+    assert!(touched == 15 || touched == 16, "at step 15 they touch up to rounding: {touched}");
 }
 
 #[test]
 fn balls_that_meet_after_a_quarter_of_a_second() {
-    let desk = recorded();
+    let desk = Desk::recorded();
     let report = desk.json("replay balls.implog", 1);
     let steps = report["steps"].as_array().expect("a list");
     assert_eq!(steps.len(), 30);
@@ -33,7 +39,7 @@ fn balls_that_meet_after_a_quarter_of_a_second() {
 
 #[test]
 fn a_step_has_positions_and_pairs() {
-    let desk = recorded();
+    let desk = Desk::recorded();
     let report = desk.json("replay balls.implog --step 30", 1);
     let left = &report["positions"][0];
     assert_eq!(left["name"], "left");
@@ -49,7 +55,7 @@ fn a_step_has_positions_and_pairs() {
 
 #[test]
 fn what_was_recorded_replays_to_the_same_bits() {
-    let desk = recorded();
+    let desk = Desk::recorded();
     let boxes = desk.run("record boxes.json -o boxes.implog --steps 7");
     assert_eq!(boxes.code, 0, "{boxes:?}");
     let report = desk.json("validate balls.implog boxes.implog", 0);
@@ -63,7 +69,7 @@ fn what_was_recorded_replays_to_the_same_bits() {
 
 #[test]
 fn a_changed_number_is_found_with_its_step_and_object() {
-    let desk = recorded();
+    let desk = Desk::recorded();
     let mut bytes = fs::read(desk.path("balls.implog")).expect("a recording");
     // The place of the right ball, which does not move, as the library writes it.
     let at = bytes.windows(8).position(|window| window == 1.25_f64.to_le_bytes());
@@ -81,27 +87,136 @@ fn a_changed_number_is_found_with_its_step_and_object() {
 }
 
 #[test]
-fn damaged_recordings_are_refused() {
-    let desk = recorded();
+fn a_recording_without_its_end_is_replayed_as_far_as_it_goes() {
+    let desk = Desk::recorded();
+    let whole = desk.json("replay balls.implog", 1)["steps"].clone();
+    let whole = whole.as_array().expect("a list");
     let bytes = fs::read(desk.path("balls.implog")).expect("a recording");
+    let mut kept = Vec::new();
     for length in (0..bytes.len()).step_by(bytes.len() / 40 + 1) {
         desk.write("cut.implog", &bytes[..length]);
-        for verb in ["validate", "replay"] {
-            let ran = desk.run(&format!("{verb} cut.implog"));
-            assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{length} bytes, {verb}: {ran:?}");
-            assert!(ran.err.starts_with("error: cut.implog: at byte "), "{ran:?}");
+        let validated = desk.run("validate cut.implog");
+        assert_eq!((validated.code, validated.out.as_str()), (2, ""), "{length}: {validated:?}");
+        assert!(validated.err.starts_with("error: cut.implog: at byte "), "{validated:?}");
+        let ran = desk.run("replay cut.implog --json");
+        if kept.is_empty() && ran.code == 2 {
+            assert!(ran.err.starts_with("error: cut.implog: at byte "), "a header is cut: {ran:?}");
+            continue;
         }
+        let report: Value = serde_json::from_str(&ran.out).expect("JSON");
+        let steps = report["steps"].as_array().expect("a list");
+        assert_eq!(steps[..], whole[..steps.len()], "the same steps");
+        let touches = steps.last().is_some_and(|last| last["touching"] == 1);
+        assert_eq!(ran.code, i32::from(touches), "{length}: {ran:?}");
+        let note = "note: cut.implog: the end of the recording cannot be read (at byte ";
+        let count = format!("{} steps are kept", steps.len());
+        assert!(ran.err.starts_with(note) && ran.err.contains(&count), "{length}: {ran:?}");
+        kept.push(steps.len());
     }
-    let mut flipped = bytes;
-    let middle = flipped.len() / 2;
-    flipped[middle] ^= 16;
-    desk.write("flipped.implog", &flipped);
+    assert!(kept.is_sorted() && kept[0] < 3 && kept[kept.len() - 1] > 27, "{kept:?}");
+}
+
+#[test]
+fn what_follows_damage_is_left_out() {
+    let desk = Desk::recorded();
+    let mut bytes = fs::read(desk.path("balls.implog")).expect("a recording");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 16;
+    desk.write("flipped.implog", &bytes);
     assert_eq!(desk.run("validate flipped.implog").code, 2, "a checksum");
+    for (verb, words) in [
+        ("replay flipped.implog --step 1", "the checksum is wrong"),
+        ("inspect flipped.implog", "steps are kept"),
+        ("render flipped.implog -o a.png --size 9x9", "bytes left out"),
+    ] {
+        let ran = desk.run(verb);
+        assert_eq!(ran.code, 0, "{verb}: {ran:?}");
+        assert!(ran.err.starts_with("note: flipped.implog: "), "{verb}: {ran:?}");
+        assert!(ran.err.contains(words), "{verb}: {ran:?}");
+    }
+    let ran = desk.run("replay flipped.implog --step 29");
+    assert!(ran.code == 2 && ran.err.contains("there is no step 29"), "{ran:?}");
+}
+
+/// A shape of a user's own, which a recording has by name.
+#[derive(Debug)]
+struct Pebble(Ball<f64>);
+
+impl Shape<f64, 3> for Pebble {
+    fn geometry(&self) -> Geometry<'_, f64> {
+        Shape::<f64, 3>::geometry(&self.0)
+    }
+
+    fn local_aabb(&self) -> Aabb<f64> {
+        self.0.local_aabb()
+    }
+}
+
+/// A recording of 3 updates with a pebble.
+fn of_own_shape() -> Vec<u8> {
+    let pebble = ShapeHandle::new(Pebble(Ball::new(1.0)));
+    let registry = Registry::<f64, 3, String>::new().with_shape("pebble", pebble.clone());
+    let mut recorder = Recorder::new(0.02, registry).expect("a margin");
+    let query = GeometricQueryType::Proximity(0.0);
+    let (at, groups) = (Isometry::identity(), CollisionGroups::new());
+    recorder.add(at, pebble, groups, query, "pebble".to_owned()).expect("an object");
+    (0..3).for_each(|_| recorder.update());
+    recorder.finish().bytes
+}
+
+#[test]
+fn an_unknown_shape_is_no_damage() {
+    let desk = Desk::new();
+    desk.write("own.implog", of_own_shape());
+    for verb in ["replay own.implog", "validate own.implog", "inspect own.implog"] {
+        let ran = desk.run(verb);
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{verb}: {ran:?}");
+        assert!(
+            ran.err.starts_with("error: own.implog: ") && ran.err.contains("\"pebble\""),
+            "{ran:?}"
+        );
+    }
+    // The page has a stand-in for it.
+    let ran = desk.run("export own.implog -o own.html");
+    assert_eq!((ran.code, ran.err.as_str()), (0, ""));
+}
+
+#[test]
+fn key_frames_are_written_every_so_many_updates() {
+    let desk = Desk::recorded();
+    let size = |key_frames: &str| {
+        let record = format!("record balls.json -o frames.implog --steps 30 {key_frames}");
+        let report = desk.json(&record, 0);
+        assert_eq!(desk.run("validate frames.implog").code, 0, "{key_frames}");
+        let steps = desk.json("replay frames.implog", 1)["steps"].clone();
+        assert_eq!(steps, desk.json("replay balls.implog", 1)["steps"], "{key_frames}");
+        report["bytes"].as_u64().expect("a number")
+    };
+    let plain = size("");
+    assert_eq!(size("--key-frames 30"), plain, "the first one comes after 30 updates");
+    let (one, two) = (size("--key-frames 15"), size("--key-frames 10"));
+    assert!(plain < one && one < two, "{plain}, {one}, {two}");
+    // Each has the data of both objects.
+    let bytes = fs::read(desk.path("frames.implog")).expect("a recording");
+    let names = bytes.windows(4).filter(|window| window == b"left").count();
+    assert_eq!(names, 3, "added once, and in key frames after 10 and 20 updates");
+}
+
+#[test]
+fn standard_input_may_be_a_recording() {
+    let desk = Desk::recorded();
+    let bytes = fs::read(desk.path("balls.implog")).expect("a recording");
+    for verb in ["inspect -", "replay - --step 5", "validate -", "render - -o a.png --size 9x9"] {
+        let ran = desk.run_with(verb, &bytes);
+        assert_eq!((ran.code, ran.err.as_str()), (0, ""), "{verb}");
+    }
+    let ran = desk.run_with("check -", &bytes);
+    assert!(ran.code == 2 && ran.err.starts_with("error: stdin: "), "{ran:?}");
 }
 
 #[test]
 fn a_step_that_is_not_there() {
-    let desk = recorded();
+    let desk = Desk::recorded();
     for verb in ["replay balls.implog --step 31", "render balls.implog -o a.png --step 31"] {
         let ran = desk.run(verb);
         assert_eq!(ran.code, 2, "{ran:?}");

@@ -37,6 +37,42 @@ fn a_sound_mesh_and_one_with_a_hole() {
     let flat = desk.json("inspect flat.obj", 1);
     let problem = flat["meshes"][0]["problems"][0].as_str().expect("a problem");
     assert!(problem.contains("degenerate") && problem.contains("line 17"), "{problem}");
+    // Faces whose corners are in the other order.
+    let turned = whole.lines().map(|line| match line.strip_prefix("f ") {
+        Some(corners) => {
+            let corners: Vec<_> = corners.rsplit(' ').collect();
+            format!("f {}\n", corners.join(" "))
+        }
+        None => format!("{line}\n"),
+    });
+    desk.write("turned.obj", turned.collect::<String>());
+    let text = desk.run("inspect turned.obj");
+    assert!(
+        text.out.contains(
+            "part base: 8 vertices, 12 triangles, 1 pieces, closed, inside out, volume 1"
+        ),
+        "{text:?}"
+    );
+}
+
+#[test]
+fn a_joint_beyond_its_limits() {
+    let desk = Desk::new();
+    let link = |name| {
+        format!(
+            "<link name=\"{name}\"><collision><geometry><sphere radius=\"1\"/></geometry></collision></link>"
+        )
+    };
+    let joint = "<joint name=\"knee\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/>\
+                 <limit lower=\"0.5\" upper=\"2\" effort=\"1\" velocity=\"1\"/></joint>";
+    desk.write(
+        "leg.urdf",
+        format!("<robot name=\"leg\">{}{}{joint}</robot>", link("a"), link("b")),
+    );
+    let message = "the joint knee of leg is at 0, outside its limits 0.5 to 2";
+    let report = desk.json("inspect leg.urdf", 0);
+    assert_eq!(report["joints_beyond_limits"], json!([message]), "it is no error");
+    assert!(desk.run("inspect leg.urdf").out.contains(message), "the text has it too");
 }
 
 #[test]

@@ -43,6 +43,16 @@ impl Desk {
         desk
     }
 
+    /// With the recording `balls.implog` of 30 steps of `balls.json`.
+    ///
+    /// The left ball moves by 2 a second; the gap of 0.5 is closed after a quarter of a second: 15 steps.
+    pub(crate) fn recorded() -> Self {
+        let desk = Self::new();
+        let ran = desk.run("record balls.json -o balls.implog --steps 30");
+        assert_eq!((ran.code, ran.err.as_str()), (0, ""), "{ran:?}");
+        desk
+    }
+
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }

@@ -3,6 +3,7 @@
 //! The doc comments of these types become the descriptions of the JSON schema.
 
 mod map;
+mod numbers;
 mod object;
 mod query;
 mod robot;
@@ -19,7 +20,9 @@ pub use object::{
 };
 pub use query::{CastFile, QueryFile, RayFile};
 pub use robot::RobotFile;
-pub use shape::{ChildFile, DiagonalsFile, MeshKind, MeshSource, ScaleFile, ShapeFile, ShapeRef};
+pub use shape::{
+    ChildFile, DiagonalsFile, HeightFieldFile, MeshKind, MeshSource, ScaleFile, ShapeFile, ShapeRef,
+};
 
 use map::unique_keys;
 
@@ -67,9 +70,9 @@ const fn default_margin() -> f64 {
 #[serde(try_from = "u64", into = "u64")]
 #[schemars(extend("enum" = [2, 3]))]
 pub enum Dimension {
-    /// The plane.
+    /// 2D.
     Two,
-    /// Space.
+    /// 3D.
     Three,
 }
 

@@ -1,12 +1,11 @@
-//! Objects in a scene file: where they are, whom they meet, how they move.
+//! Objects in a scene file: their positions, groups, query types and motions.
 
-use core::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
-use serde::de::{Deserializer, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
+use super::numbers::OneOrThree;
 use super::{MeshKind, ScaleFile, ShapeRef};
 
 /// An object, or a grid of objects.
@@ -20,7 +19,7 @@ pub struct ObjectFile {
     /// Where it is at the beginning.
     #[serde(default)]
     pub position: PoseFile,
-    /// Whom it may meet.
+    /// Its collision groups.
     #[serde(default)]
     pub groups: GroupsFile,
     /// What is computed for its pairs.
@@ -53,7 +52,7 @@ pub struct MeshesFile {
     /// Where the frame of the file is.
     #[serde(default)]
     pub position: PoseFile,
-    /// Whom the objects may meet.
+    /// The collision groups of the objects.
     #[serde(default)]
     pub groups: GroupsFile,
     /// What is computed for their pairs.
@@ -62,6 +61,23 @@ pub struct MeshesFile {
     /// How they move.
     #[serde(default)]
     pub motion: MotionFile,
+}
+
+impl MeshesFile {
+    /// The parts of a file as they are: at the origin, at rest, in all groups.
+    #[must_use]
+    pub fn new(path: &Path) -> Self {
+        Self {
+            name: None,
+            path: path.to_owned(),
+            scale: ScaleFile::default(),
+            kind: MeshKind::default(),
+            position: PoseFile::default(),
+            groups: GroupsFile::default(),
+            query: QueryTypeFile::default(),
+            motion: MotionFile::default(),
+        }
+    }
 }
 
 /// A position: first the rotation, then the translation.
@@ -150,8 +166,8 @@ impl RotationOrder {
     }
 }
 
-/// Whom an object may meet: groups are numbered 0 to 29. Two objects interact if each is a member of a group that
-/// the other whitelists, and neither of one that the other blacklists.
+/// The collision groups of an object, numbered 0 to 29. Two objects interact if each is a member of a group that the
+/// other whitelists, and neither of one that the other blacklists.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct GroupsFile {
@@ -170,7 +186,7 @@ pub struct GroupsFile {
 }
 
 /// What is computed for the pairs of an object.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum QueryTypeFile {
     /// Contacts.
@@ -209,19 +225,17 @@ pub struct MotionFile {
 #[serde(untagged)]
 pub enum AngularVelocity {
     /// In 2D, counter-clockwise.
-    Plane(f64),
+    Two(f64),
     /// In 3D.
-    Space([f64; 3]),
+    Three([f64; 3]),
 }
 
 impl<'de> Deserialize<'de> for AngularVelocity {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let numbers = one_or_more(deserializer)?;
-        match numbers.as_slice() {
-            &[speed] => Ok(Self::Plane(speed)),
-            &[x, y, z] => Ok(Self::Space([x, y, z])),
-            other => Err(serde::de::Error::invalid_length(other.len(), &"one number or three")),
-        }
+        Ok(match OneOrThree::deserialize(deserializer)? {
+            OneOrThree::One(speed) => Self::Two(speed),
+            OneOrThree::Three(speed) => Self::Three(speed),
+        })
     }
 }
 
@@ -233,41 +247,4 @@ pub struct RepeatFile {
     pub count: Vec<usize>,
     /// The distance from one to the next along each axis of the world.
     pub spacing: Vec<f64>,
-}
-
-/// A number, or a list of numbers. By hand, since an untagged enum loses the place of an error.
-pub(super) fn one_or_more<'de, D: Deserializer<'de>>(
-    deserializer: D,
-) -> Result<Vec<f64>, D::Error> {
-    deserializer.deserialize_any(NumbersVisitor)
-}
-
-struct NumbersVisitor;
-
-impl<'de> Visitor<'de> for NumbersVisitor {
-    type Value = Vec<f64>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a number or a list of numbers")
-    }
-
-    fn visit_f64<E>(self, number: f64) -> Result<Self::Value, E> {
-        Ok(vec![number])
-    }
-
-    fn visit_u64<E>(self, number: u64) -> Result<Self::Value, E> {
-        Ok(vec![number as f64])
-    }
-
-    fn visit_i64<E>(self, number: i64) -> Result<Self::Value, E> {
-        Ok(vec![number as f64])
-    }
-
-    fn visit_seq<S: SeqAccess<'de>>(self, mut list: S) -> Result<Self::Value, S::Error> {
-        let mut numbers = Vec::new();
-        while let Some(number) = list.next_element()? {
-            numbers.push(number);
-        }
-        Ok(numbers)
-    }
 }

@@ -1,7 +1,7 @@
 //! Robots in a scene file.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -18,13 +18,13 @@ pub struct RobotFile {
     pub name: Option<String>,
     /// The URDF file, relative to the folder of the scene.
     pub urdf: PathBuf,
-    /// An SRDF file whose disabled pairs of links do not meet, beside those that a joint connects.
+    /// An SRDF file: its `disable_collisions` pairs of links have no contacts, and neither have links that a joint connects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub srdf: Option<PathBuf>,
     /// Folders in which the packages of `package://` paths are looked for, relative to the folder of the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub packages: Vec<PathBuf>,
-    /// The values of joints by name: radians or lengths, others are 0.
+    /// The values of joints by name: radians or lengths, others are 0. Values beyond the limits of a joint are no error.
     #[serde(default, deserialize_with = "unique_keys", skip_serializing_if = "BTreeMap::is_empty")]
     pub joints: BTreeMap<String, f64>,
     /// Where the root link is.
@@ -33,10 +33,28 @@ pub struct RobotFile {
     /// What the triangles of its meshes stand for.
     #[serde(default, rename = "as")]
     pub kind: MeshKind,
-    /// Whom the links may meet beside each other.
+    /// The collision groups of the links, for other objects; pairs of links are disabled by groups of their own.
     #[serde(default)]
     pub groups: GroupsFile,
     /// What is computed for their pairs.
     #[serde(default)]
     pub query: QueryTypeFile,
+}
+
+impl RobotFile {
+    /// The robot of a URDF file at the origin, with all joints at 0 and in all groups.
+    #[must_use]
+    pub fn new(urdf: &Path) -> Self {
+        Self {
+            name: None,
+            urdf: urdf.to_owned(),
+            srdf: None,
+            packages: Vec::new(),
+            joints: BTreeMap::new(),
+            position: PoseFile::default(),
+            kind: MeshKind::default(),
+            groups: GroupsFile::default(),
+            query: QueryTypeFile::default(),
+        }
+    }
 }

@@ -9,6 +9,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::PoseFile;
+use super::numbers::OneOrThree;
 
 /// A shape: by its name in `shapes`, or itself.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -164,24 +165,7 @@ pub enum ShapeFile {
         one_sided: bool,
     },
     /// A surface (a line, in 2D) by its heights over a grid, around the y axis.
-    HeightField {
-        /// The heights, row by row: columns along x, rows along z.
-        heights: Vec<f64>,
-        /// 3D only, and needed there: how many heights a row has.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        columns: Option<usize>,
-        /// The extents of the whole field, and as y component the factor of the heights.
-        scale: Vec<f64>,
-        /// Cells without surface, counted from 0, row by row.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        holes: Vec<usize>,
-        /// 3D only: which way cells are cut into two triangles.
-        #[serde(default)]
-        diagonals: DiagonalsFile,
-        /// Nothing touches it from behind: from below, if the factor of the heights is positive.
-        #[serde(default)]
-        one_sided: bool,
-    },
+    HeightField(HeightFieldFile),
     /// Shapes side by side, as one.
     Compound {
         /// The shapes.
@@ -189,6 +173,28 @@ pub enum ShapeFile {
     },
     /// 3D only: the triangles of a file.
     MeshFile(MeshSource),
+}
+
+/// A surface (a line, in 2D) by its heights over a grid, around the y axis.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HeightFieldFile {
+    /// The heights, row by row: columns along x, rows along z.
+    pub heights: Vec<f64>,
+    /// 3D only, and needed there: how many heights a row has.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub columns: Option<usize>,
+    /// The extents of the whole field, and as y component the factor of the heights.
+    pub scale: Vec<f64>,
+    /// Cells without surface, counted from 0, row by row.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub holes: Vec<usize>,
+    /// 3D only: which way cells are cut into two triangles.
+    #[serde(default)]
+    pub diagonals: DiagonalsFile,
+    /// Nothing touches it from behind: from below, if the factor of the heights is positive.
+    #[serde(default)]
+    pub one_sided: bool,
 }
 
 /// Which way the cells of a height field are cut into triangles.
@@ -251,7 +257,7 @@ pub enum MeshKind {
 }
 
 /// A factor for all axes, or one for each.
-#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum ScaleFile {
     /// The same along all axes.
@@ -279,11 +285,9 @@ impl ScaleFile {
 
 impl<'de> Deserialize<'de> for ScaleFile {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let numbers = super::object::one_or_more(deserializer)?;
-        match numbers.as_slice() {
-            &[factor] => Ok(Self::Uniform(factor)),
-            &[x, y, z] => Ok(Self::Axes([x, y, z])),
-            other => Err(serde::de::Error::invalid_length(other.len(), &"one number or three")),
-        }
+        Ok(match OneOrThree::deserialize(deserializer)? {
+            OneOrThree::One(factor) => Self::Uniform(factor),
+            OneOrThree::Three(factors) => Self::Axes(factors),
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! glTF, text and binary, by `gltf`: each mesh of a node becomes a part, in the frame of the scene.
 //!
-//! The crate checks the JSON and trusts the ranges of accessors, which are checked here.
+//! The crate checks the JSON. What it trusts is checked before: the tree of nodes, the lengths of buffers, the
+//! accessors of positions, and in `accessor.rs` the ranges of accessors.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,11 +12,12 @@ use base64::engine::general_purpose::STANDARD;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
 use gltf::mesh::Mode;
-use gltf::{Accessor, Gltf, Node, Primitive, Semantic};
+use gltf::{Gltf, Node, Primitive, Semantic};
 use impinge::math::na::{Matrix4, Point3};
 use percent_encoding::percent_decode_str;
 
 use super::RawPart;
+use super::accessor::{Layout, check};
 use super::raw::FormatError;
 use crate::Problem;
 
@@ -151,28 +153,19 @@ fn add(
     if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
         return Ok(());
     }
-    let wrong = || FormatError::syntax(None, "a primitive has no positions that can be read");
-    let positions = primitive.get(&Semantic::Positions).ok_or_else(wrong)?;
-    check(&positions, buffers, |kind| kind == DataType::F32, Dimensions::Vec3)?;
-    if let Some(indices) = primitive.indices() {
-        let is_index = |kind| matches!(kind, DataType::U8 | DataType::U16 | DataType::U32);
-        check(&indices, buffers, is_index, Dimensions::Scalar)?;
-    }
-    let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
     let first = u32::try_from(part.vertices.len()).unwrap_or(u32::MAX);
-    let vertices = reader.read_positions().ok_or_else(wrong)?;
-    let placed = |vertex: [f32; 3]| {
+    let positions = positions(primitive, buffers)?;
+    let corners = corners(primitive, buffers, positions.len())?;
+    part.vertices.extend(positions.into_iter().map(|vertex| {
         let point = frame.transform_point(&Point3::from(vertex.map(f64::from)));
         [point.x, point.y, point.z]
-    };
-    part.vertices.extend(vertices.map(placed));
-    let count = u32::try_from(positions.count()).unwrap_or(u32::MAX);
-    let corners: Vec<u32> = match reader.read_indices() {
-        Some(indices) => indices.into_u32().collect(),
-        None => (0..count).collect(),
-    };
+    }));
     // An index beyond the vertices of the primitive must not become one of the next.
-    let corner = |corner: u32| if corner < count { first.saturating_add(corner) } else { u32::MAX };
+    let count = part.vertices.len();
+    let corner = |corner: u32| {
+        let corner = first.saturating_add(corner);
+        if (corner as usize) < count { corner } else { u32::MAX }
+    };
     let corners: Vec<u32> = corners.into_iter().map(corner).collect();
     // A mirrored frame turns triangles over.
     let is_mirrored = frame.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
@@ -180,6 +173,32 @@ fn add(
         part.face(if is_mirrored { [a, c, b] } else { [a, b, c] });
     }
     Ok(())
+}
+
+/// The positions of a primitive, in the frame of its node.
+fn positions(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f32; 3]>, FormatError> {
+    let missing = || FormatError::syntax(None, "a primitive has no positions");
+    let accessor = primitive.get(&Semantic::Positions).ok_or_else(missing)?;
+    check(&accessor, buffers, Layout { types: &[DataType::F32], dimensions: Dimensions::Vec3 })?;
+    let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
+    Ok(reader.read_positions().ok_or_else(missing)?.collect())
+}
+
+/// The indices of a primitive; without an accessor of its own each of its `count` vertices in turn.
+fn corners(
+    primitive: &Primitive<'_>,
+    buffers: &[Vec<u8>],
+    count: usize,
+) -> Result<Vec<u32>, FormatError> {
+    let types = &[DataType::U8, DataType::U16, DataType::U32];
+    if let Some(accessor) = primitive.indices() {
+        check(&accessor, buffers, Layout { types, dimensions: Dimensions::Scalar })?;
+    }
+    let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
+    Ok(match reader.read_indices() {
+        Some(indices) => indices.into_u32().collect(),
+        None => (0..u32::MAX).take(count).collect(),
+    })
 }
 
 /// The corners of each triangle; those of strips turn every other time.
@@ -199,37 +218,4 @@ fn triangles(corners: &[u32], mode: Mode) -> Vec<[u32; 3]> {
         }
         _ => corners.chunks_exact(3).map(|abc| [abc[0], abc[1], abc[2]]).collect(),
     }
-}
-
-/// The numbers of an accessor are of its type and lie within their buffer.
-fn check(
-    accessor: &Accessor<'_>,
-    buffers: &[Vec<u8>],
-    is_usable: impl Fn(DataType) -> bool,
-    dimensions: Dimensions,
-) -> Result<(), FormatError> {
-    let name = accessor.index();
-    let wrong = |what: &str| FormatError::syntax(None, format!("accessor {name}: {what}"));
-    if !is_usable(accessor.data_type()) || accessor.dimensions() != dimensions {
-        return Err(wrong("numbers of another type are needed"));
-    }
-    if accessor.sparse().is_some() {
-        return Err(wrong("sparse accessors cannot be read"));
-    }
-    let view = accessor.view().ok_or_else(|| wrong("there is no view of a buffer"))?;
-    let size = accessor.size();
-    let stride = view.stride().unwrap_or(size);
-    let steps = accessor.count().checked_sub(1).ok_or_else(|| wrong("it is empty"))?;
-    if stride < size {
-        return Err(wrong("its numbers overlap"));
-    }
-    let end = stride.checked_mul(steps).and_then(|end| end.checked_add(size));
-    let end = end.and_then(|end| end.checked_add(accessor.offset()));
-    let is_in_view = end.is_some_and(|end| end <= view.length());
-    let view_end = view.offset().checked_add(view.length());
-    let length = buffers.get(view.buffer().index()).map_or(0, Vec::len);
-    if is_in_view && view_end.is_some_and(|end| end <= length) {
-        return Ok(());
-    }
-    Err(wrong("it reaches beyond its buffer"))
 }

@@ -1,5 +1,6 @@
 //! Mesh files: their parts, and what is wrong with them.
 
+mod accessor;
 mod gltf;
 mod lines;
 mod obj;
@@ -12,13 +13,12 @@ mod topology;
 mod triangulate;
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
-pub use report::{Finding, Findings, MAX_FINDINGS, MeshReport};
+pub use report::{Defect, Defects, MAX_DEFECTS, MeshReport};
 
-use self::raw::RawPart;
-use crate::{FileError, Problem};
+use self::raw::{FormatError, RawPart};
+use crate::{FileError, Problem, input};
 
 /// The parts of a mesh file: groups and objects of an OBJ file, meshes of the nodes of a glTF file, solids of an STL
 /// file; one part of a PLY file.
@@ -66,8 +66,7 @@ impl MeshFile {
     /// If the file cannot be read or is not of its format, with the line where the format has lines, and if no
     /// triangle is left.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let bytes = fs::read(path).map_err(|error| error_of(path, None, Problem::io(&error)))?;
-        Self::parse(path, &bytes)
+        Self::parse(path, &input::read(path)?)
     }
 
     /// Reads the bytes of a file with this name: its ending gives the format, its folder holds the buffers of a
@@ -76,23 +75,26 @@ impl MeshFile {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, FileError> {
-        let extension = path.extension().and_then(|extension| extension.to_str());
-        let extension = extension.unwrap_or_default().to_ascii_lowercase();
-        let raw = match extension.as_str() {
-            "obj" => obj::read(bytes),
-            "stl" => stl::read(bytes),
-            "ply" => ply::read(bytes),
-            "gltf" | "glb" => gltf::read(path, bytes),
-            _ => Err(Problem::UnknownFormat { extension }.into()),
+        let extension = input::extension(path);
+        let Some(read) = reader(&extension) else {
+            return Err(FileError::whole(path, Problem::UnknownFormat { extension }));
         };
-        let raw = raw.map_err(|error| error_of(path, error.line, error.problem))?;
+        let raw = read(path, bytes).map_err(|FormatError { line, problem }| FileError {
+            line,
+            ..FileError::whole(path, problem)
+        })?;
         let parts = raw.into_iter().map(repair::repaired).filter(|part| !part.is_empty());
         let mut parts: Vec<MeshPart> = parts.collect();
         if parts.iter().all(|part| part.triangles.is_empty()) {
-            return Err(error_of(path, None, Problem::EmptyMesh));
+            return Err(FileError::whole(path, Problem::EmptyMesh));
         }
-        let names = name_apart(&mut parts);
+        let names = unique_names(&mut parts);
         Ok(Self { parts, names })
+    }
+
+    /// The format with this ending can be read.
+    pub(crate) fn has_format(extension: &str) -> bool {
+        reader(extension).is_some()
     }
 
     /// The parts, in the order of the file; at least one has a triangle.
@@ -108,6 +110,20 @@ impl MeshFile {
     }
 }
 
+/// Reads the faces of a file, of which the path is given too.
+type Reader = fn(&Path, &[u8]) -> Result<Vec<RawPart>, FormatError>;
+
+/// The reader of the format with an ending.
+fn reader(extension: &str) -> Option<Reader> {
+    Some(match extension {
+        "obj" => |_, bytes| obj::read(bytes),
+        "stl" => |_, bytes| stl::read(bytes),
+        "ply" => |_, bytes| ply::read(bytes),
+        "gltf" | "glb" => gltf::read,
+        _ => return None,
+    })
+}
+
 impl MeshPart {
     /// Neither triangles nor anything that a report would say.
     fn is_empty(&self) -> bool {
@@ -115,8 +131,8 @@ impl MeshPart {
     }
 }
 
-/// Gives each part a name of its own, and says whose each is.
-fn name_apart(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
+/// Gives each part a name of its own; the index of the part of each name.
+fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
     let mut names = BTreeMap::new();
     for (index, part) in parts.iter_mut().enumerate() {
         let stem = if part.name.is_empty() { "part" } else { &part.name };
@@ -131,10 +147,4 @@ fn name_apart(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
         part.name = name;
     }
     names
-}
-
-/// The error of a file at a line.
-fn error_of(path: &Path, line: Option<usize>, problem: Problem) -> FileError {
-    let (file, problem) = (path.to_owned(), Box::new(problem));
-    FileError { file, line, column: None, path: String::new(), value: None, problem }
 }

@@ -1,5 +1,7 @@
 //! From the faces of a file to triangles that a mesh can be made of.
 
+use impinge::math::na::Vector3;
+
 use super::MeshPart;
 use super::raw::RawPart;
 use super::report::MeshReport;
@@ -16,7 +18,7 @@ pub(super) struct Piece {
     pub(super) face: usize,
 }
 
-/// Welds vertices, triangulates polygons, drops what is no triangle, and reports.
+/// Welds vertices, triangulates polygons, drops degenerate and duplicate triangles, and reports the defects.
 pub(super) fn repaired(raw: RawPart) -> MeshPart {
     let mut report = MeshReport::default();
     let welded = weld(&raw, &mut report);
@@ -24,13 +26,8 @@ pub(super) fn repaired(raw: RawPart) -> MeshPart {
     drop_duplicates(&raw, &mut pieces, &mut report);
     let (vertices, triangles) = compact(&raw, &pieces);
     (report.vertices, report.triangles) = (vertices.len(), triangles.len());
-    let faces: Vec<usize> = pieces.iter().map(|piece| piece.face).collect();
-    examine(
-        &vertices,
-        &triangles,
-        |triangle| (faces[triangle], raw.line(faces[triangle])),
-        &mut report,
-    );
+    let origin = |triangle: usize| (pieces[triangle].face, raw.line(pieces[triangle].face));
+    examine(&vertices, &triangles, origin, &mut report);
     MeshPart { name: raw.name, vertices, triangles, report }
 }
 
@@ -99,7 +96,6 @@ fn pieces(raw: &RawPart, welded: &[u32], report: &mut MeshReport) -> Vec<Piece> 
 
 /// The corners are not on one line.
 fn has_area(corners: [u32; 3], vertices: &[[f64; 3]]) -> bool {
-    use impinge::math::na::Vector3;
     let [a, b, c] = corners.map(|corner| Vector3::from(vertices[corner as usize]));
     // Scaling by the largest side keeps squares of tiny and of huge triangles in range.
     let [ab, ac] = [b - a, c - a];

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// So many findings of each kind are listed; all are counted.
-pub const MAX_FINDINGS: usize = 8;
+/// So many defects of each kind are listed; all are counted.
+pub const MAX_DEFECTS: usize = 8;
 
 /// What is wrong with the triangles of a part, and what was done about it.
 ///
@@ -18,52 +18,52 @@ pub struct MeshReport {
     /// How many faces with more than three corners were triangulated.
     pub polygons: usize,
     /// Vertices with a coordinate that is NaN or infinite; the faces at them were dropped.
-    pub non_finite_vertices: Findings,
+    pub non_finite_vertices: Defects,
     /// Faces that name a vertex that does not exist; they were dropped.
-    pub out_of_range: Findings,
+    pub out_of_range: Defects,
     /// Faces without area, or with fewer than three corners; they were dropped. A polygon is one if it has no
     /// triangle with an area.
-    pub degenerate: Findings,
+    pub degenerate: Defects,
     /// Vertices at the position of an earlier one; they were welded. In formats without indices there are none, as
     /// each triangle brings its vertices.
-    pub duplicate_vertices: Findings,
+    pub duplicate_vertices: Defects,
     /// Triangles with the corners of an earlier one, in the same direction; they were dropped.
-    pub duplicate_triangles: Findings,
+    pub duplicate_triangles: Defects,
     /// Edges of one triangle: the surface is open there. They are named by the face.
-    pub boundary_edges: Findings,
+    pub boundary_edges: Defects,
     /// Edges of more than two triangles, named by the first face.
-    pub non_manifold_edges: Findings,
+    pub non_manifold_edges: Defects,
     /// Edges whose two triangles disagree about the front, named by the first face.
-    pub inconsistent_edges: Findings,
+    pub inconsistent_edges: Defects,
     /// How many pieces do not hang together by edges.
     pub components: usize,
     /// The volume enclosed by a surface that is closed and consistent; negative if it is inside out.
     pub volume: Option<f64>,
 }
 
-/// Things of one kind.
+/// Defects of one kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Findings {
+pub struct Defects {
     /// How many there are.
     pub count: usize,
-    /// The first, [`MAX_FINDINGS`] at most.
-    pub first: Vec<Finding>,
+    /// The first, [`MAX_DEFECTS`] at most.
+    pub first: Vec<Defect>,
 }
 
-/// Something in a file.
+/// A vertex or face of a file with a defect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Finding {
+pub struct Defect {
     /// The index of the vertex or face, in the order of the file.
     pub index: usize,
     /// The line of the face, counted from 1; `None` in binary formats, and for vertices.
     pub line: Option<usize>,
 }
 
-impl Findings {
+impl Defects {
     pub(super) fn add(&mut self, index: usize, line: Option<usize>) {
         self.count += 1;
-        if self.first.len() < MAX_FINDINGS {
-            self.first.push(Finding { index, line });
+        if self.first.len() < MAX_DEFECTS {
+            self.first.push(Defect { index, line });
         }
     }
 }
@@ -84,11 +84,19 @@ impl MeshReport {
     /// All faces of the file were taken over as they are, and the edges are those of a surface, open or closed.
     #[must_use]
     pub fn is_clean(&self) -> bool {
-        self.problems().iter().all(|(_, findings)| findings.count == 0)
+        self.defects().all(|(_, defects)| defects.count == 0)
     }
 
-    /// What is wrong, by name. Boundaries are not: an open surface is one.
-    fn problems(&self) -> [(&'static str, &Findings); 7] {
+    /// A line for each kind of defect, such as `2 degenerate faces, dropped: 1 (line 9), 4 (line 12)`. An open boundary is
+    /// none.
+    #[must_use]
+    pub fn problems(&self) -> Vec<String> {
+        let found = self.defects().filter(|(_, defects)| defects.count > 0);
+        found.map(|(what, defects)| format!("{} {what}: {defects}", defects.count)).collect()
+    }
+
+    /// The defects of each kind, by name.
+    fn defects(&self) -> impl Iterator<Item = (&'static str, &Defects)> {
         [
             ("vertices that are not finite", &self.non_finite_vertices),
             ("faces with vertices that do not exist, dropped", &self.out_of_range),
@@ -98,6 +106,7 @@ impl MeshReport {
             ("edges of more than two triangles", &self.non_manifold_edges),
             ("edges whose triangles disagree about the front", &self.inconsistent_edges),
         ]
+        .into_iter()
     }
 }
 
@@ -114,19 +123,14 @@ impl fmt::Display for MeshReport {
             (None, true) => write!(f, "closed, without a volume")?,
             (None, false) => write!(f, "open, {} boundary edges", self.boundary_edges.count)?,
         }
-        for (what, findings) in self.problems() {
-            if findings.count > 0 {
-                write!(f, "\n{} {what}: {findings}", findings.count)?;
-            }
-        }
-        Ok(())
+        self.problems().iter().try_for_each(|problem| write!(f, "\n{problem}"))
     }
 }
 
-impl fmt::Display for Findings {
+impl fmt::Display for Defects {
     /// Such as `4 (line 12), 9 (line 31), ...`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (position, Finding { index, line }) in self.first.iter().enumerate() {
+        for (position, Defect { index, line }) in self.first.iter().enumerate() {
             let separator = if position == 0 { "" } else { ", " };
             write!(f, "{separator}{index}")?;
             if let Some(line) = line {

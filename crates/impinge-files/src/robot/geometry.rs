@@ -12,7 +12,10 @@ use crate::format::{
 };
 use crate::scene::about;
 
-/// The collision elements of a link, as a compound if there are several; `None` if there is none.
+/// The collision elements of a link; `None` if there is none.
+///
+/// The shape of a single element lies around its own origin, and the element's origin becomes the frame, so that a
+/// box remains a cuboid. Several elements become a compound in the frame of the link.
 pub(super) fn solid(
     link: &Link,
     kind: MeshKind,
@@ -31,6 +34,7 @@ pub(super) fn solid(
     Ok(Some(LinkSolid { shape, frame: Isometry3::identity() }))
 }
 
+/// A collision element as a shape. Sizes of URDF are whole lengths, those of the library half of them.
 fn element_solid(
     element: &Collision,
     kind: MeshKind,
@@ -69,7 +73,7 @@ fn element_solid(
     })
 }
 
-/// A size that the library takes.
+/// A size that the library takes: checked here, where the line of the link is known.
 fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     if !value.is_finite() {
         return Err(ShapeError::NotFinite { what, value }.into());
@@ -80,6 +84,7 @@ fn checked(what: &'static str, value: f64) -> Result<f64, Problem> {
     Ok(value)
 }
 
+/// Half a size, if the library takes it.
 fn half(what: &'static str, size: f64) -> Result<f64, Problem> {
     checked(what, 0.5 * size)
 }
@@ -95,6 +100,7 @@ pub(super) fn isometry(origin: &Pose) -> Result<Isometry3<f64>, Problem> {
     Ok(Isometry3::from_parts(Vector3::from(origin.xyz.0).into(), rotation))
 }
 
+/// The frame as a scene file has it. The quaternion is unit up to rounding, and is normalized again when it is read.
 fn pose_file(frame: &Isometry3<f64>) -> PoseFile {
     let turn = frame.rotation.coords;
     PoseFile {

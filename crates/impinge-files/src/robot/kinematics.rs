@@ -1,6 +1,7 @@
 //! The tree of joints: from joint values to the frames of links.
 
-use std::collections::BTreeMap;
+use core::fmt;
+use std::collections::{BTreeMap, BTreeSet};
 
 use impinge::math::na::{Isometry3, Translation3, Vector3};
 use urdf_rs::{Joint, JointType, Mimic};
@@ -16,6 +17,7 @@ use crate::{FileError, Problem};
 pub(super) struct Tree {
     /// The names of the links, in the order of the file.
     pub(super) links: Vec<String>,
+    /// The index of the link of a name.
     index: BTreeMap<String, usize>,
     joints: BTreeMap<String, TreeJoint>,
     /// By link: the joint above it, none for the root.
@@ -24,12 +26,32 @@ pub(super) struct Tree {
     order: Vec<usize>,
 }
 
+/// A joint of a robot at a value outside the limits of its URDF file.
+///
+/// The link below it is placed by the value all the same: limits are about what the drives of a robot can do, and a
+/// collision checker is asked about any pose.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointBeyondLimits {
+    /// What the names of the robot's objects begin with.
+    pub robot: String,
+    /// The joint.
+    pub joint: String,
+    /// Its value in the scene: radians, or a length. That of a joint that mimics another follows from it.
+    pub value: f64,
+    /// The least and the largest value of the URDF file.
+    pub limits: [f64; 2],
+}
+
+/// A joint above a link.
 #[derive(Debug)]
 struct TreeJoint {
+    /// The link above it.
     parent: usize,
     /// The frame of the joint in that of its parent.
     origin: Isometry3<f64>,
     motion: JointMotion,
+    /// The least and the largest value; `None` if the file gives none.
+    limits: Option<[f64; 2]>,
     mimic: Option<Mimic>,
 }
 
@@ -56,6 +78,7 @@ impl Tree {
                 found.ok_or_else(|| wrong(Problem::UnknownLink(name.clone())))
             };
             let (parent, child) = (link(&joint.parent.link)?, link(&joint.child.link)?);
+            // With one joint above each link but the root, links form a tree unless a cycle hangs apart: `sorted` finds it.
             if above[child].replace(joint.name.clone()).is_some() {
                 return Err(wrong(Problem::NotATree { link: joint.child.link.clone() }));
             }
@@ -76,6 +99,7 @@ impl Tree {
     fn sorted(&self) -> Result<Vec<usize>, String> {
         let mut below = vec![Vec::new(); self.links.len()];
         let mut open = Vec::new();
+        // The only open link is the root at first.
         for (link, above) in self.above.iter().enumerate() {
             match above {
                 Some(joint) => below[self.joints[joint].parent].push(link),
@@ -91,7 +115,9 @@ impl Tree {
             order.push(link);
             open.append(&mut below[link]);
         }
-        let is_missing = |link: &usize| !order.contains(link);
+        let reached: BTreeSet<&usize> = order.iter().collect();
+        // Links of a cycle are below no root.
+        let is_missing = |link: &usize| !reached.contains(link);
         match (0..self.links.len()).find(is_missing) {
             Some(link) => Err(self.links[link].clone()),
             None => Ok(order),
@@ -104,6 +130,7 @@ impl Tree {
             let wrong = |problem| xml.error("joint", name, problem);
             let mut current = name;
             let mut steps = 0;
+            // Ends: more steps than joints pass one twice.
             while let Some(mimic) = &self.joints[current].mimic {
                 current = &mimic.joint;
                 if !self.joints.contains_key(current) {
@@ -118,7 +145,8 @@ impl Tree {
         Ok(())
     }
 
-    /// The frames of the links for joint values, those of others being 0, and a frame of the root.
+    /// The frames of the links for joint values, those of others being 0, and a frame of the root. Only joints that move
+    /// and follow no other have a value.
     pub(super) fn frames(
         &self,
         values: &BTreeMap<String, f64>,
@@ -134,6 +162,7 @@ impl Tree {
             }
         }
         let mut frames = vec![*base; self.links.len()];
+        // A link comes after its parent, so that the frame of the parent is known.
         for &link in &self.order {
             if let Some(name) = &self.above[link] {
                 let joint = &self.joints[name];
@@ -146,6 +175,7 @@ impl Tree {
 
     /// The value of a joint, which may follow another.
     fn value(&self, name: &str, values: &BTreeMap<String, f64>) -> f64 {
+        // value = factor * value of `name` + offset, along the chain of mimics.
         let (mut factor, mut offset, mut name) = (1.0, 0.0, name);
         // Ends: no joint mimics itself.
         while let Some(mimic) = &self.joints[name].mimic {
@@ -154,6 +184,28 @@ impl Tree {
             name = &mimic.joint;
         }
         factor * values.get(name).copied().unwrap_or(0.0) + offset
+    }
+
+    /// The joints that move and whose values are outside of their limits, in order of their names.
+    pub(super) fn beyond_limits(
+        &self,
+        robot: &str,
+        values: &BTreeMap<String, f64>,
+    ) -> Vec<JointBeyondLimits> {
+        let joints = self.joints.iter().filter_map(|(name, joint)| {
+            let (limits, value) = (joint.limits?, self.value(name, values));
+            let is_within = (limits[0]..=limits[1]).contains(&value);
+            (!is_within).then(|| {
+                let (robot, joint) = (robot.to_owned(), name.clone());
+                JointBeyondLimits { robot, joint, value, limits }
+            })
+        });
+        joints.collect()
+    }
+
+    /// The file has a link of this name.
+    pub(super) fn has_link(&self, name: &str) -> bool {
+        self.index.contains_key(name)
     }
 
     /// The links above a link, the nearest first.
@@ -167,6 +219,7 @@ impl Tree {
     }
 }
 
+/// A joint below a link. Axes of joints that do not move are not looked at: many files have zeros there.
 fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
     let axis = || unit(Vector3::from(joint.axis.xyz.0));
     let motion = match joint.joint_type {
@@ -177,10 +230,29 @@ fn tree_joint(joint: &Joint, parent: usize) -> Result<TreeJoint, Problem> {
         }
     };
     let (origin, mimic) = (isometry(&joint.origin)?, joint.mimic.clone());
-    Ok(TreeJoint { parent, origin, motion, mimic })
+    Ok(TreeJoint { parent, origin, motion, limits: limits(joint), mimic })
+}
+
+/// The limits of joints that URDF has them for. A joint without a `limit` element, which many files lack, has 0 twice.
+fn limits(joint: &Joint) -> Option<[f64; 2]> {
+    let is_limited = matches!(joint.joint_type, JointType::Revolute | JointType::Prismatic);
+    let limits = [joint.limit.lower, joint.limit.upper];
+    (is_limited && limits != [0.0; 2]).then_some(limits)
+}
+
+impl fmt::Display for JointBeyondLimits {
+    /// Such as `the joint elbow of arm is at 3.5, outside its limits -2.5 to 2.5`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { robot, joint, value, limits: [lower, upper] } = self;
+        write!(
+            f,
+            "the joint {joint} of {robot} is at {value}, outside its limits {lower} to {upper}"
+        )
+    }
 }
 
 impl JointMotion {
+    /// The motion by a value, in the frame of the joint.
     fn at(self, value: f64) -> Isometry3<f64> {
         match self {
             Self::Turn(axis) => Isometry3::from_parts(Translation3::identity(), about(axis, value)),

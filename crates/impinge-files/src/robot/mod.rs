@@ -10,6 +10,8 @@ use std::path::Path;
 
 use impinge::math::na::Isometry3;
 
+pub use kinematics::JointBeyondLimits;
+
 use self::kinematics::Tree;
 use self::packages::Packages;
 use self::xml::XmlFile;
@@ -49,7 +51,7 @@ impl Robot {
     pub(crate) fn read(file: &RobotFile, folder: &Path) -> Result<Self, FileError> {
         let path = folder.join(&file.urdf);
         let xml = XmlFile::read(&path)?;
-        let robot = urdf_rs::read_from_string(&xml.without_looks()?)
+        let robot = urdf_rs::read_from_string(&xml.without_visuals()?)
             .map_err(|error| xml.whole(Problem::Syntax(error.to_string())))?;
         let tree = Tree::new(&robot, &xml)?;
         let packages = Packages::new(file, folder, &path);
@@ -71,6 +73,7 @@ impl Robot {
         file: &RobotFile,
         base: &Isometry3<f64>,
     ) -> Result<Vec<RobotLink>, Fault> {
+        // Links without collision elements move those below them, and are no objects themselves.
         let frames = self.tree.frames(&file.joints, base)?;
         let links = self.tree.links.iter().zip(&self.solids).zip(frames);
         let links = links.filter_map(|((name, solid), frame)| {
@@ -81,25 +84,26 @@ impl Robot {
         Ok(links.collect())
     }
 
-    /// The pairs of links, by their index among those with collision elements, that do not meet: those that a joint
+    /// The joints at values outside their limits; `name` is what the names of the robot's objects begin with.
+    pub(crate) fn beyond_limits(&self, file: &RobotFile, name: &str) -> Vec<JointBeyondLimits> {
+        self.tree.beyond_limits(name, &file.joints)
+    }
+
+    /// The pairs of links, by their index among those with collision elements, that have no contacts: those that a joint
     /// connects, directly or by way of links without collision elements, and those that the SRDF file disables.
+    /// A pair may occur several times.
     pub(crate) fn disabled_pairs(&self, links: &[RobotLink]) -> Vec<[usize; 2]> {
         let names = links.iter().map(|link| link.name.as_str()).zip(0..);
         let index: BTreeMap<&str, usize> = names.collect();
-        let mut pairs = Vec::new();
-        for link in links {
-            let above = self.tree.ancestors(&link.name).find(|name| index.contains_key(name));
-            pairs.extend(above.map(|above| [index[above], index[link.name.as_str()]]));
-        }
-        let disabled = self.disabled.iter();
-        pairs.extend(disabled.filter_map(|[link1, link2]| {
+        // Above the nearest link with collision elements nothing is joined directly.
+        let joined = index.iter().filter_map(|(name, link)| {
+            let above = self.tree.ancestors(name).find_map(|above| index.get(above))?;
+            Some([*above, *link])
+        });
+        let disabled = self.disabled.iter().filter_map(|[link1, link2]| {
             Some([*index.get(link1.as_str())?, *index.get(link2.as_str())?])
-        }));
-        pairs.iter_mut().for_each(|pair| pair.sort_unstable());
-        pairs.sort_unstable();
-        pairs.dedup();
-        pairs.retain(|[link1, link2]| link1 != link2);
-        pairs
+        });
+        joined.chain(disabled).filter(|[link1, link2]| link1 != link2).collect()
     }
 }
 
@@ -107,7 +111,7 @@ impl Robot {
 fn disabled_pairs(xml: &XmlFile, tree: &Tree) -> Result<BTreeSet<[String; 2]>, FileError> {
     let mut pairs = BTreeSet::new();
     for (line, names) in xml.attributes("disable_collisions", ["link1", "link2"])? {
-        if let Some(unknown) = names.iter().find(|name| !tree.links.contains(name)) {
+        if let Some(unknown) = names.iter().find(|name| !tree.has_link(name)) {
             let problem = Problem::UnknownLink(unknown.clone());
             return Err(FileError { line: Some(line), ..xml.whole(problem) });
         }

@@ -32,6 +32,7 @@ impl Packages {
             return Ok(self.own.join(name));
         };
         let (package, rest) = path.split_once('/').unwrap_or((path, ""));
+        // A folder is the package if it has its name, and holds it as a folder within otherwise.
         let found = self.folders.iter().find_map(|folder| {
             let is_package = folder.file_name().is_some_and(|name| name == package);
             let inner = folder.join(package);

@@ -1,11 +1,10 @@
 //! XML files with the lines of their elements.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
-use crate::{FileError, Problem};
+use crate::{FileError, Problem, input};
 
 /// So deep may elements nest: parsers that call themselves are given no more.
 const MAX_DEPTH: usize = 32;
@@ -20,15 +19,12 @@ pub(super) struct XmlFile {
 impl XmlFile {
     /// Reads and checks a file.
     pub(super) fn read(path: &Path) -> Result<Self, FileError> {
-        let bytes = fs::read(path);
-        let text = bytes.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-        let file =
-            Self { path: path.to_owned(), text: text.as_deref().unwrap_or_default().to_owned() };
-        text.map_err(|error| file.whole(Problem::io(&error)))?;
+        let text = String::from_utf8_lossy(&input::read(path)?).into_owned();
+        let file = Self { path: path.to_owned(), text };
         let document = file.parse()?;
-        let too_deep = document
-            .descendants()
-            .find(|node| node.ancestors().take(MAX_DEPTH + 1).count() > MAX_DEPTH);
+        // No more ancestors than the limit are counted, so that the check is linear in the text.
+        let depth = |node: &Node<'_, '_>| node.ancestors().take(MAX_DEPTH + 1).count();
+        let too_deep = document.descendants().find(|node| depth(node) > MAX_DEPTH);
         if let Some(node) = too_deep {
             let (what, given, limit) = ("nested elements", MAX_DEPTH + 1, MAX_DEPTH);
             return Err(file.at(&document, node, Problem::TooMany { what, given, limit }));
@@ -36,23 +32,24 @@ impl XmlFile {
         Ok(file)
     }
 
-    /// The text with blanks for what only says how a robot looks, so that a mistake there refuses none. Lines keep
-    /// their numbers.
-    pub(super) fn without_looks(&self) -> Result<String, FileError> {
+    /// The text with blanks in the place of `visual` and `material` elements, which collisions do not need: a mistake
+    /// in them is no error. Lines keep their numbers.
+    pub(super) fn without_visuals(&self) -> Result<String, FileError> {
         let document = self.parse()?;
-        let is_look =
+        let is_visual =
             |node: &Node<'_, '_>| ["material", "visual"].iter().any(|tag| node.has_tag_name(*tag));
         let mut bytes = self.text.clone().into_bytes();
-        for node in document.descendants().filter(is_look) {
+        for node in document.descendants().filter(is_visual) {
             bytes[node.range()]
                 .iter_mut()
                 .filter(|byte| **byte != b'\n')
                 .for_each(|byte| *byte = b' ');
         }
-        // Whole elements were replaced: what is left is UTF-8 as before.
+        // Whole elements were replaced: the rest is UTF-8 as before.
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
+    /// The tree of the text. The error has the place where the parser stops.
     fn parse(&self) -> Result<Document<'_>, FileError> {
         Document::parse(&self.text).map_err(|error| {
             let place = error.pos();
@@ -64,8 +61,7 @@ impl XmlFile {
 
     /// An error of the whole file.
     pub(super) fn whole(&self, problem: Problem) -> FileError {
-        let (file, path, problem) = (self.path.clone(), String::new(), Box::new(problem));
-        FileError { file, line: None, column: None, path, value: None, problem }
+        FileError::whole(&self.path, problem)
     }
 
     /// An error of the element with this tag and name.
@@ -81,6 +77,7 @@ impl XmlFile {
         FileError { path, ..error }
     }
 
+    /// An error at the begin tag of an element.
     fn at(&self, document: &Document<'_>, node: Node<'_, '_>, problem: Problem) -> FileError {
         let place = document.text_pos_at(node.range().start);
         let (line, column) = (Some(place.row as usize), Some(place.col as usize));

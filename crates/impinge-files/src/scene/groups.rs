@@ -1,4 +1,4 @@
-//! Groups of objects, and groups that keep the disabled pairs of links apart.
+//! Groups of objects, and groups for the disabled pairs of links.
 
 use std::collections::BTreeSet;
 
@@ -11,23 +11,29 @@ use crate::format::{GroupsFile, SceneFile};
 /// There are so many groups.
 const GROUPS: usize = 30;
 
-/// Which groups mean what in a scene.
+/// The groups of a scene: those that the document names, and those that disable pairs of links.
 ///
-/// Two links that must not meet are told by groups, so that a recording needs no filter: of each such pair one link is
-/// the only member of a group that the other refuses. These groups are among those that the document does not name,
-/// and objects that are members of all groups are not of these.
+/// Pairs of links are disabled by groups, so that a recording needs no pair filter: one link of each pair is the only
+/// member of a group that the other one blacklists. These groups are among those that the document does not name.
+/// Objects that are members of all groups are not members of these.
 #[derive(Debug)]
 pub(super) struct GroupPlan {
     /// The groups that no document names, the highest first.
     free: Vec<usize>,
+    /// Those that disable pairs.
     taken: BTreeSet<usize>,
 }
 
-/// Two objects, by index, that must not meet.
+/// Two objects, the one with the lower index first, that have no contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct DisabledPair(pub(super) [usize; 2]);
+pub(super) struct DisabledPair([usize; 2]);
 
 impl DisabledPair {
+    /// The pair of two indices in any order.
+    pub(super) fn new([a, b]: [usize; 2]) -> Self {
+        Self([a.min(b), a.max(b)])
+    }
+
     /// The other object of a pair with this one.
     fn partner(self, object: usize) -> Option<usize> {
         let [a, b] = self.0;
@@ -54,8 +60,8 @@ impl GroupPlan {
         Self { free, taken: BTreeSet::new() }
     }
 
-    /// Gives groups to objects until each pair is kept apart. The object with the most pairs left gets the next
-    /// group (a greedy vertex cover).
+    /// Gives groups to objects until each pair is disabled. The object with the most pairs left gets the next group, which
+    /// its partners refuse: a greedy vertex cover, since there are few groups.
     pub(super) fn separate(
         &mut self,
         objects: usize,
@@ -63,12 +69,13 @@ impl GroupPlan {
     ) -> Result<Vec<OwnGroups>, Problem> {
         let mut own = vec![OwnGroups::default(); objects];
         let mut left: Vec<DisabledPair> = pairs.iter().copied().collect();
+        // Ends: each round disables the pairs of an object that has some.
         while !left.is_empty() {
             let mut counts = vec![0_usize; objects];
             left.iter().flat_map(|pair| pair.0).for_each(|object| counts[object] += 1);
             let most = (0..objects).rev().max_by_key(|object| counts[*object]).unwrap_or_default();
             let free = self.taken.len() + self.free.len();
-            let what = "groups to keep links apart";
+            let what = "groups for disabled pairs of links";
             let none = Problem::TooMany { what, given: free + 1, limit: free };
             let group = self.free.pop().ok_or(none)?;
             self.taken.insert(group);

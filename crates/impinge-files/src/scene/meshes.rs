@@ -2,21 +2,21 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use impinge::math::Point;
-use impinge::shape::{Compound, ShapeHandle, TriMesh};
+use impinge::math::{Point, Pose, Vector};
+use impinge::shape::{Compound, MeshError, ShapeHandle, TriMesh};
 
 use super::SceneSpace;
-use super::pose::Placement;
 use crate::error::{Fault, Within};
-use crate::format::{MeshKind, MeshSource, ShapeFile, ShapeRef};
+use crate::format::{MeshKind, MeshSource, ScaleFile, ShapeFile, ShapeRef};
 use crate::{Dimension, FileError, MeshFile, MeshPart, Problem};
 
-/// Files by path, each read once.
+/// Files by path, each read once. Clones share them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct MeshTable {
     folder: PathBuf,
-    files: BTreeMap<PathBuf, MeshFile>,
+    files: BTreeMap<PathBuf, Arc<MeshFile>>,
 }
 
 impl MeshTable {
@@ -30,19 +30,26 @@ impl MeshTable {
         let path = self.folder.join(path);
         if !self.files.contains_key(&path) {
             let file = MeshFile::read(&path)?;
-            self.files.insert(path.clone(), file);
+            self.files.insert(path.clone(), Arc::new(file));
         }
         Ok(&self.files[&path])
     }
 
-    /// Reads all files that a shape and those within it name.
-    pub(crate) fn read_all(&mut self, shape: &ShapeFile) -> Result<(), FileError> {
+    /// Reads all files that a shape and those written in it name. A shape that it has by name is read with `shapes`.
+    pub(crate) fn read_all(&mut self, shape: &ShapeRef) -> Result<(), FileError> {
+        match shape {
+            ShapeRef::Name(_) => Ok(()),
+            ShapeRef::Inline(shape) => self.read_files(shape),
+        }
+    }
+
+    /// Reads all files that a shape and those written in it name.
+    pub(crate) fn read_files(&mut self, shape: &ShapeFile) -> Result<(), FileError> {
         match shape {
             ShapeFile::MeshFile(source) => self.read(&source.path).map(|_| ()),
-            ShapeFile::Rounded { shape: ShapeRef::Inline(shape), .. } => self.read_all(shape),
+            ShapeFile::Rounded { shape, .. } => self.read_all(shape),
             ShapeFile::Compound { children } => {
-                let shapes = children.iter().filter_map(|child| child.shape.inline());
-                shapes.into_iter().try_for_each(|shape| self.read_all(shape))
+                children.iter().try_for_each(|child| self.read_all(&child.shape))
             }
             _ => Ok(()),
         }
@@ -50,7 +57,7 @@ impl MeshTable {
 
     /// The files that were read, by path.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&Path, &MeshFile)> {
-        self.files.iter().map(|(path, file)| (path.as_path(), file))
+        self.files.iter().map(|(path, file)| (path.as_path(), &**file))
     }
 
     /// The shape of a file that was read.
@@ -58,12 +65,12 @@ impl MeshTable {
         &self,
         source: &MeshSource,
     ) -> Result<ShapeHandle<N, D>, Fault> {
-        let (what, dimension) = ("a mesh file", Dimension::Two);
+        let dimension = Dimension::Two;
         if D == dimension.number() {
-            return Err(Problem::WrongDimension { what, dimension }.into());
+            return Err(Problem::WrongDimension { what: "a mesh file", dimension }.into());
         }
         let path = self.folder.join(&source.path);
-        let file = self.files.get(&path).ok_or(Problem::EmptyMesh).within("path")?;
+        let file = self.files.get(&path).expect("the files of all shapes are read before");
         let parts: Vec<&MeshPart> = match &source.part {
             None => file.parts().iter().collect(),
             Some(name) => {
@@ -71,20 +78,13 @@ impl MeshTable {
                 vec![part.within("part")?]
             }
         };
-        let scale = scale(source.scale.factors()).within("scale")?;
-        let place = move |vertex: &[f64; 3]| {
-            Point::from(impinge::math::Vector::from_fn(|axis, _| {
-                N::lit(vertex[axis] * scale[axis])
-            }))
-        };
-        let is_mirrored = scale.iter().product::<f64>() < 0.0;
-        let triangles = Triangles { parts, place, is_mirrored };
+        let triangles = Triangles { parts, scale: scale(source.scale).within("scale")? };
         match source.kind {
-            MeshKind::Surface => triangles.mesh(),
-            MeshKind::OneSided => Ok(one_sided(&triangles.mesh()?)),
+            MeshKind::Surface => Ok(ShapeHandle::new(triangles.mesh(false)?)),
+            MeshKind::OneSided => Ok(ShapeHandle::new(N::one_sided_mesh(triangles.mesh(false)?))),
             MeshKind::Solid => {
                 triangles.check_solid().within("as")?;
-                Ok(one_sided(&triangles.mesh()?))
+                Ok(ShapeHandle::new(N::one_sided_mesh(triangles.mesh(true)?)))
             }
             MeshKind::ConvexHull => triangles.hull(&triangles.parts),
             MeshKind::ConvexParts => triangles.hulls(),
@@ -92,18 +92,9 @@ impl MeshTable {
     }
 }
 
-impl ShapeRef {
-    /// The shape that is written here.
-    pub(crate) fn inline(&self) -> Option<&ShapeFile> {
-        match self {
-            Self::Name(_) => None,
-            Self::Inline(shape) => Some(shape),
-        }
-    }
-}
-
 /// Factors that are finite and not zero.
-fn scale(factors: [f64; 3]) -> Result<[f64; 3], Problem> {
+fn scale(scale: ScaleFile) -> Result<[f64; 3], Problem> {
+    let factors = scale.factors();
     match factors.into_iter().find(|factor| *factor == 0.0 || !factor.is_finite()) {
         Some(value) => {
             Err(Problem::BadValue { what: "a scale must be finite and not zero", value })
@@ -112,63 +103,60 @@ fn scale(factors: [f64; 3]) -> Result<[f64; 3], Problem> {
     }
 }
 
-fn one_sided<N: SceneSpace<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> ShapeHandle<N, D> {
-    let mesh = shape.as_shape::<TriMesh<N, D>>();
-    mesh.map_or_else(|| shape.clone(), |mesh| ShapeHandle::new(N::one_sided_mesh(mesh.clone())))
-}
-
-/// The triangles of some parts, placed in the frame of the shape.
-struct Triangles<'a, F> {
+/// The triangles of some parts of a file, and the factors that take them to the frame of the shape.
+struct Triangles<'a> {
     parts: Vec<&'a MeshPart>,
-    place: F,
-    /// The scale turns triangles over.
-    is_mirrored: bool,
+    scale: [f64; 3],
 }
 
-impl<F> Triangles<'_, F> {
-    /// All parts as one mesh. Parts that are solid and inside out are turned if it shall be solid.
-    fn mesh<N: SceneSpace<D>, const D: usize>(&self) -> Result<ShapeHandle<N, D>, Fault>
-    where
-        F: Fn(&[f64; 3]) -> Point<N, D>,
-    {
+impl Triangles<'_> {
+    /// A vertex in the frame of the shape.
+    fn place<N: SceneSpace<D>, const D: usize>(&self, vertex: &[f64; 3]) -> Point<N, D> {
+        Vector::<N, D>::from_fn(|axis, _| N::lit(vertex[axis] * self.scale[axis])).into()
+    }
+
+    /// All parts as one mesh.
+    ///
+    /// The triangles keep their fronts, for which a scale that mirrors them has to turn them over. With
+    /// `turns_outwards` the parts that are solid and inside out are turned over too.
+    fn mesh<N: SceneSpace<D>, const D: usize>(
+        &self,
+        turns_outwards: bool,
+    ) -> Result<TriMesh<N, D>, MeshError> {
+        let is_mirrored = self.scale.iter().product::<f64>() < 0.0;
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         for part in &self.parts {
             let first = u32::try_from(vertices.len()).unwrap_or(u32::MAX);
-            vertices.extend(part.vertices.iter().map(&self.place));
+            vertices.extend(part.vertices.iter().map(|vertex| self.place(vertex)));
             let is_inside_out = part.report.volume.is_some_and(|volume| volume < 0.0);
-            let is_turned = is_inside_out != self.is_mirrored;
+            let is_turned = (turns_outwards && is_inside_out) != is_mirrored;
             triangles.extend(part.triangles.iter().map(|corners| {
                 let [a, b, c] = corners.map(|corner| first.saturating_add(corner));
                 if is_turned { [a, c, b] } else { [a, b, c] }
             }));
         }
-        Ok(ShapeHandle::new(TriMesh::try_new(vertices, triangles)?))
+        TriMesh::try_new(vertices, triangles)
     }
 
+    /// The convex hull of some parts.
     fn hull<N: SceneSpace<D>, const D: usize>(
         &self,
         parts: &[&MeshPart],
-    ) -> Result<ShapeHandle<N, D>, Fault>
-    where
-        F: Fn(&[f64; 3]) -> Point<N, D>,
-    {
+    ) -> Result<ShapeHandle<N, D>, Fault> {
         let vertices = parts.iter().flat_map(|part| &part.vertices);
-        let points: Vec<Point<N, D>> = vertices.map(&self.place).collect();
+        let points: Vec<Point<N, D>> = vertices.map(|vertex| self.place(vertex)).collect();
         Ok(N::convex_hull(&points)?)
     }
 
-    /// The hull of each part that has triangles.
-    fn hulls<N: SceneSpace<D>, const D: usize>(&self) -> Result<ShapeHandle<N, D>, Fault>
-    where
-        F: Fn(&[f64; 3]) -> Point<N, D>,
-    {
-        let at = Placement::identity(Dimension::Three).isometry::<N, D>();
-        let at = at.ok_or(Problem::OtherWorld { scene: Dimension::Three, asked: D })?;
+    /// The hull of each part that has triangles, as a compound.
+    fn hulls<N: SceneSpace<D>, const D: usize>(&self) -> Result<ShapeHandle<N, D>, Fault> {
+        let at = N::isometry(&Pose::identity());
         let parts = self.parts.iter().filter(|part| !part.triangles.is_empty());
         let hulls = parts.map(|part| Ok((at, self.hull(&[part])?)));
         Ok(ShapeHandle::new(Compound::try_new(hulls.collect::<Result<_, Fault>>()?)?))
     }
 
+    /// Each part is the boundary of a volume.
     fn check_solid(&self) -> Result<(), Problem> {
         let reports = self.parts.iter().map(|part| &part.report);
         match reports.into_iter().find(|report| !report.is_solid()) {

@@ -10,7 +10,6 @@ mod shapes;
 mod space;
 mod world;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use impinge::world::CollisionGroups;
@@ -26,7 +25,8 @@ use self::pose::Motion;
 use crate::format::{QueryTypeFile, ShapeRef};
 use crate::source::Source;
 use crate::{
-    Dimension, FileError, MeshFile, MeshesFile, Problem, RobotFile, ScalarFile, SceneFile, UpAxis,
+    Dimension, FileError, JointBeyondLimits, MeshFile, MeshesFile, Problem, RobotFile, ScalarFile,
+    SceneFile, UpAxis, input,
 };
 
 /// So many objects may a scene have.
@@ -60,6 +60,7 @@ pub struct Scene {
     forms: Vec<Form>,
     objects: Vec<SceneObject>,
     meshes: MeshTable,
+    joints_beyond_limits: Vec<JointBeyondLimits>,
 }
 
 /// A shape, and the path of what has it.
@@ -94,31 +95,18 @@ struct SceneObject {
 /// # Errors
 /// As [`Scene::read`], and for another ending of the name.
 pub fn load(path: &Path) -> Result<Scene, FileError> {
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    let extension = extension.unwrap_or_default().to_ascii_lowercase();
+    let extension = input::extension(path);
     let mut file = SceneFile::new(Dimension::Three);
     match extension.as_str() {
         "json" => return Scene::read(path),
-        "obj" | "stl" | "ply" | "gltf" | "glb" => file.meshes.push(MeshesFile::new(path)),
         "urdf" => file.robots.push(RobotFile::new(path)),
-        _ => {
-            let (file, problem) = (path.to_owned(), Box::new(Problem::UnknownFormat { extension }));
-            let path = String::new();
-            return Err(FileError { file, line: None, column: None, path, value: None, problem });
-        }
+        mesh if MeshFile::has_format(mesh) => file.meshes.push(MeshesFile::new(path)),
+        _ => return Err(FileError::whole(path, Problem::UnknownFormat { extension })),
     }
     Scene::resolve(Source::without_text(path.to_owned()), file, Path::new(""))
 }
 
 impl SceneFile {
-    /// Reads a scene file: [`Scene::read`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn read(path: &Path) -> Result<Scene, FileError> {
-        Scene::read(path)
-    }
-
     /// The scene, with the files that it names; their paths are relative to the folder.
     ///
     /// # Errors
@@ -135,11 +123,7 @@ impl Scene {
     /// With the line, the column and the path in the document: if a file cannot be read or is not of its format,
     /// has unknown members, or gives two objects the same name.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        let text = fs::read(path).map_err(|error| {
-            let (file, problem) = (path.to_owned(), Box::new(Problem::io(&error)));
-            FileError { file, line: None, column: None, path: String::new(), value: None, problem }
-        })?;
-        Self::from_json(path, &String::from_utf8_lossy(&text))
+        Self::from_json(path, &String::from_utf8_lossy(&input::read(path)?))
     }
 
     /// The scene of a document. The path names it in errors, and its folder holds the files that it names.
@@ -185,6 +169,12 @@ impl Scene {
     /// The mesh files that were read, by path, with the reports of their parts.
     pub fn mesh_files(&self) -> impl Iterator<Item = (&Path, &MeshFile)> {
         self.meshes.iter()
+    }
+
+    /// The joints of robots whose values are outside the limits of their URDF files. The scene is valid all the same.
+    #[must_use]
+    pub fn joints_beyond_limits(&self) -> &[JointBeyondLimits] {
+        &self.joints_beyond_limits
     }
 
     /// An object moves.

@@ -2,10 +2,11 @@
 
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::shape::ShapeHandle;
-use impinge::world::{CollisionGroups, CollisionWorld, WorldError};
+use impinge::world::{CollisionWorld, WorldError};
+use impinge_record::LibraryError;
 
 use super::shapes::Builder;
-use super::{Scene, SceneObject, SceneSpace};
+use super::{MeshTable, Scene, SceneObject, SceneSpace};
 use crate::error::{Fault, Within};
 use crate::format::{QueryTypeFile, ShapeFile, ShapeRef};
 use crate::{FileError, Problem};
@@ -15,7 +16,6 @@ pub(super) struct PlacedObject<'a, N: SceneSpace<D>, const D: usize> {
     pub(super) object: &'a SceneObject,
     pub(super) position: N::Isometry,
     pub(super) shape: ShapeHandle<N, D>,
-    pub(super) groups: CollisionGroups,
     pub(super) query: GeometricQueryType<N>,
 }
 
@@ -34,8 +34,8 @@ impl Scene {
         let world = CollisionWorld::try_new(N::lit(self.file.margin)).within("margin");
         let mut world = world.map_err(|fault| self.source.error(fault))?;
         for placed in self.placed::<N, D>()? {
-            let PlacedObject { object, position, shape, groups, query } = placed;
-            let added = world.try_add(position, shape, groups, query, object.name.clone());
+            let PlacedObject { object, position, shape, query } = placed;
+            let added = world.try_add(position, shape, object.groups, query, object.name.clone());
             added.map_err(|error| self.refused(object, error.into()))?;
         }
         Ok(world)
@@ -55,7 +55,8 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// If there is no such shape, the JSON is of none, or the library refuses its numbers.
+    /// If there is no such shape, the JSON is of none, the library refuses its numbers, or a mesh file that the JSON names
+    /// cannot be read.
     pub fn shape<N: SceneSpace<D>, const D: usize>(
         &self,
         shape: &str,
@@ -67,13 +68,16 @@ impl Scene {
             true => {
                 let parsed = serde_json::from_str::<ShapeFile>(shape);
                 let wrong =
-                    |error: serde_json::Error| self.plain(Problem::Syntax(error.to_string()));
+                    |error: serde_json::Error| self.whole(Problem::Syntax(error.to_string()));
                 ShapeRef::Inline(Box::new(parsed.map_err(wrong)?))
             }
         };
-        self.builder().make(&file).map_err(|fault| match fault.is_absolute {
+        // The table shares the files of the scene, and reads those that only this shape names.
+        let mut meshes = self.meshes.clone();
+        meshes.read_all(&file)?;
+        self.builder(&meshes).make(&file).map_err(|fault| match fault.is_absolute {
             true => self.source.error(fault),
-            false => FileError { path: fault.path, ..self.plain(fault.problem) },
+            false => FileError { path: fault.path, ..self.whole(fault.problem) },
         })
     }
 
@@ -91,7 +95,7 @@ impl Scene {
 
     /// The shape of each form; those with names are made even if nothing has them, and refused with their own path.
     fn shapes<N: SceneSpace<D>, const D: usize>(&self) -> Result<Vec<ShapeHandle<N, D>>, Fault> {
-        let mut builder = self.builder();
+        let mut builder = self.builder(&self.meshes);
         for name in self.file.shapes.keys() {
             builder.make(&ShapeRef::Name(name.clone()))?;
         }
@@ -106,8 +110,12 @@ impl Scene {
         forms.collect()
     }
 
-    pub(super) fn builder<N: SceneSpace<D>, const D: usize>(&self) -> Builder<'_, N, D> {
-        Builder::new(self.file.dimension, &self.file.shapes, &self.meshes)
+    /// Makes the shapes of the document, with the mesh files of a table.
+    pub(super) fn builder<'a, N: SceneSpace<D>, const D: usize>(
+        &'a self,
+        meshes: &'a MeshTable,
+    ) -> Builder<'a, N, D> {
+        Builder::new(self.file.dimension, &self.file.shapes, meshes)
     }
 
     fn place<'a, N: SceneSpace<D>, const D: usize>(
@@ -115,28 +123,25 @@ impl Scene {
         object: &'a SceneObject,
         shape: ShapeHandle<N, D>,
     ) -> Result<PlacedObject<'a, N, D>, Fault> {
-        let other = Problem::OtherWorld { scene: self.file.dimension, asked: D };
-        let position = object.start.isometry::<N, D>().ok_or(other)?;
+        let position = object.start.isometry::<N, D>()?;
         let query = match object.query {
             QueryTypeFile::Contacts { linear, angular } => {
                 GeometricQueryType::Contacts(N::lit(linear), N::lit(angular))
             }
             QueryTypeFile::Proximity(margin) => GeometricQueryType::Proximity(N::lit(margin)),
         };
-        Ok(PlacedObject { object, position, shape, groups: object.groups, query })
+        Ok(PlacedObject { object, position, shape, query })
     }
 
     /// The world refuses an object.
     pub(super) fn refused(&self, object: &SceneObject, problem: Problem) -> FileError {
         let member = match &problem {
-            Problem::World(WorldError::Position { .. }) => "position",
-            Problem::World(WorldError::QueryType { .. }) => "query",
-            _ => "",
+            Problem::Library(LibraryError::World(WorldError::Position { .. })) => Some("position"),
+            Problem::Library(LibraryError::World(WorldError::QueryType { .. })) => Some("query"),
+            _ => None,
         };
-        let mut fault = Fault::from(problem);
-        if !member.is_empty() {
-            fault = fault.within(member);
-        }
+        let fault = Fault::from(problem);
+        let fault = member.into_iter().fold(fault, Fault::within);
         self.source.error(fault.within(&self.forms[object.form].path))
     }
 
@@ -145,13 +150,12 @@ impl Scene {
         if scene.number() == asked {
             Ok(())
         } else {
-            Err(self.plain(Problem::OtherWorld { scene, asked }))
+            Err(self.whole(Problem::OtherWorld { scene, asked }))
         }
     }
 
     /// An error of the whole scene.
-    fn plain(&self, problem: Problem) -> FileError {
-        let (file, path, problem) = (self.source.file.clone(), String::new(), Box::new(problem));
-        FileError { file, line: None, column: None, path, value: None, problem }
+    fn whole(&self, problem: Problem) -> FileError {
+        FileError::whole(&self.source.file, problem)
     }
 }

@@ -13,8 +13,8 @@ use crate::{Dimension, Problem};
 /// A position of either dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Placement {
-    Plane(Isometry2<f64>),
-    Space(Isometry3<f64>),
+    Two(Isometry2<f64>),
+    Three(Isometry3<f64>),
 }
 
 /// Constant velocities; angular ones in radians a second.
@@ -26,14 +26,6 @@ pub(crate) struct Motion {
 }
 
 impl Placement {
-    /// At the origin, not turned.
-    pub(crate) fn identity(dimension: Dimension) -> Self {
-        match dimension {
-            Dimension::Two => Self::Plane(Isometry2::identity()),
-            Dimension::Three => Self::Space(Isometry3::identity()),
-        }
-    }
-
     /// The position that a file gives.
     pub(crate) fn read(pose: &PoseFile, dimension: Dimension) -> Result<Self, Fault> {
         let translation = pose.translation.as_ref();
@@ -45,35 +37,34 @@ impl Placement {
             Dimension::Two => {
                 let turn = rotation.map_or(Ok(UnitComplex::identity()), turn2);
                 let to = Translation2::new(translation.x, translation.y);
-                Ok(Self::Plane(Isometry2::from_parts(to, turn.within("rotation")?)))
+                Ok(Self::Two(Isometry2::from_parts(to, turn.within("rotation")?)))
             }
             Dimension::Three => {
                 let turn = rotation.map_or(Ok(UnitQuaternion::identity()), turn3);
                 let to = Translation3::from(translation);
-                Ok(Self::Space(Isometry3::from_parts(to, turn.within("rotation")?)))
+                Ok(Self::Three(Isometry3::from_parts(to, turn.within("rotation")?)))
             }
         }
     }
 
-    /// The position in a world. Numbers beyond the range of `N` become infinite, which the world refuses.
-    pub(crate) fn isometry<N: Recordable<D>, const D: usize>(&self) -> Option<N::Isometry> {
-        let numbers = match self {
-            Self::Plane(at) => {
-                let (to, turn) = (at.translation.vector, at.rotation);
-                vec![to.x, to.y, turn.re, turn.im]
-            }
-            Self::Space(at) => {
-                [at.translation.vector.as_slice(), at.rotation.coords.as_slice()].concat()
-            }
+    /// The position in a world, which has the dimension of the scene. Numbers beyond the range of `N` become infinite,
+    /// which the world refuses.
+    pub(crate) fn isometry<N: Recordable<D>, const D: usize>(
+        &self,
+    ) -> Result<N::Isometry, Problem> {
+        let (scene, numbers) = match self {
+            Self::Two(at) => (Dimension::Two, <f64 as Recordable<2>>::isometry_numbers(at)),
+            Self::Three(at) => (Dimension::Three, <f64 as Recordable<3>>::isometry_numbers(at)),
         };
-        N::isometry_of(&numbers.into_iter().map(N::lit).collect::<Vec<_>>())
+        let numbers: Vec<N> = numbers.into_iter().map(N::lit).collect();
+        N::isometry_of(&numbers).ok_or(Problem::OtherWorld { scene, asked: D })
     }
 
     /// The same, moved in the frame of the world.
     pub(crate) fn translated(mut self, by: Vector3<f64>) -> Self {
         match &mut self {
-            Self::Plane(at) => at.translation.vector += by.xy(),
-            Self::Space(at) => at.translation.vector += by,
+            Self::Two(at) => at.translation.vector += by.xy(),
+            Self::Three(at) => at.translation.vector += by,
         }
         self
     }
@@ -83,8 +74,8 @@ impl Placement {
         let mut moved = self.translated(motion.velocity * seconds);
         let angle = motion.angular * seconds;
         match &mut moved {
-            Self::Plane(at) => at.rotation = turn_by(angle.z) * at.rotation,
-            Self::Space(at) => at.rotation = about(angle, angle.norm()) * at.rotation,
+            Self::Two(at) => at.rotation = turn_by(angle.z) * at.rotation,
+            Self::Three(at) => at.rotation = about(angle, angle.norm()) * at.rotation,
         }
         moved
     }
@@ -102,10 +93,10 @@ impl Motion {
         };
         let angular = match (&motion.angular_velocity, dimension) {
             (None, _) => Vector3::zeros(),
-            (Some(AngularVelocity::Plane(speed)), Dimension::Two) => Vector3::new(0.0, 0.0, *speed),
-            (Some(AngularVelocity::Space(speed)), Dimension::Three) => Vector3::from(*speed),
-            (Some(AngularVelocity::Plane(_)), Dimension::Three) => return Err(wrong(3, 1)),
-            (Some(AngularVelocity::Space(_)), Dimension::Two) => return Err(wrong(1, 3)),
+            (Some(AngularVelocity::Two(speed)), Dimension::Two) => Vector3::new(0.0, 0.0, *speed),
+            (Some(AngularVelocity::Three(speed)), Dimension::Three) => Vector3::from(*speed),
+            (Some(AngularVelocity::Two(_)), Dimension::Three) => return Err(wrong(3, 1)),
+            (Some(AngularVelocity::Three(_)), Dimension::Two) => return Err(wrong(1, 3)),
         };
         let is_at_rest = velocity == Vector3::zeros() && angular == Vector3::zeros();
         Ok((!is_at_rest).then_some(Self { velocity, angular }))
@@ -124,12 +115,12 @@ pub(crate) fn vector(numbers: &[f64], dimension: Dimension) -> Result<Vector3<f6
 fn turn2(rotation: &RotationFile) -> Result<UnitComplex<f64>, Fault> {
     match rotation {
         RotationFile::Degrees(degrees) => {
-            let (sine, cosine) = sine_cosine(*degrees);
+            let [sine, cosine] = sine_cosine(*degrees);
             Ok(UnitComplex::from_cos_sin_unchecked(cosine, sine))
         }
         RotationFile::Radians(radians) => Ok(turn_by(*radians)),
         _ => {
-            let what = "a rotation in space";
+            let what = "a 3D rotation";
             Err(Problem::WrongDimension { what, dimension: Dimension::Two }.into())
         }
     }
@@ -150,16 +141,17 @@ fn turn3(rotation: &RotationFile) -> Result<UnitQuaternion<f64>, Fault> {
                 angles.reverse();
             }
             let turns = axes.into_iter().zip(angles);
-            let turns = turns.map(|(axis, angle)| by_degrees(Vector3::ith(axis, 1.0), angle));
+            let turns = turns.map(|(axis, angle)| {
+                turn_by_half(Vector3::ith(axis, 1.0), sine_cosine(0.5 * angle))
+            });
             Ok(turns.fold(UnitQuaternion::identity(), |before, turn| turn * before))
         }
         RotationFile::AxisAngle { axis, degrees } => {
-            let axis = Vector3::from(*axis);
-            let unit = unit(axis).within("axis_angle.axis")?;
-            Ok(by_degrees(unit, *degrees))
+            let unit = unit(Vector3::from(*axis)).within("axis_angle.axis")?;
+            Ok(turn_by_half(unit, sine_cosine(0.5 * degrees)))
         }
         RotationFile::Degrees(_) | RotationFile::Radians(_) => {
-            let what = "a rotation by one angle";
+            let what = "a 2D rotation";
             Err(Problem::WrongDimension { what, dimension: Dimension::Three }.into())
         }
     }
@@ -174,7 +166,8 @@ pub(crate) fn unit(vector: Vector3<f64>) -> Result<Vector3<f64>, Problem> {
     if is_usable { Ok(unit) } else { Err(not_a_direction(vector.norm())) }
 }
 
-const fn not_a_direction(length: f64) -> Problem {
+/// The error of a vector without a direction.
+pub(crate) const fn not_a_direction(length: f64) -> Problem {
     Problem::BadValue { what: "the length must be finite and not zero", value: length }
 }
 
@@ -187,31 +180,30 @@ fn turn_by(radians: f64) -> UnitComplex<f64> {
 pub(crate) fn about(axis: Vector3<f64>, radians: f64) -> UnitQuaternion<f64> {
     let Ok(axis) = unit(axis) else { return UnitQuaternion::identity() };
     let half = 0.5 * radians;
-    let vector = axis * libm::sin(half);
-    let turn = Quaternion::new(libm::cos(half), vector.x, vector.y, vector.z);
-    UnitQuaternion::new_normalize(turn)
+    turn_by_half(axis, [libm::sin(half), libm::cos(half)])
 }
 
-fn by_degrees(axis: Vector3<f64>, degrees: f64) -> UnitQuaternion<f64> {
-    let (sine, cosine) = sine_cosine(0.5 * degrees);
+/// The turn about a unit vector by twice the angle with this sine and cosine.
+fn turn_by_half(axis: Vector3<f64>, [sine, cosine]: [f64; 2]) -> UnitQuaternion<f64> {
     let vector = axis * sine;
     UnitQuaternion::new_normalize(Quaternion::new(cosine, vector.x, vector.y, vector.z))
 }
 
-/// Sine and cosine, exact for multiples of a quarter turn.
-fn sine_cosine(degrees: f64) -> (f64, f64) {
+/// Sine and cosine of degrees, exact for multiples of a quarter turn: the angle is reduced to at most an eighth of a turn,
+/// and the quarters left out exchange and negate the two.
+fn sine_cosine(degrees: f64) -> [f64; 2] {
     let rest = degrees % 360.0;
     let quarters = libm::round(rest / 90.0);
     let angle = (rest - quarters * 90.0).to_radians();
     let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
     let quarter = (quarters + 4.0) % 4.0;
     if quarter == 1.0 {
-        (cosine, -sine)
+        [cosine, -sine]
     } else if quarter == 2.0 {
-        (-sine, -cosine)
+        [-sine, -cosine]
     } else if quarter == 3.0 {
-        (-cosine, sine)
+        [-cosine, sine]
     } else {
-        (sine, cosine)
+        [sine, cosine]
     }
 }

@@ -5,11 +5,12 @@ use impinge::math::Vector;
 use impinge::query::ImpactOptions;
 use impinge_record::{CastQuestion, PlacedShape, Query, Question, RayQuestion};
 
-use super::pose::vector;
+use super::pose::not_a_direction;
+use super::shapes::coordinates;
 use super::{Placement, Scene, SceneSpace};
+use crate::FileError;
 use crate::error::{Fault, Within};
 use crate::format::{CastFile, QueryFile, RayFile};
-use crate::{FileError, Problem};
 
 /// A query of a scene, for [`Query::ask`] and [`Recorder::ask`](impinge_record::Recorder::ask).
 #[derive(Clone, Debug)]
@@ -39,14 +40,14 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// If the dimension is another than the scene's, a direction or velocity is zero, or the library refuses a shape.
+    /// If the dimension is another than the scene's, a direction is zero, or the library refuses a shape.
     pub fn queries<N: SceneSpace<D>, const D: usize>(
         &self,
     ) -> Result<Vec<NamedQuery<N, D>>, FileError> {
         self.check_dimension(D)?;
         let queries = self.file.queries.iter().map(|(name, query)| {
             let question = match query {
-                QueryFile::Ray(ray) => self.ray(ray).within("ray"),
+                QueryFile::Ray(ray) => Self::ray(ray).within("ray"),
                 QueryFile::Cast(cast) => self.cast(cast).within("cast"),
             };
             let query = Query::new(question.within(name).within("queries")?);
@@ -56,15 +57,11 @@ impl Scene {
         queries.map_err(|fault| self.source.error(fault))
     }
 
-    fn ray<N: SceneSpace<D>, const D: usize>(
-        &self,
-        ray: &RayFile,
-    ) -> Result<Question<N, D>, Fault> {
-        let origin: Vector<N, D> = self.vector(&ray.origin).within("origin")?;
-        let direction = self.vector(&ray.direction).within("direction")?;
+    fn ray<N: SceneSpace<D>, const D: usize>(ray: &RayFile) -> Result<Question<N, D>, Fault> {
+        let origin: Vector<N, D> = coordinates(&ray.origin).within("origin")?;
+        let direction: Vector<N, D> = coordinates(&ray.direction).within("direction")?;
         if direction == Vector::<N, D>::zeros() {
-            let what = "the length of a direction must not be zero";
-            return Err(Fault::from(Problem::BadValue { what, value: 0.0 }).within("direction"));
+            return Err(not_a_direction(0.0)).within("direction");
         }
         let max_time = ray.max_time.map_or(N::INFINITY, N::lit);
         let ray_question =
@@ -79,26 +76,16 @@ impl Scene {
         &self,
         cast: &CastFile,
     ) -> Result<Question<N, D>, Fault> {
-        let shape = self.builder().make(&cast.shape).within("shape")?;
+        let shape = self.builder(&self.meshes).make(&cast.shape).within("shape")?;
         let start = Placement::read(&cast.position, self.file.dimension).within("position")?;
-        let other = Problem::OtherWorld { scene: self.file.dimension, asked: D };
-        let position = start.isometry::<N, D>().ok_or(other)?;
-        let velocity = self.vector(&cast.velocity).within("velocity")?;
+        let start = PlacedShape { position: start.isometry::<N, D>()?, shape };
+        let velocity = coordinates(&cast.velocity).within("velocity")?;
         let max_time = cast.max_time.map_or(N::INFINITY, N::lit);
-        let mut options = ImpactOptions::new();
-        options.max_time = max_time;
-        let question = CastQuestion { start: PlacedShape { position, shape }, velocity, options };
+        let options = ImpactOptions::new().with_max_time(max_time);
+        let question = CastQuestion { start, velocity, options };
         Ok(match cast.all {
             true => Question::CastShapeAll(question),
             false => Question::CastShape(question),
         })
-    }
-
-    fn vector<N: SceneSpace<D>, const D: usize>(
-        &self,
-        numbers: &[f64],
-    ) -> Result<Vector<N, D>, Problem> {
-        let vector = vector(numbers, self.file.dimension)?;
-        Ok(Vector::from_fn(|axis, _| N::lit(vector[axis])))
     }
 }

@@ -4,15 +4,17 @@ use std::collections::BTreeMap;
 
 use impinge::math::{Point, Unit, Vector};
 use impinge::shape::{
-    Ball, Capsule, Compound, Cuboid, Ellipsoid, Plane, Polyline, Rounded, Segment, ShapeHandle,
-    TaperedCapsule, TriMesh, Triangle,
+    Ball, Capsule, Compound, Cuboid, Ellipsoid, Plane, Polyline, Rounded, Segment, Shape,
+    ShapeError, ShapeHandle, TaperedCapsule, TriMesh, Triangle,
 };
-use impinge_record::{Field, MAX_DEPTH, MAX_PARTS, Problem as RecordProblem, ShapeData};
+use impinge_record::{
+    Field, LibraryError, MAX_DEPTH, MAX_PARTS, Problem as RecordProblem, ShapeData,
+};
 
 use super::pose::{Placement, unit, vector};
 use super::{MeshTable, SceneSpace};
 use crate::error::{Fault, Within};
-use crate::format::{ChildFile, DiagonalsFile, ShapeFile, ShapeRef};
+use crate::format::{ChildFile, DiagonalsFile, HeightFieldFile, ShapeFile, ShapeRef};
 use crate::{Dimension, Problem};
 
 /// Makes shapes; one of a name is made once.
@@ -77,12 +79,50 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
 
     fn shape(&mut self, shape: &ShapeFile) -> Result<ShapeHandle<N, D>, Fault> {
         match shape {
-            ShapeFile::Rounded { shape, radius } => {
-                let inner = self.make(shape).within("shape")?;
-                let rounded = Rounded::try_from_handle(inner, N::lit(*radius));
-                Ok(ShapeHandle::new(rounded.map_err(|error| sized(error.into()))?))
+            ShapeFile::Ball { radius } => handle(Ball::try_new(N::lit(*radius)).within("radius")),
+            ShapeFile::Cuboid { half_extents: given } => {
+                let half_extents = coordinates(given).within("half_extents")?;
+                handle(Cuboid::try_new(half_extents).within("half_extents"))
             }
-            ShapeFile::Compound { children } => self.compound(children),
+            ShapeFile::Ellipsoid { half_axes: given } => {
+                let half_axes = coordinates(given).within("half_axes")?;
+                handle(Ellipsoid::try_new(half_axes).within("half_axes"))
+            }
+            ShapeFile::Segment { ends } => {
+                let [a, b] = corners(ends, "ends")?;
+                handle(Segment::try_new(a, b))
+            }
+            ShapeFile::Triangle { corners: given } => {
+                let [a, b, c] = corners(given, "corners")?;
+                handle(Triangle::try_new(a, b, c))
+            }
+            ShapeFile::Capsule { radius, half_height, ends } => {
+                capsule(*radius, *half_height, ends.as_ref())
+            }
+            ShapeFile::TaperedCapsule { radii, half_height, ends } => {
+                tapered_capsule(*radii, *half_height, ends.as_ref())
+            }
+            ShapeFile::HalfSpace { normal } => self.half_space(normal),
+            ShapeFile::ConvexHull { points: given } => {
+                Ok(N::convex_hull(&points(given, "points")?).within("points")?)
+            }
+            ShapeFile::Cylinder { half_height, radius } => {
+                self.own(&ShapeData::Cylinder([*half_height, *radius].map(N::lit)), "a cylinder")
+            }
+            ShapeFile::Cone { half_height, radius } => {
+                self.own(&ShapeData::Cone([*half_height, *radius].map(N::lit)), "a cone")
+            }
+            ShapeFile::Tetrahedron { corners: given } => {
+                let tetrahedron = ShapeData::Tetrahedron(corners(given, "corners")?);
+                self.own(&tetrahedron, "a tetrahedron").within("corners")
+            }
+            ShapeFile::ConvexPolygon { points: given } => {
+                let outline = ShapeData::Outline(points(given, "points")?);
+                self.own(&outline, "a convex polygon").within("points")
+            }
+            ShapeFile::HeightField(file) => {
+                self.own(&field(file, self.dimension)?, "a height field")
+            }
             ShapeFile::Polyline { vertices, segments, closed, one_sided } => {
                 let line = line(points(vertices, "vertices")?, segments.as_deref(), *closed)?;
                 Ok(ShapeHandle::new(if *one_sided { N::one_sided_line(line) } else { line }))
@@ -91,96 +131,27 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
                 let mesh = TriMesh::try_new(points(vertices, "vertices")?, triangles.clone())?;
                 Ok(ShapeHandle::new(if *one_sided { N::one_sided_mesh(mesh) } else { mesh }))
             }
-            ShapeFile::HeightField { .. } => {
-                self.own(&field(shape, self.dimension)?, "a height field")
-            }
+            ShapeFile::Rounded { shape, radius } => self.rounded(shape, *radius),
+            ShapeFile::Compound { children } => self.compound(children),
             ShapeFile::MeshFile(source) => self.meshes.shape(source),
-            _ => self.solid(shape),
         }
     }
 
-    /// The convex shapes and the half-space.
-    fn solid(&self, shape: &ShapeFile) -> Result<ShapeHandle<N, D>, Fault> {
-        let make = self.round_solid(shape)?;
-        if let Some(made) = make {
-            return Ok(made);
-        }
-        match shape {
-            ShapeFile::Cuboid { half_extents } => {
-                let half_extents = coordinates(half_extents).within("half_extents")?;
-                Ok(ShapeHandle::new(Cuboid::try_new(half_extents).within("half_extents")?))
-            }
-            ShapeFile::Ellipsoid { half_axes } => {
-                let half_axes = coordinates(half_axes).within("half_axes")?;
-                Ok(ShapeHandle::new(Ellipsoid::try_new(half_axes).within("half_axes")?))
-            }
-            ShapeFile::Segment { ends } => {
-                let [a, b] = corners(ends, "ends")?;
-                Ok(ShapeHandle::new(Segment::try_new(a, b)?))
-            }
-            ShapeFile::Triangle { corners: given } => {
-                let [a, b, c] = corners(given, "corners")?;
-                Ok(ShapeHandle::new(Triangle::try_new(a, b, c)?))
-            }
-            ShapeFile::HalfSpace { normal } => {
-                let normal = vector(normal, self.dimension).and_then(unit).within("normal")?;
-                let normal = Vector::from_fn(|axis, _| N::lit(normal[axis]));
-                Ok(ShapeHandle::new(Plane::<N, D>::new(Unit::new_normalize(normal))))
-            }
-            ShapeFile::ConvexHull { points: given } => {
-                Ok(N::convex_hull(&points(given, "points")?).within("points")?)
-            }
-            ShapeFile::ConvexPolygon { points: given } => {
-                let outline = ShapeData::Outline(points(given, "points")?);
-                self.own(&outline, "a convex polygon").within("points")
-            }
-            ShapeFile::Tetrahedron { corners: given } => {
-                let tetrahedron = ShapeData::Tetrahedron(corners(given, "corners")?);
-                self.own(&tetrahedron, "a tetrahedron").within("corners")
-            }
-            _ => Err(Problem::Members("the shape has no kind").into()),
-        }
+    fn rounded(&mut self, shape: &ShapeRef, radius: f64) -> Result<ShapeHandle<N, D>, Fault> {
+        let inner = self.make(shape).within("shape")?;
+        handle(Rounded::try_from_handle(inner, N::lit(radius)).map_err(sized))
     }
 
-    /// Shapes with a radius.
-    fn round_solid(&self, shape: &ShapeFile) -> Result<Option<ShapeHandle<N, D>>, Fault> {
-        Ok(Some(match shape {
-            ShapeFile::Ball { radius } => {
-                ShapeHandle::new(Ball::try_new(N::lit(*radius)).within("radius")?)
-            }
-            ShapeFile::Capsule { radius, half_height, ends } => {
-                let radius = N::lit(*radius);
-                let made = match ends_of::<N, D>(*half_height, ends.as_ref())? {
-                    EndsOf::HalfHeight(half_height) => Capsule::try_new(half_height, radius),
-                    EndsOf::Points([a, b]) => Capsule::try_from_ends(a, b, radius),
-                };
-                ShapeHandle::new(made.map_err(|error| sized(error.into()))?)
-            }
-            ShapeFile::TaperedCapsule { radii, half_height, ends } => {
-                let [lower, upper] = radii.map(N::lit);
-                let made = match ends_of::<N, D>(*half_height, ends.as_ref())? {
-                    EndsOf::HalfHeight(height) => TaperedCapsule::try_new(height, lower, upper),
-                    EndsOf::Points([a, b]) => TaperedCapsule::try_from_ends(a, b, [lower, upper]),
-                };
-                ShapeHandle::new(made.map_err(|error| sized(error.into()))?)
-            }
-            ShapeFile::Cylinder { half_height, radius } => {
-                let sizes = ShapeData::Cylinder([*half_height, *radius].map(N::lit));
-                self.own(&sizes, "a cylinder")?
-            }
-            ShapeFile::Cone { half_height, radius } => {
-                let sizes = ShapeData::Cone([*half_height, *radius].map(N::lit));
-                self.own(&sizes, "a cone")?
-            }
-            _ => return Ok(None),
-        }))
+    fn half_space(&self, normal: &[f64]) -> Result<ShapeHandle<N, D>, Fault> {
+        let normal = vector(normal, self.dimension).and_then(unit).within("normal")?;
+        let normal = Vector::from_fn(|axis, _| N::lit(normal[axis]));
+        Ok(ShapeHandle::new(Plane::<N, D>::new(Unit::new_normalize(normal))))
     }
 
     /// A shape of one dimension alone.
     fn own(&self, data: &ShapeData<N, D>, what: &'static str) -> Result<ShapeHandle<N, D>, Fault> {
         N::own_shape(data).map_err(|problem| match problem {
-            RecordProblem::Shape(error) => sized(error.into()),
-            RecordProblem::Mesh(error) => error.into(),
+            RecordProblem::Library(error) => sized(error),
             _ => Problem::WrongDimension { what, dimension: self.dimension }.into(),
         })
     }
@@ -192,9 +163,8 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
             let child = self.child(child).within(&format!("children[{index}]"))?;
             parts += num_parts(&child.1);
             if parts > MAX_PARTS {
-                return Err(
-                    Problem::TooMany { what: "parts", given: parts, limit: MAX_PARTS }.into()
-                );
+                let (what, given, limit) = ("parts", parts, MAX_PARTS);
+                return Err(Problem::TooMany { what, given, limit }.into());
             }
             made.push(child);
         }
@@ -204,9 +174,7 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
     fn child(&mut self, child: &ChildFile) -> Result<(N::Isometry, ShapeHandle<N, D>), Fault> {
         let shape = self.make(&child.shape).within("shape")?;
         let at = Placement::read(&child.position, self.dimension).within("position")?;
-        let at =
-            at.isometry::<N, D>().ok_or(Problem::OtherWorld { scene: self.dimension, asked: D })?;
-        Ok((at, shape))
+        Ok((at.isometry::<N, D>()?, shape))
     }
 }
 
@@ -229,30 +197,41 @@ const fn kind_of(shape: &ShapeFile) -> &'static str {
         ShapeFile::ConvexPolygon { .. } => "convex_polygon",
         ShapeFile::Polyline { .. } => "polyline",
         ShapeFile::Mesh { .. } => "mesh",
-        ShapeFile::HeightField { .. } => "height_field",
+        ShapeFile::HeightField(_) => "height_field",
         ShapeFile::Compound { .. } => "compound",
         ShapeFile::MeshFile(_) => "mesh_file",
     }
 }
 
-/// The fault at the member that a size was given by.
-fn sized(problem: Problem) -> Fault {
-    use impinge::shape::ShapeError::{Negative, NotFinite};
-    let member = match &problem {
-        Problem::Shape(Negative { what, .. } | NotFinite { what, .. }) => match *what {
-            "the radius" => "radius",
-            "the half height" => "half_height",
-            "the first radius" => "radii[0]",
-            "the second radius" => "radii[1]",
-            _ => return problem.into(),
+/// A shape as a handle.
+fn handle<N: SceneSpace<D>, const D: usize>(
+    made: Result<impl Shape<N, D>, impl Into<Fault>>,
+) -> Result<ShapeHandle<N, D>, Fault> {
+    made.map(ShapeHandle::new).map_err(Into::into)
+}
+
+/// The fault at the member that a size was given by, which the library names in its own words.
+fn sized(error: impl Into<LibraryError>) -> Fault {
+    let error = error.into();
+    let member = match &error {
+        LibraryError::Shape(
+            ShapeError::Negative { what, .. } | ShapeError::NotFinite { what, .. },
+        ) => match *what {
+            "the radius" => Some("radius"),
+            "the half height" => Some("half_height"),
+            "the first radius" => Some("radii[0]"),
+            "the second radius" => Some("radii[1]"),
+            _ => None,
         },
-        _ => return problem.into(),
+        _ => None,
     };
-    Fault::from(problem).within(member)
+    member.into_iter().fold(error.into(), Fault::within)
 }
 
 /// As many numbers as the dimension has.
-fn coordinates<N: SceneSpace<D>, const D: usize>(numbers: &[f64]) -> Result<Vector<N, D>, Problem> {
+pub(super) fn coordinates<N: SceneSpace<D>, const D: usize>(
+    numbers: &[f64],
+) -> Result<Vector<N, D>, Problem> {
     if numbers.len() != D {
         return Err(Problem::WrongLength { needed: D, given: numbers.len() });
     }
@@ -296,6 +275,32 @@ fn ends_of<N: SceneSpace<D>, const D: usize>(
     }
 }
 
+fn capsule<N: SceneSpace<D>, const D: usize>(
+    radius: f64,
+    half_height: Option<f64>,
+    ends: Option<&[Vec<f64>; 2]>,
+) -> Result<ShapeHandle<N, D>, Fault> {
+    let radius = N::lit(radius);
+    let made = match ends_of::<N, D>(half_height, ends)? {
+        EndsOf::HalfHeight(half_height) => Capsule::try_new(half_height, radius),
+        EndsOf::Points([a, b]) => Capsule::try_from_ends(a, b, radius),
+    };
+    handle(made.map_err(sized))
+}
+
+fn tapered_capsule<N: SceneSpace<D>, const D: usize>(
+    radii: [f64; 2],
+    half_height: Option<f64>,
+    ends: Option<&[Vec<f64>; 2]>,
+) -> Result<ShapeHandle<N, D>, Fault> {
+    let [lower, upper] = radii.map(N::lit);
+    let made = match ends_of::<N, D>(half_height, ends)? {
+        EndsOf::HalfHeight(half_height) => TaperedCapsule::try_new(half_height, lower, upper),
+        EndsOf::Points([a, b]) => TaperedCapsule::try_from_ends(a, b, [lower, upper]),
+    };
+    handle(made.map_err(sized))
+}
+
 fn line<N: SceneSpace<D>, const D: usize>(
     vertices: Vec<Point<N, D>>,
     segments: Option<&[[u32; 2]]>,
@@ -316,27 +321,23 @@ const HOLE: [u8; 2] = [1, 3];
 /// The mark of a cell cut the other way.
 const BACKWARD: u8 = 4;
 
-/// The arguments of a height field.
+/// The arguments of a height field: a mark for each cell.
 fn field<N: SceneSpace<D>, const D: usize>(
-    shape: &ShapeFile,
+    file: &HeightFieldFile,
     dimension: Dimension,
 ) -> Result<ShapeData<N, D>, Fault> {
-    let ShapeFile::HeightField { heights, columns, scale, holes, diagonals, one_sided } = shape
-    else {
-        return Err(Problem::Members("the shape has no kind").into());
-    };
+    let HeightFieldFile { heights, columns, scale, holes, diagonals, one_sided } = file;
     let columns = match (dimension, columns) {
         (Dimension::Two, None) => heights.len(),
         (Dimension::Three, Some(columns)) => *columns,
         _ => {
-            return Err(
-                Problem::Members("columns is needed in 3D, and does not exist in 2D").into()
-            );
+            let rule = "columns is needed in 3D, and does not exist in 2D";
+            return Err(Problem::Members(rule).into());
         }
     };
-    let is_plane = dimension == Dimension::Two;
+    let is_line = dimension == Dimension::Two;
     let row = columns.saturating_sub(1);
-    let rows = if is_plane { 1 } else { (heights.len() / columns.max(1)).saturating_sub(1) };
+    let rows = if is_line { 1 } else { (heights.len() / columns.max(1)).saturating_sub(1) };
     let is_backward = |cell: usize| match diagonals {
         DiagonalsFile::Forward => false,
         DiagonalsFile::Backward => true,
@@ -344,11 +345,11 @@ fn field<N: SceneSpace<D>, const D: usize>(
     };
     let cells = 0..rows * row;
     let mut marks: Vec<u8> =
-        cells.map(|cell| if !is_plane && is_backward(cell) { BACKWARD } else { 0 }).collect();
+        cells.map(|cell| if !is_line && is_backward(cell) { BACKWARD } else { 0 }).collect();
     for (index, &cell) in holes.iter().enumerate() {
         let (what, given, limit) = ("cells", cell.saturating_add(1), marks.len());
         let mark = marks.get_mut(cell).ok_or(Problem::TooMany { what, given, limit });
-        *mark.within(&format!("holes[{index}]"))? |= HOLE[usize::from(!is_plane)];
+        *mark.within(&format!("holes[{index}]"))? |= HOLE[usize::from(!is_line)];
     }
     Ok(ShapeData::HeightField(Field {
         columns,

@@ -1,5 +1,6 @@
 //! A scene at work: a recorded world whose objects have names and move.
 
+use core::num::NonZeroU64;
 use core::ops::Deref;
 use std::collections::BTreeMap;
 
@@ -10,8 +11,8 @@ use impinge_record::{RecordError, Recorder, Recording, Registry};
 use super::placed::PlacedObject;
 use super::pose::Motion;
 use super::{Placement, Scene, SceneSpace};
-use crate::FileError;
 use crate::error::Within;
+use crate::{FileError, Problem};
 
 /// The world of a scene, which is recorded and moves its objects. It lends the world for reading ([`Deref`]).
 ///
@@ -60,13 +61,14 @@ impl Scene {
     /// # Errors
     /// As [`Self::collision_world`], and if a shape has more parts than recordings take.
     pub fn world<N: SceneSpace<D>, const D: usize>(&self) -> Result<SceneWorld<N, D>, FileError> {
-        let recorder = Recorder::new(N::lit(self.file.margin), Registry::new()).within("margin");
+        let recorder = Recorder::new(N::lit(self.file.margin), Registry::new());
+        let recorder = recorder.map_err(Problem::recorded).within("margin");
         let mut recorder = recorder.map_err(|fault| self.source.error(fault))?;
         let (mut handles, mut movers) = (BTreeMap::new(), Vec::new());
         for placed in self.placed::<N, D>()? {
-            let PlacedObject { object, position, shape, groups, query } = placed;
-            let added = recorder.add(position, shape, groups, query, object.name.clone());
-            let handle = added.map_err(|error| self.refused(object, error.into()))?;
+            let PlacedObject { object, position, shape, query } = placed;
+            let added = recorder.add(position, shape, object.groups, query, object.name.clone());
+            let handle = added.map_err(|error| self.refused(object, Problem::recorded(error)))?;
             handles.insert(object.name.clone(), handle);
             let start = object.start;
             movers.extend(object.motion.map(|motion| Mover { handle, start, motion }));
@@ -76,6 +78,13 @@ impl Scene {
 }
 
 impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
+    /// Writes a key frame before every update whose number is a multiple of `updates`; see
+    /// [`Recorder::with_key_frames`].
+    #[must_use]
+    pub fn with_key_frames(self, updates: NonZeroU64) -> Self {
+        Self { recorder: self.recorder.with_key_frames(updates), ..self }
+    }
+
     /// Moves the objects by their motions over some seconds, and updates the world. A step of 0 seconds updates it
     /// alone, as the first step mostly does. Positions are computed from the start and the time since.
     ///
@@ -86,7 +95,7 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         let living = self.movers.iter().filter(|mover| self.recorder.contains(mover.handle));
         let moved = living.filter_map(|mover| {
             let at = mover.start.after(&mover.motion, self.seconds).isometry::<N, D>();
-            at.map(|at| (mover.handle, at))
+            at.ok().map(|at| (mover.handle, at))
         });
         let moved: Vec<_> = moved.collect();
         if !moved.is_empty() && seconds != 0.0 {

@@ -110,6 +110,33 @@ fn counts_beyond_the_file_cost_no_memory() {
 }
 
 #[test]
+fn sparse_accessors_out_of_order() {
+    let sparse = crate::cube::gltf_sparse();
+    let cases = [
+        ("\"byteLength\": 7}", "\"byteLength\": 6}", "reaches beyond its buffer"),
+        (
+            "\"byteOffset\": 168, \"byteLength\": 7",
+            "\"byteOffset\": 170, \"byteLength\": 7",
+            "out of order",
+        ),
+        ("\"count\": 7", "\"count\": 0", "is empty"),
+        ("\"count\": 8", "\"count\": 7", "out of order"),
+        ("\"count\": 8", "\"count\": 400000000", "more elements than the buffers have bytes"),
+        (
+            "\"bufferView\": 0, \"byteOffset\": 12",
+            "\"bufferView\": 0, \"byteOffset\": 13",
+            "reaches beyond",
+        ),
+    ];
+    for (whole, broken, message) in cases {
+        let text = sparse.replacen(whole, broken, 1);
+        assert_ne!(text, sparse, "{whole} is in it");
+        let error = check("sparse.gltf".as_ref(), text.as_bytes()).expect_err(broken);
+        assert!(error.to_string().contains(message), "{broken}: {error}");
+    }
+}
+
+#[test]
 fn nodes_that_hold_themselves() {
     let looped = crate::cube::gltf_text().replace("\"mesh\": 0", "\"mesh\": 0, \"children\": [0]");
     let error = check("loop.gltf".as_ref(), looped.as_bytes()).expect_err("no tree");

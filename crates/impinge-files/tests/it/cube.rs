@@ -48,6 +48,7 @@ pub(crate) fn samples() -> Vec<Sample> {
         sample("little.ply", ply_binary(true)),
         sample("big.ply", ply_binary(false)),
         sample("inline.gltf", gltf_text().into_bytes()),
+        sample("sparse.gltf", gltf_sparse().into_bytes()),
         sample("binary.glb", glb()),
     ]
 }
@@ -62,6 +63,19 @@ pub(crate) fn obj() -> String {
         text += &format!("f {a}/1/1 {b}/1/1 {c}//1 {d}\n");
     }
     text
+}
+
+/// The cube with its fronts inside, as a room has them.
+pub(crate) fn obj_inside_out() -> String {
+    let lines = obj();
+    let turned = lines.lines().map(|line| match line.strip_prefix("f ") {
+        Some(corners) => {
+            let reversed: Vec<&str> = corners.split(' ').rev().collect();
+            format!("f {}\n", reversed.join(" "))
+        }
+        None => format!("{line}\n"),
+    });
+    turned.collect()
 }
 
 pub(crate) fn stl_text() -> String {
@@ -151,9 +165,22 @@ pub(crate) fn gltf_text() -> String {
     gltf_json(&format!("\"uri\": \"data:application/octet-stream;base64,{data}\", "))
 }
 
+/// The first corner is the origin and not written: the accessor of the positions has no view of its own, and seven
+/// sparse elements with the indices from 1 to 7.
+pub(crate) fn gltf_sparse() -> String {
+    let sparse = "\"sparse\": {\"count\": 7, \"indices\": {\"bufferView\": 2, \"componentType\": 5121}, \
+                  \"values\": {\"bufferView\": 0, \"byteOffset\": 12}}, \"componentType\": 5126";
+    let views = "\"byteLength\": 72}, {\"buffer\": 0, \"byteOffset\": 168, \"byteLength\": 7}]";
+    let indices = base64(&[1, 2, 3, 4, 5, 6, 7, 0, 0]);
+    gltf_text()
+        .replace("\", \"byteLength\": 168", &format!("{indices}\", \"byteLength\": 177"))
+        .replace("\"byteLength\": 72}]", views)
+        .replace("\"bufferView\": 0, \"componentType\": 5126", sparse)
+}
+
 fn base64(bytes: &[u8]) -> String {
     let digits = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    // 168 is a multiple of 3: nothing is padded.
+    // The lengths are multiples of 3: nothing is padded.
     let groups = bytes.chunks_exact(3).flat_map(|group| {
         let [a, b, c] = [group[0], group[1], group[2]].map(usize::from);
         [a >> 2, (a & 3) << 4 | b >> 4, (b & 15) << 2 | c >> 6, c & 63]

@@ -7,7 +7,7 @@ use impinge::dim3::query::distance;
 use impinge::dim3::shape::{Ball, Cuboid, ShapeHandle, TriMesh};
 use impinge_files::{MeshFile, Scene, load};
 
-use crate::cube::{obj, samples};
+use crate::cube::{gltf_sparse, obj, obj_inside_out, samples};
 
 #[test]
 fn each_format_gives_the_same_solid() {
@@ -72,6 +72,46 @@ fn a_solid_has_an_inside_and_a_hull_of_it_is_convex() {
         let gap = distance(&Isometry::identity(), &*shape, &place, &Ball::new(0.5));
         assert!((gap - 1.5).abs() < 1e-12, "4 - 2 - 0.5, not {gap}");
     }
+}
+
+#[test]
+fn a_room_keeps_its_fronts_unless_it_shall_be_solid() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("room.obj"), obj_inside_out()).expect("it is written");
+    // A ball of radius 0.5 overlaps a wall of the room from 0 to 2 by 0.1, from inside or from outside.
+    let touches = |kind: &str, scale: [f64; 3], x: f64| {
+        let text = format!(
+            r#"{{"dimension": 3, "meshes": [{{"path": "room.obj", "as": "{kind}", "scale": {scale:?}}}],
+            "objects": [{{"name": "ball", "shape": {{"ball": {{"radius": 0.5}}}},
+                "position": {{"translation": [{x}, 1, 1]}}}}]}}"#
+        );
+        let scene = Scene::from_json(folder.path().join("scene.json"), &text).expect("a scene");
+        let mut world = scene.collision_world::<f64, 3>().expect("a world");
+        world.update();
+        world.contact_manifolds().count() == 1
+    };
+    let plain = [1.0; 3];
+    assert!(touches("one_sided", plain, 0.4) && !touches("one_sided", plain, -0.4), "from inside");
+    assert!(!touches("solid", plain, 0.4) && touches("solid", plain, -0.4), "from outside");
+    assert!(touches("surface", plain, 0.4) && touches("surface", plain, -0.4), "from both sides");
+    let mirrored = [-1.0, 1.0, 1.0];
+    assert!(
+        touches("one_sided", mirrored, -0.4) && !touches("one_sided", mirrored, 0.4),
+        "mirrored"
+    );
+}
+
+#[test]
+fn sparse_elements_replace_those_of_the_view() {
+    // One element, with the index 6 and the value of the first corner, in front of the positions of the view.
+    let text = gltf_sparse()
+        .replace("\"count\": 7, \"indices\": {", "\"count\": 1, \"indices\": {\"byteOffset\": 5, ")
+        .replace("\"byteOffset\": 12}}", "\"byteOffset\": 0}}, \"bufferView\": 0");
+    let file = MeshFile::parse("moved.gltf".as_ref(), text.as_bytes()).expect("it can be read");
+    let vertices = &file.parts()[0].vertices;
+    assert_eq!(vertices.len(), 7, "two corners are one: {vertices:?}");
+    // The nodes mirror the cube in x = 1.
+    assert!(!vertices.contains(&[0.0, 2.0, 2.0]), "corner 6 has moved to corner 0: {vertices:?}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What is wrong with a mesh, and where.
 
-use impinge_files::{Finding, MeshFile, MeshReport, Problem};
+use impinge_files::{Defect, Defects, MeshFile, MeshReport, Problem};
 
 fn report(name: &str, text: &str) -> MeshReport {
     let file = MeshFile::parse(name.as_ref(), text.as_bytes());
@@ -15,10 +15,9 @@ fn each_defect_is_counted_and_has_its_line() {
         "{SQUARE}v 1 1 0\nv nan 0 0\nf 1 2 3\nf 1 2 9\nf 1 3 5\nf 1 2 6\nf 2 3 1\nf 1 4 3\nf 1 2\nf 0 1 2\n"
     );
     let report = report("broken.obj", &text);
-    let at = |index, line| Finding { index, line: Some(line) };
-    let lines = |findings: &impinge_files::Findings| {
-        findings.first.iter().map(|finding| finding.line).collect::<Vec<_>>()
-    };
+    let at = |index, line| Defect { index, line: Some(line) };
+    let lines =
+        |defects: &Defects| defects.first.iter().map(|defect| defect.line).collect::<Vec<_>>();
     assert_eq!(lines(&report.out_of_range), [Some(8), Some(14)], "9 of 6, and 0");
     assert_eq!(report.degenerate.first, [at(1, 9)], "3 and 5 are one position");
     assert_eq!(report.duplicate_triangles.first, [at(3, 11)], "1 2 3 again");
@@ -41,18 +40,7 @@ fn edges_of_three_triangles_and_pieces_are_counted() {
 
 #[test]
 fn a_surface_inside_out_has_a_negative_volume() {
-    let text = crate::cube::obj();
-    let turned: Vec<String> = text
-        .lines()
-        .map(|line| match line.strip_prefix("f ") {
-            Some(corners) => {
-                let reversed: Vec<&str> = corners.split(' ').rev().collect();
-                format!("f {}", reversed.join(" "))
-            }
-            None => line.to_owned(),
-        })
-        .collect();
-    let report = report("turned.obj", &turned.join("\n"));
+    let report = report("turned.obj", &crate::cube::obj_inside_out());
     assert_eq!(report.volume, Some(-8.0), "{report}");
     assert!(report.to_string().contains("inside out, volume 8"), "{report}");
 }

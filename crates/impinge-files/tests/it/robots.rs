@@ -83,6 +83,30 @@ fn joints_of_all_types_move_their_links() {
     assert_at(&world, "arm/follow", [-0.5, 0.0, 0.0]);
 }
 
+#[test]
+fn joints_beyond_their_limits_are_placed_and_reported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let links = ["base", "a", "b", "c", "d"].map(link).concat();
+    let mimic = r#"<origin xyz="0 0 0"/><axis xyz="1 0 0"/><mimic joint="slide" multiplier="2"/>"#;
+    let joints = [
+        joint("turn", "revolute", ["base", "a"], r#"<axis xyz="0 0 1"/>"#),
+        joint("slide", "prismatic", ["a", "b"], r#"<axis xyz="1 0 0"/>"#),
+        joint("spin", "continuous", ["b", "c"], r#"<axis xyz="0 0 1"/>"#),
+        joint("follow", "prismatic", ["base", "d"], mimic),
+    ];
+    let urdf = format!("{PREFIX}{links}{}</robot>", joints.concat());
+    let joints = r#", "name": "r", "joints": {"turn": -3, "slide": 2.5, "spin": 100}"#;
+    let scene = scene(folder.path(), &urdf, joints);
+    let found = scene.joints_beyond_limits().iter().map(ToString::to_string);
+    let expected = ["the joint follow of r is at 5, outside its limits -3 to 3"];
+    assert_eq!(
+        found.collect::<Vec<_>>(),
+        expected,
+        "limits count as within, continuous joints have none"
+    );
+    assert_at(&scene.world().expect("a world"), "r/d", [5.0, 0.0, 0.0]);
+}
+
 /// An arm of six axes, whose links are meshes of a package.
 fn six_axes(folder: &Path) -> String {
     let meshes = folder.join("arm_description/meshes");

@@ -96,6 +96,12 @@ const REFUSED: &[(usize, &str, &str, &str)] = &[
     ),
     (
         2,
+        r#""shape": {"ball": {"radius": 1}}, "repeat": {"count": [3, 0], "spacing": [1, 1]}"#,
+        "repeat.count",
+        "[3, 0]",
+    ),
+    (
+        2,
         r#""shape": {"height_field": {"heights": [0, 1], "scale": [1, 1], "holes": [7]}}"#,
         "shape.height_field.holes[0]",
         "7",
@@ -123,6 +129,10 @@ fn members_of_another_type_or_name_have_their_place() {
         (
             r#""shape": {"ball": {"radius": 1}}, "position": {"rotation": {"degrees": [1]}}"#,
             "position.rotation.degrees",
+        ),
+        (
+            r#""shape": {"ball": {"radius": 1}}, "motion": {"angular_velocity": [1]}"#,
+            "motion.angular_velocity",
         ),
         (r#""shape": {"blob": {}}"#, "shape"),
     ];

@@ -100,6 +100,24 @@ fn every_example_runs_in_both_scalars_and_its_recording_is_valid() {
 }
 
 #[test]
+fn mesh_files_of_queries_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for name in ["cube.obj", "other.obj"] {
+        fs::write(folder.path().join(name), crate::cube::obj()).expect("it is written");
+    }
+    let text = r#"{"dimension": 3, "queries": {"push": {"cast": {
+        "shape": {"rounded": {"shape": {"mesh_file": {"path": "cube.obj", "as": "convex_hull"}}, "radius": 0.5}},
+        "velocity": [1, 0, 0]}}}}"#;
+    let scene = Scene::from_json(folder.path().join("scene.json"), text).expect("a scene");
+    assert_eq!(scene.queries::<f64, 3>().expect("the cube is read").len(), 1, "the cast");
+    let shape = scene.shape::<f64, 3>(r#"{"mesh_file": {"path": "other.obj"}}"#);
+    assert!(shape.is_ok(), "a file that the scene does not name: {shape:?}");
+    let missing = scene.shape::<f64, 3>(r#"{"mesh_file": {"path": "none.obj"}}"#);
+    let error = missing.map(|_| ()).expect_err("no such file");
+    assert!(error.file.ends_with("none.obj"), "{error}");
+}
+
+#[test]
 fn groups_decide_who_touches() {
     let scene = example("filters.json");
     let mut world = scene.world::<f64, 2>().expect("a scene of 2D");

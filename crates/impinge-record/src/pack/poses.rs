@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 use super::streams::{Inflated, Streams};
 use super::tracks::{Bits, MAX_NUMBERS, Track};
+use crate::bytes::{from_zigzag, zigzag};
 use crate::error::{Problem, ReadError};
 use crate::space::Recordable;
 
@@ -58,17 +59,15 @@ impl Layout {
         if integer & sign == 0 { !integer & self.mask() } else { integer ^ sign }
     }
 
-    /// The difference of two ordered integers, so that small ones of both signs are small: 0, -1, 1, -2, ...
+    /// The difference of two ordered integers modulo the bits of a number, as a small unsigned one.
     pub(super) const fn residual(&self, actual: u64, predicted: u64) -> u64 {
         let unused = 64 - 8 * self.scalar_bytes;
-        let difference = (actual.wrapping_sub(predicted) << unused).cast_signed() >> unused;
-        ((difference << 1) ^ (difference >> 63)).cast_unsigned()
+        zigzag((actual.wrapping_sub(predicted) << unused).cast_signed() >> unused)
     }
 
     /// The integer with this residual from a prediction.
     const fn with_residual(&self, predicted: u64, residual: u64) -> u64 {
-        let difference = (residual >> 1) ^ 0_u64.wrapping_sub(residual & 1);
-        predicted.wrapping_add(difference) & self.mask()
+        predicted.wrapping_add_signed(from_zigzag(residual)) & self.mask()
     }
 
     /// The bits of the numbers of a pose.
@@ -89,9 +88,9 @@ impl Layout {
     }
 }
 
-/// How an object comes to a pose.
+/// How an object gets a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum PoseKind {
     /// It is set there.
     Moved,
     /// It is added there, or a key frame says that it is there: most likely where it was last.
@@ -111,33 +110,33 @@ impl Poses {
     }
 
     /// Writes the residuals of a pose.
-    pub(super) fn write(&mut self, index: u32, pose: &Bits, way: Way, streams: &mut Streams) {
+    pub(super) fn write(&mut self, index: u32, pose: &Bits, kind: PoseKind, streams: &mut Streams) {
         let track = self.tracks.entry(index).or_default();
-        let predictions = track.predictions(&self.layout, way);
+        let predictions = track.predictions(&self.layout, kind);
         for (number, bits) in pose.iter().enumerate().take(self.layout.numbers) {
             let predicted = track.best(number, &predictions);
             let actual = self.layout.ordered(*bits);
             streams.residual(number, self.layout.residual(actual, predicted));
         }
-        track.learn(&self.layout, pose, way, &predictions);
+        track.learn(&self.layout, pose, kind, &predictions);
     }
 
     /// Reads the residuals of a pose.
     pub(super) fn read(
         &mut self,
         index: u32,
-        way: Way,
+        kind: PoseKind,
         streams: &mut Inflated,
     ) -> Result<Bits, ReadError> {
         let track = self.tracks.entry(index).or_default();
-        let predictions = track.predictions(&self.layout, way);
+        let predictions = track.predictions(&self.layout, kind);
         let mut pose = [0; MAX_NUMBERS];
         for (number, bits) in pose.iter_mut().enumerate().take(self.layout.numbers) {
             let predicted = track.best(number, &predictions);
             let actual = self.layout.with_residual(predicted, streams.residual(number)?);
             *bits = self.layout.unordered(actual);
         }
-        track.learn(&self.layout, &pose, way, &predictions);
+        track.learn(&self.layout, &pose, kind, &predictions);
         Ok(pose)
     }
 }

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::poses::{Layout, Poses, Way};
+use super::poses::{Layout, PoseKind, Poses};
 use super::streams::{INDICES, Inflated, PLAIN, Streams};
-use crate::bytes::{Sink, Source};
+use crate::bytes::{Sink, Source, from_zigzag, zigzag};
 use crate::call::kinds;
 use crate::error::{Problem, ReadError};
 use crate::log::{Cursor, Header, Log, Raw};
@@ -110,7 +110,7 @@ impl Packer {
             kinds::ADD => self.object(source)?,
             kinds::SET_POSITIONS => {
                 for _ in 0..self.list(source)? {
-                    self.pose(source, Way::Moved)?;
+                    self.pose(source, PoseKind::Moved)?;
                 }
             }
             kinds::KEY_FRAME => {
@@ -138,7 +138,7 @@ impl Packer {
     }
 
     fn object(&mut self, source: &mut Source<'_>) -> Result<(), ReadError> {
-        let index = self.pose(source, Way::Placed)?;
+        let index = self.pose(source, PoseKind::Placed)?;
         let start = source.offset();
         // The number of the shape, and the groups.
         source.take(4 + 13)?;
@@ -156,14 +156,13 @@ impl Packer {
     }
 
     /// The index of an object, which it returns, and the pose.
-    fn pose(&mut self, source: &mut Source<'_>, way: Way) -> Result<u32, ReadError> {
+    fn pose(&mut self, source: &mut Source<'_>, kind: PoseKind) -> Result<u32, ReadError> {
         let index = source.word()?;
         let difference = i64::from(index) - i64::from(self.index);
-        let zigzag = ((difference << 1) ^ (difference >> 63)).cast_unsigned();
-        self.streams.sink(INDICES).varint(zigzag);
+        self.streams.sink(INDICES).varint(zigzag(difference));
         self.index = index;
         let pose = self.layout.bits(source.take(self.layout.pose_bytes())?);
-        self.poses.write(index, &pose, way, &mut self.streams);
+        self.poses.write(index, &pose, kind, &mut self.streams);
         Ok(index)
     }
 }
@@ -236,7 +235,7 @@ impl Unpacker {
             kinds::ADD => self.object(sink)?,
             kinds::SET_POSITIONS => {
                 for _ in 0..self.list(sink)? {
-                    self.pose(sink, Way::Moved)?;
+                    self.pose(sink, PoseKind::Moved)?;
                 }
             }
             kinds::KEY_FRAME => {
@@ -270,7 +269,7 @@ impl Unpacker {
     }
 
     fn object(&mut self, sink: &mut Sink) -> Result<(), ReadError> {
-        let index = self.pose(sink, Way::Placed)?;
+        let index = self.pose(sink, PoseKind::Placed)?;
         let description = self.plain_bytes()?;
         if !description.is_empty() {
             remember(&mut self.descriptions, index, &description);
@@ -283,13 +282,12 @@ impl Unpacker {
     }
 
     /// The index of an object, which it returns, and the pose.
-    fn pose(&mut self, sink: &mut Sink, way: Way) -> Result<u32, ReadError> {
-        let zigzag = self.streams.pull(INDICES, Source::varint)?;
-        let difference = (zigzag >> 1).cast_signed() ^ -(zigzag & 1).cast_signed();
+    fn pose(&mut self, sink: &mut Sink, kind: PoseKind) -> Result<u32, ReadError> {
+        let difference = from_zigzag(self.streams.pull(INDICES, Source::varint)?);
         let index = u32::try_from(i64::from(self.index).wrapping_add(difference));
         let problem = Problem::BadValue { what: "the index of an object" };
         self.index = index.map_err(|_| self.streams.error(INDICES, problem))?;
-        let pose = self.poses.read(self.index, way, &mut self.streams)?;
+        let pose = self.poses.read(self.index, kind, &mut self.streams)?;
         sink.word(self.index);
         sink.bytes.extend(self.layout.bytes(&pose));
         self.check(sink.bytes.len())?;

@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::poses::{Layout, Way};
+use super::poses::{Layout, PoseKind};
 
 /// So many numbers has a pose at most.
 pub(super) const MAX_NUMBERS: usize = 7;
@@ -34,9 +34,9 @@ pub(super) struct Track {
 
 impl Track {
     /// Each candidate for each number. An object that is placed is predicted to be where it was.
-    pub(super) fn predictions(&self, layout: &Layout, way: Way) -> Predictions {
+    pub(super) fn predictions(&self, layout: &Layout, kind: PoseKind) -> Predictions {
         let last = self.last.map(|bits| layout.ordered(bits));
-        if way == Way::Placed {
+        if kind == PoseKind::Placed {
             return [last; CANDIDATES];
         }
         let [same, others @ ..] = &mut [last; CANDIDATES];
@@ -85,11 +85,11 @@ impl Track {
         &mut self,
         layout: &Layout,
         pose: &Bits,
-        way: Way,
+        kind: PoseKind,
         predictions: &Predictions,
     ) {
         let numbers = pose.map(|bits| number_of(bits, layout));
-        if way == Way::Placed {
+        if kind == PoseKind::Placed {
             if *pose != self.last {
                 *self =
                     Self { last: *pose, history: [numbers; HISTORY], costs: Default::default() };

@@ -173,7 +173,7 @@ fn turned(axis: [f64; 3], angle: f64, at: [f64; 3]) -> Isometry<f32> {
     Isometry::from_parts(at.cast::<f32>().into(), turn.cast::<f32>())
 }
 
-/// Bodies as a program in `f32` moves them, with its rounding errors: thrown from a height, they turn, bounce on the ground
+/// Bodies as a program in `f32` moves them, with its rounding errors: thrown from a height, they turn, bounce on a half-space
 /// and come to rest.
 fn integrated() -> impl FnMut(u32, f64) -> Isometry<f32> {
     struct Body {

@@ -28,8 +28,8 @@ pub(super) fn inflated<N: Real>(
     faces: &[Feature<N, 3>],
     radius: N,
 ) -> bool {
-    let (_, cosine) =
-        (N::lit(core::f64::consts::TAU / f64::from(sketch.parts_of_turn()))).sine_cosine();
+    let step = core::f64::consts::TAU / f64::from(sketch.parts_of_turn());
+    let (_, cosine) = N::lit(step).sine_cosine();
     let keyed = faces
         .iter()
         .enumerate()
@@ -39,10 +39,7 @@ pub(super) fn inflated<N: Real>(
     if count == 0 || solid.face_of_side.len() < count || !solid.is_closed() {
         return false;
     }
-    let corners = solid.corners();
-    if corners.iter().any(|(_, around)| middle_of(around).is_none()) {
-        return false;
-    }
+    let Some(corners) = solid.corners() else { return false };
     // Nothing fails from here on.
     for (index, face) in faces.iter().enumerate() {
         let moved: Vec<_> = face.vertices.iter().map(|v| solid.moved(v, &normal(face))).collect();
@@ -52,13 +49,20 @@ pub(super) fn inflated<N: Real>(
             solid.around_edge(sketch, index, side);
         }
     }
-    for (corner, around) in &corners {
-        solid.patch(sketch, corner, around);
-    }
+    corners.iter().for_each(|corner| solid.patch(sketch, corner));
     true
 }
 
-/// The direction in the middle of those around a corner; none if they are about a whole circle, as at the end
+/// A corner of the polyhedron, and the part of the ball around it.
+struct RoundedCorner<N: Real> {
+    point: Point<N, 3>,
+    /// The directions around the part, clockwise seen from outside.
+    around: Vec<Vector<N, 3>>,
+    /// A direction inside the part.
+    middle: Vector<N, 3>,
+}
+
+/// The direction in the middle of those around a corner; `None` if they are about a whole circle, as at the end
 /// of a needle, where their sum is mostly rounding.
 fn middle_of<N: Real>(around: &[Vector<N, 3>]) -> Option<Vector<N, 3>> {
     let sum = around.iter().fold(Vector::<N, 3>::zeros(), |sum, direction| sum + direction);
@@ -72,7 +76,7 @@ fn sides<N: Real>(face: &Feature<N, 3>) -> impl Iterator<Item = [Point<N, 3>; 2]
     face.vertices.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
-/// What tells corners apart: the faces of a solid repeat theirs to the bit.
+/// The key of a corner: the faces of a solid repeat theirs to the bit.
 fn bits<N: Real>(point: Point<N, 3>) -> [u64; 3] {
     // Zeros lose their sign.
     [0, 1, 2].map(|axis| (point[axis] + N::ZERO).bits())
@@ -146,16 +150,18 @@ impl<N: Real> Inflation<'_, N> {
         }
     }
 
-    /// All corners, each with the directions around it.
-    fn corners(&self) -> Vec<(Point<N, 3>, Vec<Vector<N, 3>>)> {
+    /// All corners; `None` if one is as sharp as a needle.
+    fn corners(&self) -> Option<Vec<RoundedCorner<N>>> {
         let mut begun = BTreeMap::new();
         for (index, face) in self.faces.iter().enumerate() {
             for side in sides(face) {
                 begun.entry(bits(side[0])).or_insert((index, side));
             }
         }
-        let corner =
-            |(face, side): (usize, [Point<N, 3>; 2])| (side[0], self.directions_around(face, side));
+        let corner = |(face, side): (usize, [Point<N, 3>; 2])| {
+            let around = self.directions_around(face, side);
+            middle_of(&around).map(|middle| RoundedCorner { point: side[0], around, middle })
+        };
         begun.into_values().map(corner).collect()
     }
 
@@ -188,19 +194,19 @@ impl<N: Real> Inflation<'_, N> {
     }
 
     /// The part of a ball around a corner inside a loop of directions: rings from their middle.
-    fn patch(&self, sketch: &mut Sketch<N, 3>, corner: &Point<N, 3>, around: &[Vector<N, 3>]) {
-        let Some(middle) = middle_of(around) else { return };
+    fn patch(&self, sketch: &mut Sketch<N, 3>, corner: &RoundedCorner<N>) {
+        let RoundedCorner { point, around, middle } = corner;
         let steps = |direction: &Vector<N, 3>| {
             let mut arc = Vec::new();
-            self.bisect(middle, *direction, &mut arc);
+            self.bisect(*middle, *direction, &mut arc);
             arc.len()
         };
         let rings = around.iter().map(steps).max().unwrap_or(1);
         let on_ring = |direction: &Vector<N, 3>, ring: usize| {
             let part = N::lit(ring as f64 / rings as f64);
             let between = middle * (N::ONE - part) + direction * part;
-            let direction = if ring == rings { *direction } else { unit_or(&between, middle) };
-            self.moved(corner, &direction)
+            let direction = if ring == rings { *direction } else { unit_or(&between, *middle) };
+            self.moved(point, &direction)
         };
         let next = around.iter().cycle().skip(1);
         for (p, q) in around.iter().zip(next) {

@@ -226,8 +226,8 @@ where
     let found = nonlinear_time_of_impact(&motion, mover, &still, stays, options);
     let end = found.map_or(options.max_time, |found| found.toi);
     let gap = |time: N| distance(&motion.position_at(time), mover, &Isometry::identity(), stays);
-    for look in 0..24 {
-        let share = N::lit(f64::from(look) / 24.0);
+    for look in 0..12 {
+        let share = N::lit(f64::from(look) / 12.0);
         // All over the way, and ever closer to its end.
         for time in [end * share, end * (N::ONE - share * share * share)] {
             assert!(gap(time) > N::ZERO, "{time} is before {found:?} {motion:?}");

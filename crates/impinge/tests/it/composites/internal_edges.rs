@@ -52,8 +52,8 @@ fn slide_all<N: Real + Space<3, Isometry = Isometry3<N>>>(
                 let start = [random.unit() * 0.3, random.unit() * 0.3];
                 let turned = Isometry3::from_parts(Translation3::identity(), turn);
                 let height = -lowest(solid.as_ref(), &turned) - N::lit(depth);
-                let way = (0..30).map(|step| {
-                    let along = direction * N::lit(f64::from(step) * 0.083 - 1.2);
+                let way = (0..15).map(|step| {
+                    let along = direction * N::lit(f64::from(step) * 0.167 - 1.2);
                     let base = Vector::<N, 3>::new(
                         N::lit(center[0] + start[0]),
                         height + N::lit(center[1]),

@@ -51,8 +51,8 @@ fn slide_all<N: Real + Space<2, Isometry = Isometry2<N>>>(
                 let half = if is_below { N::pi() } else { N::ZERO };
                 let flip = Isometry2::rotation(half);
                 let middle = Isometry2::translation(N::lit(center), N::ZERO);
-                let way = (0..60).map(|step| {
-                    let x = N::lit(start) + side * N::lit(f64::from(step) * 0.071 - 2.0);
+                let way = (0..30).map(|step| {
+                    let x = N::lit(start) + side * N::lit(f64::from(step) * 0.143 - 2.0);
                     let at = Vector::<N, 2>::new(x, height);
                     frame * middle * flip * Isometry2::from_parts(Translation2::from(at), turn)
                 });

@@ -15,21 +15,28 @@ use crate::space::{Stage, Task, run_in};
 
 /// Runs the verb.
 pub(crate) fn run(args: &ViewArgs) -> Result<Outcome, CliError> {
-    let assets = assets(&args.page)?;
-    let input = Input::open(&args.scene)?;
-    let title = args.scene.scene.display().to_string();
-    let live = Live::start(&assets, &title, args.port)?;
-    output::print(&format!("{NAME}{}{NAME:#}\n", live.url()))?;
-    match input {
+    // An address is printed only when there is something to show.
+    match Input::open(&args.scene)? {
         Input::Recording(log) => {
-            live.send(&log.bytes);
+            let bytes = log.into_page_bytes()?;
+            let live = start(args)?;
+            live.send(&bytes);
             wait_for_interrupt()
         }
         Input::Scene(loaded) => {
+            let live = start(args)?;
             run_in(loaded.kind, Show { loaded: &loaded, args, live: &live })?;
             Ok(Outcome::Clear)
         }
     }
+}
+
+/// Starts the server and prints its address.
+fn start(args: &ViewArgs) -> Result<Live, CliError> {
+    let title = args.scene.scene.display().to_string();
+    let live = Live::start(&assets(&args.page)?, &title, args.port)?;
+    output::print(&format!("{NAME}{}{NAME:#}\n", live.url()))?;
+    Ok(live)
 }
 
 /// Serves until the user interrupts the command.
@@ -51,14 +58,15 @@ impl Task for Show<'_> {
 
     fn run<N: Stage<D>, const D: usize>(self) -> Result<(), CliError> {
         let Self { loaded, args, live } = self;
-        let mut world = loaded.moving::<N, D>()?;
-        let pause = Duration::try_from_secs_f64(args.dt.0)
-            .map_err(|error| CliError::argument("--dt", args.dt.0, error))?;
+        let mut world = loaded.moving::<N, D>(args.key_frames)?;
+        let seconds = args.time_step.seconds.0;
+        let pause = Duration::try_from_secs_f64(seconds)
+            .map_err(|error| CliError::argument("--dt", seconds, error))?;
         let mut due = Instant::now();
         for _ in 0..args.steps.unwrap_or(u64::MAX) {
-            world.step(args.dt.0)?;
+            world.step(seconds)?;
             live.send(&world.recorder_mut().take_bytes());
-            // A step that takes longer than it shows delays the next ones, which do not catch up.
+            // A step that takes longer than its pause delays the next ones, which do not catch up.
             due = (due + pause).max(Instant::now());
             thread::sleep(due.saturating_duration_since(Instant::now()));
         }

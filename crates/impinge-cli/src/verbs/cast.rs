@@ -5,11 +5,11 @@ use impinge::query::ImpactOptions;
 use impinge::shape::{Ball, Capsule, Cuboid, ShapeHandle};
 use impinge::world::{CollisionWorld, QueryFilter};
 
-use crate::args::{CastArgs, ShapeKind, ShapeSpec};
+use crate::args::{CastArgs, ShapeKind, ShapeSpec, ShortShape};
 use crate::convert::{scalar, vector};
 use crate::error::CliError;
 use crate::hits::{CastHit, Hits};
-use crate::number::{Number, significant};
+use crate::number::Number;
 use crate::output::{Outcome, finish};
 use crate::scene::Loaded;
 use crate::space::{Stage, Task, run_in};
@@ -17,53 +17,53 @@ use crate::space::{Stage, Task, run_in};
 /// Runs the verb.
 pub(crate) fn run(args: &CastArgs) -> Result<Outcome, CliError> {
     let loaded = Loaded::read(&args.scene)?;
-    finish(&run_in(loaded.kind, Cast { loaded: &loaded, args })?, args.format)
+    finish(&run_in(loaded.kind, CastShape { loaded: &loaded, args })?, args.format)
 }
 
 /// Casts a shape into a scene.
-struct Cast<'a> {
+struct CastShape<'a> {
     loaded: &'a Loaded,
     args: &'a CastArgs,
 }
 
-/// A shape at the start of its way, and what it may hit.
+/// A shape that moves from a start by a translation, and what it may hit.
 struct Sweep<N: Stage<D>, const D: usize> {
     shape: ShapeHandle<N, D>,
     start: N::Isometry,
-    way: Vector<N, D>,
+    translation: Vector<N, D>,
     filter: QueryFilter<'static, N, D, String>,
 }
 
-impl Task for Cast<'_> {
+impl Task for CastShape<'_> {
     type Answer = Hits<CastHit>;
 
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Hits<CastHit>, CliError> {
-        let Cast { loaded, args } = self;
+        let Self { loaded, args } = self;
         let mut world = loaded.world::<N, D>()?;
         world.update();
-        let sweep = self.sweep(&world)?;
-        let Sweep { shape, start, way, filter } = &sweep;
+        let Sweep { shape, start, translation, filter } = self.sweep(&world)?;
+        // The translation is the velocity: it ends at time 1.
         let options = ImpactOptions::new()
             .with_max_time(N::ONE)
             .with_target_distance(scalar("--distance", args.distance.0)?);
-        let mut found = world.cast_shape_all(start, way, &**shape, &options, filter);
+        let mut found = world.cast_shape_all(&start, &translation, &*shape, &options, &filter);
         found.truncate(if args.all { usize::MAX } else { 1 });
-        let (origin, length) = (N::translation(start), way.norm());
+        let (origin, length) = (N::translation(&start), translation.norm());
         let hits = found.into_iter().map(|(object, impact)| CastHit {
             object: object.data().clone(),
             time: Number::new(impact.toi),
             moved: Number::new(impact.toi * length),
-            position: Number::of_vector(&(origin + way * impact.toi)),
+            position: Number::of_vector(&(origin + translation * impact.toi)),
             point: Number::of_point(&impact.world1),
             normal: Number::of_vector(&impact.normal),
             part: impact.part2,
         });
-        Ok(Hits { file: loaded.name(), kind: loaded.kind.fields(), hits: hits.collect() })
+        Ok(Hits { subject: loaded.subject(), hits: hits.collect() })
     }
 }
 
-impl Cast<'_> {
-    /// The shape of the arguments, or the object that they name, which hits what it interacts with.
+impl CastShape<'_> {
+    /// The object that the arguments name, which hits what it interacts with, or their shape, which hits all.
     fn sweep<N: Stage<D>, const D: usize>(
         &self,
         world: &CollisionWorld<N, D, String>,
@@ -75,45 +75,42 @@ impl Cast<'_> {
             return Ok(Sweep {
                 shape: object.shape().clone(),
                 start: *object.position(),
-                way: vector("--by", by)?,
+                translation: vector("--by", by)?,
                 filter: filter.groups(*object.collision_groups()),
             });
         }
         let (Some(spec), Some(from), Some(to)) = (&args.shape, &args.from, &args.to) else {
-            return Err(CliError::argument("--shape", "", "needs --from and --to"));
+            // The command line has all three, or an object.
+            let reason = "with --from and --to is needed, or --object with --by";
+            return Err(CliError::argument("--shape", "SHAPE", reason));
         };
         let start = vector::<N, D>("--from", from)?;
         Ok(Sweep {
             shape: self.shape(spec)?,
             start: N::isometry(&Pose::from_translation(start)),
-            way: vector::<N, D>("--to", to)? - start,
+            translation: vector::<N, D>("--to", to)? - start,
             filter: QueryFilter::new(),
         })
     }
+
     /// The shape of a few characters, of the scene, or in JSON.
     fn shape<N: Stage<D>, const D: usize>(
         &self,
         spec: &ShapeSpec,
     ) -> Result<ShapeHandle<N, D>, CliError> {
         match spec {
-            ShapeSpec::Sizes { kind, sizes } => sized(*kind, sizes),
+            ShapeSpec::Short(short) => made(short),
             ShapeSpec::Scene(text) => Ok(self.loaded.scene().shape(text)?),
         }
     }
 }
 
 /// The shape of a kind with its sizes.
-fn sized<N: Stage<D>, const D: usize>(
-    kind: ShapeKind,
-    sizes: &[f64],
-) -> Result<ShapeHandle<N, D>, CliError> {
-    let converted = sizes.iter().map(|size| scalar::<N>("--shape", *size));
-    let converted = converted.collect::<Result<Vec<_>, _>>()?;
-    let refused = |reason: String| {
-        let text = sizes.iter().copied().map(significant).collect::<Vec<_>>().join(",");
-        CliError::argument("--shape", format!("{}:{text}", kind.name()), reason)
-    };
-    let made = match (kind, converted.as_slice()) {
+fn made<N: Stage<D>, const D: usize>(short: &ShortShape) -> Result<ShapeHandle<N, D>, CliError> {
+    let refused = |reason: String| CliError::argument("--shape", short, reason);
+    let sizes = short.sizes.0.iter().map(|size| scalar::<N>("--shape", *size));
+    let sizes = sizes.collect::<Result<Vec<_>, _>>()?;
+    let made = match (short.kind, sizes.as_slice()) {
         (ShapeKind::Ball, &[radius]) => Ball::try_new(radius).map(ShapeHandle::new),
         (ShapeKind::Cuboid, extents) if extents.len() == D => {
             Cuboid::try_new(Vector::<N, D>::from_column_slice(extents)).map(ShapeHandle::new)
@@ -121,11 +118,16 @@ fn sized<N: Stage<D>, const D: usize>(
         (ShapeKind::Capsule, &[half_height, radius]) => {
             Capsule::try_new(half_height, radius).map(ShapeHandle::new)
         }
-        (ShapeKind::Ball, _) => return Err(refused("a ball has a radius".into())),
-        (ShapeKind::Cuboid, _) => return Err(refused(format!("a box has {D} half extents"))),
-        (ShapeKind::Capsule, _) => {
-            return Err(refused("a capsule has half a height and a radius".into()));
-        }
+        (kind, _) => return Err(refused(sizes_of::<D>(kind))),
     };
     made.map_err(|error| refused(error.to_string()))
+}
+
+/// Which sizes a kind of shape has.
+fn sizes_of<const D: usize>(kind: ShapeKind) -> String {
+    match kind {
+        ShapeKind::Ball => "a ball has a radius".to_owned(),
+        ShapeKind::Cuboid => format!("a box has {D} half extents"),
+        ShapeKind::Capsule => "a capsule has half a height and a radius".to_owned(),
+    }
 }

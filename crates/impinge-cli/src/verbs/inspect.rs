@@ -1,19 +1,18 @@
 //! `impinge inspect`: what is in a file, and what is wrong with its meshes.
 
-use core::fmt::Write as _;
+use core::fmt;
 
 use impinge_files::MeshReport;
-use impinge_record::{Registry, Replay};
 use serde::Serialize;
 
 use crate::args::InspectArgs;
 use crate::error::CliError;
 use crate::input::Input;
-use crate::number::{Number, significant, tuple};
-use crate::output::{FAINT, NAME, Outcome, Report, TOUCHES, finish};
-use crate::recording::{Label, Log, in_file};
+use crate::log::Log;
+use crate::number::{Number, tuple};
+use crate::output::{FAINT, NAME, Outcome, Report, Subject, TOUCHES, finish};
 use crate::scene::Loaded;
-use crate::space::{KindFields, Stage, Task, run_in};
+use crate::space::{Stage, Task, run_in};
 
 /// Runs the verb.
 pub(crate) fn run(args: &InspectArgs) -> Result<Outcome, CliError> {
@@ -23,21 +22,22 @@ pub(crate) fn run(args: &InspectArgs) -> Result<Outcome, CliError> {
     }
 }
 
-/// Looks at a scene.
+/// Reads the objects and meshes of a scene.
 struct InspectScene<'a>(&'a Loaded);
 
-/// Looks at a recording.
+/// Reads the header and the steps of a recording.
 struct InspectLog<'a>(&'a Log);
 
 /// What is in a scene.
 #[derive(Debug, Serialize)]
 struct SceneReport {
-    file: String,
-    kind: &'static str,
     #[serde(flatten)]
-    space: KindFields,
+    subject: Subject,
+    kind: &'static str,
     objects: Vec<ObjectFields>,
     meshes: Vec<MeshFields>,
+    /// Joints of robots at values outside their limits.
+    joints_beyond_limits: Vec<String>,
 }
 
 /// An object and the box around it; null where it has no bound.
@@ -56,22 +56,32 @@ struct MeshFields {
     name: String,
     vertices: usize,
     triangles: usize,
+    /// Connected components.
     pieces: usize,
+    /// Each edge has two triangles or more.
     closed: bool,
+    /// Closed, with two triangles at each edge that agree about the front.
     solid: bool,
+    /// Of a solid; negative if it is inside out.
     volume: Option<f64>,
+    /// Edges with one triangle.
     boundary_edges: usize,
+    /// All of these as text.
+    #[serde(skip)]
+    numbers: String,
+    /// A line for each kind of defect, with where the first ones are.
     problems: Vec<String>,
 }
 
 /// What is in a recording.
 #[derive(Debug, Serialize)]
 struct LogReport {
-    file: String,
-    kind: &'static str,
     #[serde(flatten)]
-    space: KindFields,
+    subject: Subject,
+    kind: &'static str,
+    /// Of the format.
     version: u32,
+    /// The program that wrote it, with its version.
     writer: String,
     steps: usize,
 }
@@ -97,14 +107,14 @@ impl Task for InspectScene<'_> {
             let path = path.display().to_string();
             meshes.extend(file.parts().iter().map(|part| fields(&path, &part.name, &part.report)));
         }
-        let (file, space) = (loaded.name(), loaded.kind.fields());
-        Ok(SceneReport { file, kind: "scene", space, objects, meshes })
+        let joints = loaded.scene().joints_beyond_limits().iter();
+        let joints_beyond_limits = joints.map(ToString::to_string).collect();
+        let subject = loaded.subject();
+        Ok(SceneReport { subject, kind: "scene", objects, meshes, joints_beyond_limits })
     }
 }
 
 fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
-    // The first line has the numbers, and each of the others a problem.
-    let problems = report.to_string().lines().skip(1).map(str::to_owned).collect();
     MeshFields {
         file: file.to_owned(),
         name: name.to_owned(),
@@ -115,7 +125,9 @@ fn fields(file: &str, name: &str, report: &MeshReport) -> MeshFields {
         solid: report.is_solid(),
         volume: report.volume,
         boundary_edges: report.boundary_edges.count,
-        problems,
+        // The first line; the others are the problems.
+        numbers: report.to_string().lines().next().unwrap_or_default().to_owned(),
+        problems: report.problems(),
     }
 }
 
@@ -124,71 +136,50 @@ impl Task for InspectLog<'_> {
 
     fn run<N: Stage<D>, const D: usize>(self) -> Result<LogReport, CliError> {
         let log = self.0;
-        let registry = Registry::<N, D, Label>::new();
-        let replay = Replay::<N, D, Label>::open(log.bytes.as_slice(), &registry)
-            .map_err(in_file(&log.path))?;
         Ok(LogReport {
-            file: log.name(),
+            subject: log.subject(),
             kind: "recording",
-            space: log.kind.fields(),
             version: log.header.version,
             writer: log.header.writer.clone(),
-            steps: replay.len(),
+            steps: log.replay::<N, D>()?.len(),
         })
     }
 }
 
-impl Report for SceneReport {
-    fn text(&self) -> String {
-        let mut text = String::new();
-        let Self { file, space, objects, .. } = self;
-        let count = objects.len();
-        let _ = writeln!(text, "{NAME}{file}{NAME:#} {FAINT}({space}){FAINT:#}: {count} objects");
-        for ObjectFields { name, shape, low, high } in objects {
-            let (low, high) = (tuple(low), tuple(high));
-            let _ = writeln!(
-                text,
+impl fmt::Display for SceneReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {} objects", self.subject, self.objects.len())?;
+        for ObjectFields { name, shape, low, high } in &self.objects {
+            let [low, high] = [low, high].map(|numbers| tuple(numbers));
+            writeln!(
+                f,
                 "  {NAME}{name}{NAME:#} {shape} {FAINT}from{FAINT:#} {low} {FAINT}to{FAINT:#} {high}"
-            );
+            )?;
         }
-        self.meshes.iter().for_each(|mesh| mesh.write(&mut text));
-        text
+        self.meshes.iter().try_for_each(|mesh| mesh.fmt(f))?;
+        self.joints_beyond_limits.iter().try_for_each(|joint| writeln!(f, "{joint}"))
     }
+}
 
+impl Report for SceneReport {
     fn outcome(&self) -> Outcome {
         self.meshes.iter().any(|mesh| !mesh.problems.is_empty()).into()
     }
 }
 
-impl MeshFields {
-    fn write(&self, text: &mut String) {
-        let Self { file, name, vertices, triangles, pieces, boundary_edges, .. } = self;
-        let _ = write!(
-            text,
-            "{NAME}{file}{NAME:#} part {NAME}{name}{NAME:#}: {vertices} vertices, {triangles} triangles, \
-             {pieces} pieces, "
-        );
-        let _ = match (self.volume, self.closed) {
-            (Some(volume), _) => writeln!(text, "closed, volume {}", significant(volume)),
-            (None, true) => writeln!(text, "closed, without a volume"),
-            (None, false) => writeln!(text, "open, {boundary_edges} boundary edges"),
-        };
-        for problem in &self.problems {
-            let _ = writeln!(text, "  {TOUCHES}{problem}{TOUCHES:#}");
-        }
+impl fmt::Display for MeshFields {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, name, numbers, problems, .. } = self;
+        writeln!(f, "{NAME}{file}{NAME:#} part {NAME}{name}{NAME:#}: {numbers}")?;
+        problems.iter().try_for_each(|text| writeln!(f, "  {TOUCHES}{text}{TOUCHES:#}"))
     }
 }
 
-impl Report for LogReport {
-    fn text(&self) -> String {
-        let Self { file, space, version, writer, steps, .. } = self;
-        format!(
-            "{NAME}{file}{NAME:#} {FAINT}({space}){FAINT:#}: a recording of version {version} by {writer}, \
-             {steps} steps\n"
-        )
-    }
-
-    fn outcome(&self) -> Outcome {
-        Outcome::Clear
+impl fmt::Display for LogReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { subject, version, writer, steps, .. } = self;
+        writeln!(f, "{subject}: a recording of version {version} by {writer}, {steps} steps")
     }
 }
+
+impl Report for LogReport {}

@@ -1,6 +1,6 @@
 //! `impinge validate`: whether recordings replay to the same bits.
 
-use core::fmt::Write as _;
+use core::fmt;
 
 use impinge::world::CollisionWorld;
 use impinge_record::{Difference, Divergence, ObjectField, Registry, Replay, validate};
@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use crate::args::ValidateArgs;
 use crate::error::CliError;
+use crate::log::{Label, Log, in_file, name_of};
 use crate::output::{CLEAR, FAINT, NAME, Outcome, Report, TOUCHES, finish};
 use crate::progress::Progress;
-use crate::recording::{Label, Log, Named, in_file};
 use crate::space::{Stage, Task, run_in};
 
 /// Runs the verb.
@@ -18,29 +18,30 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Outcome, CliError> {
     let mut progress = Progress::new(args.logs.len(), "replaying");
     let recordings = args.logs.iter().map(|path| {
         let log = Log::read(path)?;
-        let checked = run_in(log.kind, Check(&log));
+        let checked = run_in(log.kind, CompareHashes(&log));
         progress.step();
         checked
     });
     let recordings = recordings.collect::<Result<_, _>>()?;
     drop(progress);
-    finish(&Verdicts { recordings }, args.format)
+    finish(&ValidateReport { recordings }, args.format)
 }
 
 /// Replays a recording and compares all hashes.
-struct Check<'a>(&'a Log);
+struct CompareHashes<'a>(&'a Log);
 
 /// Whether recordings replay to the same bits.
 #[derive(Debug, Serialize)]
-struct Verdicts {
-    recordings: Vec<Verdict>,
+struct ValidateReport {
+    recordings: Vec<Validated>,
 }
 
 /// Whether one does.
 #[derive(Debug, Serialize)]
-struct Verdict {
+struct Validated {
     file: String,
     steps: usize,
+    /// There is no difference.
     same: bool,
     difference: Option<FirstDifference>,
 }
@@ -58,16 +59,18 @@ struct FirstDifference {
     field: &'static str,
 }
 
-impl Task for Check<'_> {
-    type Answer = Verdict;
+impl Task for CompareHashes<'_> {
+    type Answer = Validated;
 
-    fn run<N: Stage<D>, const D: usize>(self) -> Result<Verdict, CliError> {
+    fn run<N: Stage<D>, const D: usize>(self) -> Result<Validated, CliError> {
         let log = self.0;
         let failed = in_file(&log.path);
         let registry = Registry::<N, D, Label>::new();
-        let found = validate(log.bytes.as_slice(), &registry).map_err(&failed)?;
-        let mut replay =
-            Replay::<N, D, Label>::open(log.bytes.as_slice(), &registry).map_err(&failed)?;
+        let found = validate(&log.bytes, &registry).map_err(&failed)?;
+        // A second replay, for the number of steps and for the world in which an object has its name: validation
+        // ends at the end of the recording.
+        let replay = Replay::<N, D, Label>::open(log.bytes.as_slice(), &registry);
+        let mut replay = replay.map_err(&failed)?;
         let steps = replay.len();
         let difference = match found {
             Some(found) => {
@@ -76,7 +79,7 @@ impl Task for Check<'_> {
             }
             None => None,
         };
-        Ok(Verdict { file: log.name(), steps, same: difference.is_none(), difference })
+        Ok(Validated { file: log.name(), steps, same: difference.is_none(), difference })
     }
 }
 
@@ -88,7 +91,7 @@ fn described<N: Stage<D>, const D: usize>(
     let (object, field) = match found.difference {
         Difference::Object { index, field } => {
             let object = world.collision_objects().find(|object| object.handle().uid() == index);
-            let name = object.map_or_else(|| format!("#{index}"), Named::name);
+            let name = object.map_or_else(|| format!("#{index}"), name_of);
             (Some(name), field_name(field))
         }
         Difference::State => (None, "state"),
@@ -106,26 +109,32 @@ const fn field_name(field: ObjectField) -> &'static str {
     }
 }
 
-impl Report for Verdicts {
-    fn text(&self) -> String {
-        let mut text = String::new();
-        for Verdict { file, steps, difference, .. } in &self.recordings {
-            let _ = write!(text, "{NAME}{file}{NAME:#} ");
-            let Some(found) = difference else {
-                let _ = writeln!(text, "{CLEAR}same bits{CLEAR:#} at all {steps} steps");
-                continue;
-            };
-            let FirstDifference { step, byte, object, field } = found;
-            let _ = write!(text, "{TOUCHES}differs{TOUCHES:#} first at step {step}: ");
-            if let Some(object) = object {
-                let _ = write!(text, "object {NAME}{object}{NAME:#}, ");
+impl fmt::Display for ValidateReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for Validated { file, steps, difference, .. } in &self.recordings {
+            write!(f, "{NAME}{file}{NAME:#} ")?;
+            match difference {
+                Some(difference) => writeln!(f, "{difference}")?,
+                None => writeln!(f, "{CLEAR}same bits{CLEAR:#} at all {steps} steps")?,
             }
-            let _ = writeln!(text, "{field} {FAINT}(byte {byte}){FAINT:#}");
         }
-        text
+        Ok(())
     }
+}
 
+impl fmt::Display for FirstDifference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { step, byte, object, field } = self;
+        write!(f, "{TOUCHES}differs{TOUCHES:#} first at step {step}: ")?;
+        if let Some(object) = object {
+            write!(f, "object {NAME}{object}{NAME:#}, ")?;
+        }
+        write!(f, "{field} {FAINT}(byte {byte}){FAINT:#}")
+    }
+}
+
+impl Report for ValidateReport {
     fn outcome(&self) -> Outcome {
-        self.recordings.iter().any(|verdict| !verdict.same).into()
+        self.recordings.iter().any(|recording| !recording.same).into()
     }
 }

@@ -1,23 +1,21 @@
 //! `impinge samples`: the samples as a list, or as a folder for browsers.
 
-use core::fmt::Write as _;
+use core::fmt;
 use std::fs;
 use std::path::Path;
 
-use impinge::debug_render::{DebugDrawing, DebugOptions};
+use impinge::debug_render::DebugOptions;
 use impinge::dim3::math::Vector;
-use impinge::math::Real;
 use impinge_samples::{Entry, Make, Running, Sample, entries};
 use impinge_view::{Camera, PngPicture};
 use serde::Serialize;
 
 use crate::args::{SamplesArgs, Size};
 use crate::error::CliError;
-use crate::extent::extent;
 use crate::output::{self, FAINT, NAME, Outcome, Report, finish};
 use crate::page::assets;
+use crate::picture::drawing;
 use crate::progress::Progress;
-use crate::render::object_color;
 use crate::space::Stage;
 
 /// Runs the verb.
@@ -31,9 +29,10 @@ pub(crate) fn run(args: &SamplesArgs) -> Result<Outcome, CliError> {
     finish(&SamplesReport { output, samples }, args.format)
 }
 
-/// The samples there are.
+/// All samples.
 #[derive(Debug, Serialize)]
 struct SamplesReport {
+    /// The folder that was written, if one was.
     output: Option<String>,
     samples: Vec<Listed>,
 }
@@ -54,26 +53,21 @@ impl Listed {
     }
 }
 
-impl Report for SamplesReport {
-    fn text(&self) -> String {
-        let mut text = String::new();
+impl fmt::Display for SamplesReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(output) = &self.output {
-            let count = self.samples.len();
-            let _ = writeln!(text, "{NAME}{output}{NAME:#}: {count} samples");
-            return text;
+            return writeln!(f, "{NAME}{output}{NAME:#}: {} samples", self.samples.len());
         }
         for Listed { name, title, about, .. } in &self.samples {
-            let _ = writeln!(text, "{NAME}{name}{NAME:#}  {title}\n  {FAINT}{about}{FAINT:#}");
+            writeln!(f, "{NAME}{name}{NAME:#}  {title}\n  {FAINT}{about}{FAINT:#}")?;
         }
-        text
-    }
-
-    fn outcome(&self) -> Outcome {
-        Outcome::Clear
+        Ok(())
     }
 }
 
-/// What a picture shows comes after so many steps.
+impl Report for SamplesReport {}
+
+/// A picture shows a sample after so many steps: most have contacts by then.
 const STEPS: usize = 45;
 
 /// Writes a small picture of each sample.
@@ -82,10 +76,9 @@ fn thumbnails(folder: &Path, size: Size) -> Result<(), CliError> {
     fs::create_dir_all(&folder).map_err(|error| CliError::Write { path: folder.clone(), error })?;
     let mut progress = Progress::new(entries().len(), "drawing samples");
     for entry in entries() {
-        let spatial = Camera::look_along(&Vector::new(-1.0, -1.0, -2.0), &Vector::y());
         let picture = match entry.make {
-            Make::Plane(make) => thumbnail(entry, make(), PngPicture::new(Camera::plane(), size.0)),
-            Make::Space(make) => thumbnail(entry, make(), PngPicture::new(spatial, size.0)),
+            Make::Plane(make) => thumbnail(entry, make(), size),
+            Make::Space(make) => thumbnail(entry, make(), size),
         };
         output::write(&folder.join(format!("{}.png", entry.name)), &picture?)?;
         progress.step();
@@ -93,11 +86,11 @@ fn thumbnails(folder: &Path, size: Size) -> Result<(), CliError> {
     Ok(())
 }
 
-/// A sample after some steps.
+/// A picture of a sample after some steps.
 fn thumbnail<const D: usize>(
     entry: &Entry,
     sample: Box<dyn Sample<D>>,
-    picture: PngPicture,
+    size: Size,
 ) -> Result<Vec<u8>, CliError>
 where
     f32: Stage<D>,
@@ -107,11 +100,9 @@ where
     for _ in 0..STEPS {
         running.advance().map_err(failed)?;
     }
-    let extent = extent(running.world());
-    let mut options = DebugOptions::default();
-    options.mesh.half_space_extent = f32::lit(extent.whole);
-    let mut picture = picture.without_texts();
-    let mut drawing = DebugDrawing::new(options).with_object_color(object_color);
+    let spatial = Camera::look_along(&Vector::new(-1.0, -1.0, -2.0), &Vector::y());
+    let mut picture = PngPicture::new(<f32 as Stage<D>>::camera(spatial), size.0).without_texts();
+    let mut drawing = drawing(running.world(), DebugOptions::default());
     drawing.world(running.world(), &mut picture);
     running.draw(&mut drawing, &mut picture);
     Ok(picture.to_png())

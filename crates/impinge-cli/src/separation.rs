@@ -1,42 +1,46 @@
-//! How two objects are to each other: the fields of `check` and `distance`.
+//! How far apart or how deep two objects are: the fields of `check` and `distance`.
 
 use core::cmp::Ordering;
-use core::fmt::Write as _;
+use core::fmt;
 
 use impinge::query::Witness;
 use impinge_record::Recordable;
 use serde::Serialize;
 
 use crate::number::{Number, tuple};
-use crate::output::{CLEAR, FAINT, NAME, NEAR, TOUCHES};
-use crate::summary::State;
+use crate::output::FAINT;
+use crate::state::State;
 
 /// Two objects and the points where they are nearest or deepest. What is null has no bound: half-spaces
 /// that overlap for ever.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Between {
+pub(crate) struct Separation {
     pub(crate) first: String,
     pub(crate) second: String,
     pub(crate) state: State,
     /// Zero if they touch.
     pub(crate) distance: Option<Number>,
-    /// Zero unless they overlap.
+    /// Zero unless they overlap: the length of the shortest translation that parts them.
     pub(crate) depth: Option<Number>,
+    /// On the first object, in the world.
     pub(crate) point1: Option<Vec<Number>>,
+    /// On the second.
     pub(crate) point2: Option<Vec<Number>>,
     /// From the first to the second, of length 1.
     pub(crate) normal: Option<Vec<Number>>,
+    /// The part of the first that has the point; 0 of a convex shape.
     pub(crate) part1: Option<u32>,
     pub(crate) part2: Option<u32>,
 }
 
-impl Between {
-    /// Two objects with the nearest points of their shapes; near if these are within a margin.
-    pub(crate) fn apart_or_not<N: Recordable<D>, const D: usize>(
-        names: [String; 2],
+impl Separation {
+    /// Of two objects with a witness; near if they are within a margin.
+    pub(crate) fn of_witness<N: Recordable<D>, const D: usize>(
+        [first, second]: [String; 2],
         found: &Witness<N, D>,
         margin: N,
     ) -> Self {
+        // The distance of a witness is signed: minus the depth where the two overlap.
         let distance = impinge::math::max(found.distance, N::ZERO);
         let depth = impinge::math::max(-found.distance, N::ZERO);
         let state = if found.distance <= N::ZERO {
@@ -46,7 +50,6 @@ impl Between {
         } else {
             State::Apart
         };
-        let [first, second] = names;
         Self {
             first,
             second,
@@ -61,16 +64,15 @@ impl Between {
         }
     }
 
-    /// Two objects without nearest points: half-spaces that overlap without bound, or something infinitely
+    /// Of two objects without nearest points: half-spaces that overlap without bound, or something infinitely
     /// far away.
-    pub(crate) fn unbounded(names: [String; 2], state: State) -> Self {
-        let [first, second] = names;
+    pub(crate) fn unbounded([first, second]: [String; 2], state: State) -> Self {
         let (distance, depth, point1, point2) = (None, None, None, None);
         let (normal, part1, part2) = (None, None, None);
         Self { first, second, state, distance, depth, point1, point2, normal, part1, part2 }
     }
 
-    /// The deepest first, then the nearest; without bound before all.
+    /// The deepest first, then the nearest; without bound before all. Names decide between equals.
     pub(crate) fn by_depth(&self, other: &Self) -> Ordering {
         let key = |one: &Self| match (one.depth, one.distance) {
             (Some(depth), Some(distance)) => distance.value() - depth.value(),
@@ -79,36 +81,26 @@ impl Between {
         let by_name = || self.first.cmp(&other.first).then_with(|| self.second.cmp(&other.second));
         key(self).total_cmp(&key(other)).then_with(by_name)
     }
+}
 
-    /// A line: the state, the names, and how deep or how far apart.
-    pub(crate) fn headline(&self, text: &mut String) {
-        let style = match self.state {
-            State::Touch => TOUCHES,
-            State::Near => NEAR,
-            State::Apart => CLEAR,
-        };
-        let Self { first, second, state, .. } = self;
-        let word = state.word();
-        let _ =
-            write!(text, "{style}{word:5}{style:#} {NAME}{first}{NAME:#} {NAME}{second}{NAME:#}");
-        let _ = match (state, self.depth, self.distance) {
-            (State::Touch, Some(depth), _) => writeln!(text, "  depth {depth}"),
-            (State::Touch, None, _) => writeln!(text, "  without bound"),
-            (_, _, Some(distance)) => writeln!(text, "  distance {distance}"),
-            (_, _, None) => writeln!(text, "  infinitely far"),
-        };
-    }
-
-    /// A second line: the points and the normal.
-    pub(crate) fn points(&self, text: &mut String) {
-        if let (Some(point1), Some(point2), Some(normal)) =
-            (&self.point1, &self.point2, &self.normal)
-        {
-            let [point1, point2, normal] = [point1, point2, normal].map(|numbers| tuple(numbers));
-            let _ = writeln!(
-                text,
-                "      {FAINT}from{FAINT:#} {point1} {FAINT}to{FAINT:#} {point2} {FAINT}along{FAINT:#} {normal}"
-            );
+/// A line with the state, the names and the length, and one with the points and the normal.
+impl fmt::Display for Separation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.state.headline(f, &self.first, &self.second)?;
+        match (self.state, self.depth, self.distance) {
+            (State::Touch, Some(depth), _) => writeln!(f, "  depth {depth}")?,
+            (State::Touch, None, _) => writeln!(f, "  without bound")?,
+            (_, _, Some(distance)) => writeln!(f, "  distance {distance}")?,
+            (_, _, None) => writeln!(f, "  infinitely far")?,
         }
+        let (Some(point1), Some(point2), Some(normal)) = (&self.point1, &self.point2, &self.normal)
+        else {
+            return Ok(());
+        };
+        let [point1, point2, normal] = [point1, point2, normal].map(|numbers| tuple(numbers));
+        writeln!(
+            f,
+            "      {FAINT}from{FAINT:#} {point1} {FAINT}to{FAINT:#} {point2} {FAINT}along{FAINT:#} {normal}"
+        )
     }
 }

@@ -1,0 +1,154 @@
+//! Recordings as the command reads them: of any scalar, dimension and data.
+
+use std::path::{Path, PathBuf};
+
+use impinge::math::Space;
+use impinge::world::CollisionObject;
+use impinge_files::{Dimension, ScalarFile};
+use impinge_record::{Header, Loss, Problem, ReadError, Registry, Replay};
+
+use crate::error::CliError;
+use crate::input;
+use crate::output::{Subject, note};
+use crate::space::{Kind, Stage, Task, run_in};
+
+/// The data of a recorded object: any bytes, which are its name if they are text.
+pub(crate) type Label = Vec<u8>;
+
+/// The bytes of a recording, and what its header says.
+#[derive(Debug)]
+pub(crate) struct Log {
+    pub(crate) path: PathBuf,
+    pub(crate) bytes: Vec<u8>,
+    pub(crate) header: Header,
+    pub(crate) kind: Kind,
+}
+
+impl Log {
+    /// Reads a recording from a file or from standard input; of its bytes only the header is decoded.
+    pub(crate) fn read(path: &Path) -> Result<Self, CliError> {
+        Self::of_bytes(path, input::read(path)?)
+    }
+
+    /// A recording of which the bytes have been read.
+    pub(crate) fn of_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, CliError> {
+        let header = Header::read(&bytes).map_err(in_file(path))?;
+        let kind = kind_of(&header).ok_or_else(|| CliError::ForeignRecording {
+            path: path.to_owned(),
+            scalar_bytes: header.scalar_bytes,
+            dimension: header.dimension,
+        })?;
+        Ok(Self { path: path.to_owned(), bytes, header, kind })
+    }
+
+    /// The file, as reports name it.
+    pub(crate) fn name(&self) -> String {
+        self.path.display().to_string()
+    }
+
+    /// With what a report on the recording begins.
+    pub(crate) fn subject(&self) -> Subject {
+        Subject { file: self.name(), kind: self.kind }
+    }
+
+    /// The recording at step 0.
+    ///
+    /// Of one that lacks its end, because the program that wrote it died, or whose end is damaged, the records
+    /// before; a note says how many steps these are. Other errors, such as an unknown shape, are errors here too.
+    pub(crate) fn replay<N: Stage<D>, const D: usize>(
+        &self,
+    ) -> Result<Replay<N, D, Label>, CliError> {
+        let replay = Replay::salvage(self.bytes.as_slice(), &Registry::new());
+        let replay = replay.map_err(in_file(&self.path))?;
+        match replay.loss() {
+            None => {}
+            Some(Loss { error, bytes, .. }) if is_damage(error) => note(format_args!(
+                "{}: the end of the recording cannot be read ({error}): {} steps are kept, {bytes} bytes left out",
+                self.path.display(),
+                replay.len()
+            )),
+            Some(Loss { error, .. }) => return Err(in_file(&self.path)(error.clone())),
+        }
+        Ok(replay)
+    }
+
+    /// The recording at a step, or at its last one.
+    pub(crate) fn replay_to<N: Stage<D>, const D: usize>(
+        &self,
+        step: Option<usize>,
+    ) -> Result<Replay<N, D, Label>, CliError> {
+        let mut replay = self.replay()?;
+        let last = replay.len();
+        let step = step.unwrap_or(last);
+        if step > last {
+            return Err(CliError::NoStep { path: self.path.clone(), step, last });
+        }
+        replay.seek(step).map_err(in_file(&self.path))?;
+        Ok(replay)
+    }
+
+    /// The bytes for a page, which takes a recording without its end, but none with half a record.
+    ///
+    /// The page has stand-ins for shapes that a registry would have to name; they are nothing that a replay of
+    /// the command could read.
+    pub(crate) fn into_page_bytes(self) -> Result<Vec<u8>, CliError> {
+        match run_in(self.kind, WholeRecords(&self)) {
+            Err(CliError::Recording { error, .. })
+                if matches!(error.problem, Problem::UnknownShape(_)) =>
+            {
+                Ok(self.bytes)
+            }
+            bytes => bytes,
+        }
+    }
+}
+
+/// Reads a recording for its bytes, without what a replay leaves out.
+struct WholeRecords<'a>(&'a Log);
+
+impl Task for WholeRecords<'_> {
+    type Answer = Vec<u8>;
+
+    fn run<N: Stage<D>, const D: usize>(self) -> Result<Vec<u8>, CliError> {
+        Ok(self.0.replay::<N, D>()?.bytes().to_vec())
+    }
+}
+
+/// The bytes are not those that were written, or not all of them. A file system that lost its power may leave zeros
+/// for the last bytes, in which the checksum is wrong.
+const fn is_damage(error: &ReadError) -> bool {
+    matches!(error.problem, Problem::Truncated | Problem::Checksum)
+}
+
+/// A problem of a recording as one of a file.
+pub(crate) fn in_file(path: &Path) -> impl Fn(ReadError) -> CliError {
+    let path = path.to_owned();
+    move |error| CliError::Recording { path: path.clone(), error }
+}
+
+/// The scalar and dimension of a recording, if the library has them.
+const fn kind_of(header: &Header) -> Option<Kind> {
+    let scalar = match header.scalar_bytes {
+        4 => ScalarFile::F32,
+        8 => ScalarFile::F64,
+        _ => return None,
+    };
+    let dimension = match header.dimension {
+        2 => Dimension::Two,
+        3 => Dimension::Three,
+        _ => return None,
+    };
+    Some(Kind { dimension, scalar })
+}
+
+/// The name of a recorded object: its data, if that is text that can be printed; else the index of its handle.
+pub(crate) fn name_of<N: Space<D>, const D: usize>(
+    object: &CollisionObject<N, D, Label>,
+) -> String {
+    let text = core::str::from_utf8(object.data()).unwrap_or_default();
+    if text.is_empty() || text.chars().any(char::is_control) {
+        format!("#{}", object.handle().uid())
+    } else {
+        text.to_owned()
+    }
+}

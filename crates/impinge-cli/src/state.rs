@@ -1,0 +1,38 @@
+//! Whether two objects touch.
+
+use core::fmt;
+
+use anstyle::Style;
+use serde::Serialize;
+
+use crate::output::{CLEAR, NAME, NEAR, TOUCHES};
+
+/// The state of a pair of objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum State {
+    /// Their distance is zero.
+    Touch,
+    /// They are apart, but within the clearance or margin.
+    Near,
+    /// They are farther apart.
+    Apart,
+}
+
+impl State {
+    /// With what a line about a pair begins: the state and the names.
+    pub(crate) fn headline(
+        self,
+        f: &mut fmt::Formatter<'_>,
+        first: &str,
+        second: &str,
+    ) -> fmt::Result {
+        let (word, style): (_, Style) = match self {
+            Self::Touch => ("touch", TOUCHES),
+            Self::Near => ("near", NEAR),
+            Self::Apart => ("apart", CLEAR),
+        };
+        // As wide as the longest word, so that names of several lines line up.
+        write!(f, "{style}{word:5}{style:#} {NAME}{first}{NAME:#} {NAME}{second}{NAME:#}")
+    }
+}

@@ -1,0 +1,50 @@
+//! `impinge export`: a recording as one HTML file.
+
+use core::fmt;
+
+use serde::Serialize;
+
+use crate::args::ExportArgs;
+use crate::error::CliError;
+use crate::input::Input;
+use crate::log::in_file;
+use crate::motion::record;
+use crate::output::{self, NAME, Outcome, Report, finish};
+use crate::page::assets;
+
+/// Runs the verb.
+pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
+    let assets = assets(&args.page)?;
+    let (file, bytes) = match Input::open(&args.scene)? {
+        Input::Recording(log) => (log.name(), log.into_page_bytes()?),
+        Input::Scene(loaded) => {
+            (loaded.name(), record(&loaded, args.stepping, args.key_frames)?.bytes)
+        }
+    };
+    let packed = impinge_record::pack(&bytes).map_err(in_file(&args.scene.scene))?;
+    let page = impinge_html::export(&assets, &packed, args.title.as_ref().unwrap_or(&file))?;
+    output::write(&args.output.path, page.as_bytes())?;
+    let output = args.output.path.display().to_string();
+    let report = ExportReport { file, output, bytes: page.len(), recording: packed.len() };
+    finish(&report, args.format)
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct ExportReport {
+    file: String,
+    output: String,
+    /// Of the page.
+    bytes: usize,
+    /// Bytes of the packed recording in it, before its letters are those of base64.
+    recording: usize,
+}
+
+impl fmt::Display for ExportReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { output, bytes, recording, .. } = self;
+        writeln!(f, "{NAME}{output}{NAME:#}: {bytes} bytes, {recording} of the recording")
+    }
+}
+
+impl Report for ExportReport {}

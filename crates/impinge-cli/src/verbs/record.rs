@@ -1,0 +1,53 @@
+//! `impinge record`: the objects of a scene move, and every step is recorded.
+
+use core::fmt;
+
+use serde::Serialize;
+
+use crate::args::RecordArgs;
+use crate::error::CliError;
+use crate::motion::{Recorded, record};
+use crate::output::{self, NAME, Outcome, Report, Subject, finish};
+use crate::scene::Loaded;
+
+/// Runs the verb.
+pub(crate) fn run(args: &RecordArgs) -> Result<Outcome, CliError> {
+    let loaded = Loaded::read(&args.scene)?;
+    let Recorded { bytes, objects, touched } = record(&loaded, args.stepping, args.key_frames)?;
+    output::write(&args.output.path, &bytes)?;
+    let report = RecordReport {
+        subject: loaded.subject(),
+        output: args.output.path.display().to_string(),
+        steps: args.stepping.steps,
+        bytes: bytes.len(),
+        objects,
+        touched,
+    };
+    finish(&report, args.format)
+}
+
+/// What was recorded.
+#[derive(Debug, Serialize)]
+struct RecordReport {
+    #[serde(flatten)]
+    subject: Subject,
+    output: String,
+    steps: u32,
+    bytes: usize,
+    objects: usize,
+    /// After how many steps something touched.
+    touched: usize,
+}
+
+impl fmt::Display for RecordReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { subject, output, steps, bytes, objects, touched } = self;
+        writeln!(
+            f,
+            "{subject}: {objects} objects, something touches after {touched} of {steps} steps"
+        )?;
+        writeln!(f, "{NAME}{output}{NAME:#}: {bytes} bytes")
+    }
+}
+
+impl Report for RecordReport {}

@@ -1,0 +1,106 @@
+//! Accessors of glTF: whether their numbers are of a type and lie within the buffers.
+//!
+//! The crate `gltf` trusts both, and the indices of sparse accessors: it reads what was checked here.
+
+use gltf::accessor::sparse::Sparse;
+use gltf::accessor::{DataType, Dimensions};
+use gltf::{Accessor, buffer};
+
+use super::raw::FormatError;
+
+/// The numbers that an accessor must have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout<'a> {
+    pub(super) types: &'a [DataType],
+    pub(super) dimensions: Dimensions,
+}
+
+/// Equal numbers of bytes at equal distances in a view of a buffer.
+struct Block<'a> {
+    view: buffer::View<'a>,
+    /// Where the first begins in the view.
+    offset: usize,
+    count: usize,
+    /// The bytes of each.
+    size: usize,
+}
+
+/// Checks an accessor against its type and the buffers.
+pub(super) fn check(
+    accessor: &Accessor<'_>,
+    buffers: &[Vec<u8>],
+    layout: Layout<'_>,
+) -> Result<(), FormatError> {
+    let name = accessor.index();
+    check_numbers(accessor, buffers, layout)
+        .map_err(|what| FormatError::syntax(None, format!("accessor {name}: {what}")))
+}
+
+fn check_numbers(
+    accessor: &Accessor<'_>,
+    buffers: &[Vec<u8>],
+    layout: Layout<'_>,
+) -> Result<(), &'static str> {
+    let is_usable = layout.types.contains(&accessor.data_type());
+    if !is_usable || accessor.dimensions() != layout.dimensions {
+        return Err("numbers of another type are needed");
+    }
+    let (count, size) = (accessor.count(), accessor.size());
+    match accessor.view() {
+        Some(view) => {
+            Block { view, offset: accessor.offset(), count, size }.bytes(buffers)?;
+        }
+        // All numbers are 0 but the sparse ones: a file with few bytes must not ask for much memory.
+        None if count > buffers.iter().map(Vec::len).sum() => {
+            return Err("it has more elements than the buffers have bytes");
+        }
+        None => {}
+    }
+    accessor.sparse().map_or(Ok(()), |sparse| check_sparse(&sparse, accessor, buffers))
+}
+
+/// Checks the elements that replace others: there is one for each index, and the indices increase.
+fn check_sparse(
+    sparse: &Sparse<'_>,
+    accessor: &Accessor<'_>,
+    buffers: &[Vec<u8>],
+) -> Result<(), &'static str> {
+    let (count, indices, values) = (sparse.count(), sparse.indices(), sparse.values());
+    let size = accessor.size();
+    Block { view: values.view(), offset: values.offset(), count, size }.bytes(buffers)?;
+    let size = indices.index_type().size();
+    let block = Block { view: indices.view(), offset: indices.offset(), count, size };
+    let (bytes, stride) = (block.bytes(buffers)?, block.stride());
+    let numbers = bytes.chunks(stride).map(|bytes| {
+        let low_to_high = bytes.iter().take(size).rev();
+        low_to_high.fold(0_usize, |number, byte| number << 8 | usize::from(*byte))
+    });
+    let numbers: Vec<usize> = numbers.collect();
+    // The crate applies none that follow one out of order.
+    let is_increasing = numbers.is_sorted_by(|one, next| one < next);
+    let is_in_range = numbers.last().is_some_and(|last| *last < accessor.count());
+    if is_increasing && is_in_range { Ok(()) } else { Err("its sparse indices are out of order") }
+}
+
+impl Block<'_> {
+    /// From the beginning of one to that of the next.
+    fn stride(&self) -> usize {
+        self.view.stride().unwrap_or(self.size)
+    }
+
+    /// The bytes from the first to the end of the last, if the view and its buffer have them.
+    fn bytes<'b>(&self, buffers: &'b [Vec<u8>]) -> Result<&'b [u8], &'static str> {
+        let steps = self.count.checked_sub(1).ok_or("it is empty")?;
+        if self.stride() < self.size {
+            return Err("its numbers overlap");
+        }
+        let length = self.stride().checked_mul(steps).and_then(|end| end.checked_add(self.size));
+        let end = length.and_then(|length| length.checked_add(self.offset));
+        let end = end.filter(|end| *end <= self.view.length());
+        let view_end = self.view.offset().checked_add(self.view.length());
+        let buffer = buffers.get(self.view.buffer().index());
+        let view = buffer.zip(view_end).and_then(|(bytes, end)| bytes.get(self.view.offset()..end));
+        let bytes = view.zip(end).and_then(|(bytes, end)| bytes.get(self.offset..end));
+        bytes.ok_or("it reaches beyond its buffer")
+    }
+}
