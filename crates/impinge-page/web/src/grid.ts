@@ -2,7 +2,7 @@
 //
 // Lines of a shader stay thin and smooth at any distance, and fade where they would be nearer to each other than pixels.
 
-import { Color, Mesh, PlaneGeometry, ShaderMaterial, Vector3 } from "three";
+import { Color, DoubleSide, Mesh, PlaneGeometry, ShaderMaterial, Vector3 } from "three";
 import { ORDER } from "./order";
 import type { StageCamera } from "./camera";
 
@@ -14,10 +14,10 @@ export class Grid extends Mesh<PlaneGeometry, ShaderMaterial> {
   constructor() {
     const uniforms = { tint: { value: new Color() }, extent: { value: 1 } };
     const shaders = { vertexShader: VERTEX, fragmentShader: FRAGMENT };
-    super(
-      new PlaneGeometry(2, 2),
-      new ShaderMaterial({ ...shaders, uniforms, transparent: true, depthWrite: false, side: 2 }),
-    );
+    // Pulled forward, as faces of solids are pushed back: on a floor at its height the grid is above it, everywhere.
+    const offset = { polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 };
+    const options = { transparent: true, depthWrite: false, side: DoubleSide };
+    super(new PlaneGeometry(2, 2), new ShaderMaterial({ ...shaders, ...options, ...offset, uniforms }));
     this.renderOrder = ORDER.grid;
   }
 
@@ -37,8 +37,7 @@ export class Grid extends Mesh<PlaneGeometry, ShaderMaterial> {
     this.scale.setScalar(cell);
     this.material.uniforms.extent!.value = (EXTENT * sphere.radius) / cell;
     this.position.copy(sphere.center).divideScalar(cell).round().multiplyScalar(cell);
-    // A little below what stands on it, so that the two do not flicker.
-    const height = flat ? -1 : Math.min(box.min.dot(normal), box.max.dot(normal)) - sphere.radius * 2e-3;
+    const height = flat ? -1 : Math.min(box.min.dot(normal), box.max.dot(normal));
     this.position.addScaledVector(normal, height - this.position.dot(normal));
   }
 
