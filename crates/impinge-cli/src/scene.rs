@@ -130,6 +130,7 @@ fn is_robot(path: &Path) -> bool {
 
 /// A robot whose packages are in folders that the user names.
 fn robot(path: &Path, packages: &[PathBuf]) -> Result<Scene, CliError> {
+    // A scene of this robot alone, since `load` takes no folders.
     let mut file = SceneFile::new(Dimension::Three);
     let robot = serde_json::from_value(json!({"urdf": path, "packages": packages}));
     let unusable = |error| CliError::argument("--packages", path.display(), error);
