@@ -21,6 +21,7 @@ pub(crate) struct RayHit {
     pub(crate) object: String,
     /// In units of the direction.
     pub(crate) time: Number,
+    /// From the start to the point, in units of the world.
     pub(crate) length: Number,
     pub(crate) point: Vec<Number>,
     /// Out of the object; zero if the ray starts inside.
@@ -35,6 +36,7 @@ pub(crate) struct CastHit {
     pub(crate) object: String,
     /// 0 at the start and 1 at the end.
     pub(crate) time: Number,
+    /// The length of the path so far, in units of the world.
     pub(crate) moved: Number,
     /// Of the moving shape, at that time.
     pub(crate) position: Vec<Number>,

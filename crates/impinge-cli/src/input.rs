@@ -46,7 +46,8 @@ impl Input {
     }
 }
 
-/// Also of one that is cut off, or of an unknown version: their errors are those of recordings.
+/// The bytes begin as a recording does, be it cut off or of an unknown version: errors are then those of a
+/// recording, not of JSON.
 fn is_recording(head: &[u8]) -> bool {
     !Header::read(head).is_err_and(|error| error.problem == Problem::NotARecording)
 }

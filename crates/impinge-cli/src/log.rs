@@ -80,6 +80,7 @@ impl Log {
         let mut replay = self.replay()?;
         let last = replay.len();
         let step = step.unwrap_or(last);
+        // `seek` would go to the last step without an error.
         if step > last {
             return Err(CliError::NoStep { path: self.path.clone(), step, last });
         }

@@ -24,6 +24,7 @@ pub(crate) fn record(
     run_in(loaded.kind, Record { loaded, stepping, key_frames })
 }
 
+/// Records a scene; see [`record`].
 struct Record<'a> {
     loaded: &'a Loaded,
     stepping: Stepping,

@@ -25,7 +25,7 @@ pub(crate) fn drawing<N: Stage<D>, const D: usize, T>(
 /// Lengths of a world; 1 where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Extent {
-    /// The median of the objects' longest sides.
+    /// The median of the objects' longest sides, the lower one of two: a box on a floor is typical, not the floor.
     typical: f64,
     /// The distance from the origin, along an axis, within which all bounded objects are.
     whole: f64,
@@ -43,7 +43,7 @@ fn extent<N: Stage<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Ex
     let corners = boxes.iter().flat_map(|aabb| [farthest(aabb.mins()), farthest(aabb.maxs())]);
     let whole = corners.fold(0.0, f64::max);
     let or_one = |length: f64| if length > 0.0 && length.is_finite() { length } else { 1.0 };
-    let typical = sides.get(sides.len() / 2).copied().unwrap_or_default();
+    let typical = sides.get(sides.len().saturating_sub(1) / 2).copied().unwrap_or_default();
     Extent { typical: or_one(typical), whole: or_one(whole) }
 }
 
@@ -64,3 +64,29 @@ const COLORS: [Color; 6] = [
     Color::rgb(160, 136, 170),
     Color::rgb(120, 170, 172),
 ];
+
+#[cfg(test)]
+mod tests {
+    use impinge::dim3::math::{Isometry, Vector};
+    use impinge::dim3::shape::{Cuboid, HalfSpace, ShapeHandle};
+    use impinge::dim3::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
+
+    use super::{Extent, extent};
+
+    #[test]
+    fn extents_by_hand() {
+        let mut world = CollisionWorld::new(0.02);
+        let mut add = |x, shape: ShapeHandle<f64>| {
+            let query = GeometricQueryType::Proximity(0.0);
+            let at = Isometry::translation(x, 0.0, 0.0);
+            world.add(at, shape, CollisionGroups::new(), query, ());
+            extent(&world)
+        };
+        let half_space = ShapeHandle::new(HalfSpace::new(Vector::y_axis()));
+        assert_eq!(add(0.0, half_space), Extent { typical: 1.0, whole: 1.0 }, "without bounds");
+        let floor = ShapeHandle::new(Cuboid::new(Vector::new(5.0, 0.5, 5.0)));
+        assert_eq!(add(0.0, floor), Extent { typical: 10.0, whole: 5.0 });
+        let cube = ShapeHandle::new(Cuboid::new(Vector::repeat(1.0)));
+        assert_eq!(add(7.0, cube), Extent { typical: 2.0, whole: 8.0 }, "the cube, not the floor");
+    }
+}

@@ -129,6 +129,7 @@ fn is_robot(path: &Path) -> bool {
 
 /// A robot whose packages are in folders that the user names.
 fn robot(path: &Path, packages: &[PathBuf]) -> Result<Scene, CliError> {
+    // A scene of this robot alone, since `load` takes no folders.
     let mut file = SceneFile::new(Dimension::Three);
     file.robots.push(RobotFile { packages: packages.to_vec(), ..RobotFile::new(path) });
     Ok(file.resolve(Path::new(""))?)

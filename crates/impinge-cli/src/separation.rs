@@ -30,6 +30,7 @@ pub(crate) struct Separation {
     pub(crate) normal: Option<Vec<Number>>,
     /// The part of the first that has the point; 0 of a convex shape.
     pub(crate) part1: Option<u32>,
+    /// The same of the second.
     pub(crate) part2: Option<u32>,
 }
 

@@ -97,6 +97,7 @@ pub(crate) fn summary<N: Recordable<D>, const D: usize, T>(
     let count = |state| pairs.iter().filter(|pair| pair.state == state).count();
     let events = world.contact_events().iter();
     let started = events.filter(|event| matches!(event, ContactEvent::Started(..))).count();
+    // A change from near to apart neither starts nor stops anything.
     let changes = world.proximity_events().iter();
     let enters = |event: &&ProximityEvent| event.new_status == Proximity::Intersecting;
     let leaves = |event: &&ProximityEvent| event.prev_status == Proximity::Intersecting;

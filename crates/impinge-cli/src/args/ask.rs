@@ -134,7 +134,9 @@ pub(crate) enum ShapeSpec {
 /// A kind of shape with its sizes, which may be too many or too few.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShortShape {
+    /// Before the colon.
     pub(crate) kind: ShapeKind,
+    /// After it.
     pub(crate) sizes: Numbers,
 }
 

@@ -48,6 +48,7 @@ impl Task for CastShape<'_> {
             .with_target_distance(scalar("--distance", args.distance.0)?);
         let mut found = world.cast_shape_all(&start, &translation, &*shape, &options, &filter);
         found.truncate(if args.all { usize::MAX } else { 1 });
+        // The shape does not turn: its origin is its position.
         let (origin, length) = (N::translation(&start), translation.norm());
         let hits = found.into_iter().map(|(object, impact)| CastHit {
             object: object.data().clone(),

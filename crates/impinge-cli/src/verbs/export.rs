@@ -21,6 +21,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
             (loaded.name(), record(&loaded, args.stepping, args.key_frames)?.bytes)
         }
     };
+    // Packed here, though `export` would do it too: the report has the number of bytes.
     let packed = impinge_record::pack(&bytes).map_err(in_file(&args.scene.scene))?;
     let page = impinge_html::export(&assets, &packed, args.title.as_ref().unwrap_or(&file))?;
     output::write(&args.output.path, page.as_bytes())?;

@@ -33,6 +33,7 @@ struct RecordReport {
     subject: Subject,
     output: String,
     steps: u32,
+    /// Of the recording, unpacked.
     bytes: usize,
     objects: usize,
     /// After how many steps something touched.

@@ -111,6 +111,7 @@ impl PictureStyle<'_> {
     ) -> Result<Vec<u8>, CliError> {
         let camera = N::camera(self.camera()?);
         let mut drawing = drawing(world, options(&self.args.layers));
+        // The formats are different types, which only this trait has in common.
         let mut draw = |picture: &mut dyn DebugRender<N, D>| drawing.world(world, picture);
         let size @ [width, _] = self.args.size.0;
         Ok(match self.format {

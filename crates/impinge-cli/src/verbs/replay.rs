@@ -87,6 +87,7 @@ impl Task for PlayTo<'_> {
     }
 }
 
+/// All objects and near pairs of a world, in order of the handles.
 fn detail<N: Stage<D>, const D: usize>(world: &CollisionWorld<N, D, Label>) -> StepDetail {
     let objects = world.collision_objects();
     let positions = objects.map(|object| {

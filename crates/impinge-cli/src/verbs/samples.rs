@@ -70,6 +70,9 @@ impl Report for SamplesReport {}
 /// A picture shows a sample after so many steps: most have contacts by then.
 const STEPS: usize = 45;
 
+/// Contacts of more pairs than this would hide the objects of a small picture.
+const MAX_PAIRS: usize = 1000;
+
 /// Writes a small picture of each sample.
 fn thumbnails(folder: &Path, size: Size) -> Result<(), CliError> {
     let folder = folder.join("thumbnails");
@@ -102,7 +105,11 @@ where
     }
     let spatial = Camera::look_along(&Vector::new(-1.0, -1.0, -2.0), &Vector::y());
     let mut picture = PngPicture::new(<f32 as Stage<D>>::camera(spatial), size.0).without_texts();
-    let mut drawing = drawing(running.world(), DebugOptions::default());
+    let mut options = DebugOptions::default();
+    if running.world().contact_pairs().count() > MAX_PAIRS {
+        (options.contact_point, options.contact_normal) = (None, None);
+    }
+    let mut drawing = drawing(running.world(), options);
     drawing.world(running.world(), &mut picture);
     running.draw(&mut drawing, &mut picture);
     Ok(picture.to_png())

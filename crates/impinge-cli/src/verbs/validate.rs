@@ -102,6 +102,7 @@ fn described<N: Stage<D>, const D: usize>(
     FirstDifference { step: found.step, byte: found.offset, object, field }
 }
 
+/// What a hash of an object covers.
 const fn field_name(field: ObjectField) -> &'static str {
     match field {
         ObjectField::Description => "position, groups or query type",

@@ -184,7 +184,7 @@ fn a_port_in_use_is_named() {
 #[test]
 fn the_gallery_has_a_picture_of_each_sample() {
     let desk = Desk::new();
-    let report = desk.json("samples -o gallery --size 64x40", 0);
+    let report = desk.json("samples -o gallery --size 160x100", 0);
     let samples = report["samples"].as_array().expect("a list");
     assert!(samples.len() >= 24, "{}", samples.len());
     let page = fs::read_to_string(desk.path("gallery/index.html")).expect("a page");
@@ -196,5 +196,8 @@ fn the_gallery_has_a_picture_of_each_sample() {
         let background = image.pixel(0, 0);
         let drawn = image.pixels().iter().filter(|pixel| **pixel != background).count();
         assert!(drawn > 20, "{name} has {drawn} pixels of something");
+        let is_contact = |[r, g, b, _]: &&[u8; 4]| *r > 230 && *g < 120 && *b < 110;
+        let contacts = image.pixels().iter().filter(is_contact).count();
+        assert!(contacts * 4 < drawn * 3, "{name}: contacts are {contacts} of {drawn} pixels");
     }
 }
