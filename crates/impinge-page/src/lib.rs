@@ -9,21 +9,15 @@
 
 pub mod answer;
 mod ask;
-mod color;
 mod describe;
 mod engine;
 mod error;
 mod explain;
 #[cfg(target_family = "wasm")]
 mod exports;
-mod framing;
-mod gather;
+mod frame;
 mod groups;
-mod mesh;
 mod message;
-mod payload;
-mod picture;
-mod queries;
 mod recorded;
 pub mod request;
 mod sampled;
@@ -32,7 +26,6 @@ mod space;
 mod stage;
 mod stand_in;
 mod time_line;
-mod unit_shapes;
 
 pub use engine::Engine;
 pub use error::EngineError;

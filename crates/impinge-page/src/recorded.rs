@@ -10,7 +10,7 @@ use impinge_samples::ControlValue;
 
 use crate::answer::{Info, Status};
 use crate::describe::status;
-use crate::queries::QueryPen;
+use crate::frame::queries::QueryPen;
 use crate::stage::Source;
 use crate::stand_in::StandIns;
 use crate::time_line::marks;

@@ -38,6 +38,7 @@ where
         Ok(Self { running, entry: *entry, known })
     }
 
+    /// A recorder keeps its bytes until they are taken; nobody here reads them.
     fn drop_recording(&mut self) {
         drop(self.running.take_bytes());
     }

@@ -116,7 +116,7 @@ fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) ->
     sizes("compound", format!("{} shapes", compound.num_children()))
 }
 
-/// The shapes of one dimension, by the data that recordings have of them.
+/// The shapes of one dimension, by the data that recordings have of them: generic code has no names for their types.
 fn own_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     let [kind, height, radius] = ["cylinder", "half height", "radius"];
     match N::own_data(shape)? {

@@ -13,7 +13,7 @@ use crate::answer::{
 use crate::ask;
 use crate::describe::{object_answer, object_of};
 use crate::explain::Two;
-use crate::picture::Picture;
+use crate::frame::picture::Picture;
 use crate::request::{DragRequest, FrameRequest, NearestRequest, PickRequest, RayRequest};
 use crate::space::{Viewed, unit_quaternion, vector};
 

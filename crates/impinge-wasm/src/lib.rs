@@ -79,19 +79,19 @@ mod exports {
 
     /// How many checks there are.
     #[unsafe(no_mangle)]
-    pub extern "C" fn count() -> usize {
+    extern "C" fn count() -> usize {
         super::checks().len()
     }
 
     /// A byte of the name of a check; zero after the last.
     #[unsafe(no_mangle)]
-    pub extern "C" fn name(check: usize, byte: usize) -> u32 {
+    extern "C" fn name(check: usize, byte: usize) -> u32 {
         super::checks()[check].name.as_bytes().get(byte).copied().unwrap_or(0).into()
     }
 
     /// Computes the hash of a check.
     #[unsafe(no_mangle)]
-    pub extern "C" fn hash(check: usize) -> u64 {
+    extern "C" fn hash(check: usize) -> u64 {
         (super::checks()[check].hash)()
     }
 }

@@ -13,14 +13,14 @@ use serde::Serialize;
 use crate::EngineError;
 use crate::answer::Frame;
 use crate::ask::is_sensor;
-use crate::color::{LAYERS, Look, SELECTED, SENSOR, TOUCHES, options};
-use crate::framing::{Framing, bounds};
-use crate::gather::{Buffers, Gather, Instance, Sections};
-use crate::mesh::{MeshSections, MeshTable};
-use crate::payload::Payload;
+use crate::frame::color::{LAYERS, Look, SELECTED, SENSOR, TOUCHES, options};
+use crate::frame::framing::{Framing, bounds};
+use crate::frame::gather::{Buffers, Gather, Instance, Sections};
+use crate::frame::mesh::{MeshSections, MeshTable};
+use crate::frame::payload::Payload;
+use crate::frame::unit_shapes::UnitShapes;
 use crate::request::FrameRequest;
 use crate::space::{Viewed, coordinates};
-use crate::unit_shapes::UnitShapes;
 
 /// The shape that an object had in the last frame, and the mesh that is drawn of it.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ pub(crate) struct Picture<N: Viewed<D>, const D: usize> {
     drawing: DebugDrawing<N, D>,
     units: UnitShapes<N, D>,
     meshes: MeshTable,
-    /// By the index of the handle.
+    /// By the index of the handle. The slot of an object that is gone keeps its shape until the index is taken again.
     shapes: Vec<Option<KnownShape<N, D>>>,
     /// `None` before the first object.
     framing: Option<Framing>,
@@ -109,7 +109,7 @@ impl<N: Viewed<D>, const D: usize> Picture<N, D> {
         let buffers = gather.buffers;
         self.touching = Some(touching);
 
-        // Meshes come last: those of the objects and queries above are known by now.
+        // The meshes are written after all drawing, which adds those that are new.
         let mut payload = Payload::default();
         let text = FrameText {
             origin: framing.origin,
@@ -192,6 +192,7 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
         }
         let Self { drawing, units, shapes, .. } = self;
         let slot = &mut shapes[index];
+        // By identity: a shape that is equal but another costs a mesh with the same number.
         let _ = slot.take_if(|known| !known.shape.is_same(shape));
         slot.get_or_insert_with(|| {
             let (drawn, scale) = units.scaled(shape);
@@ -208,7 +209,8 @@ impl<N: Viewed<D>, const D: usize> Objects<'_, N, D> {
     }
 }
 
-/// Which objects have a contact or intersect another, by the index of the handle.
+/// Which objects have a contact or intersect another, by the index of the handle. Costs a walk over all manifolds, most
+/// of the time of a frame, and is therefore kept until the world changes.
 fn touching<N: Viewed<D>, const D: usize, T>(world: &CollisionWorld<N, D, T>) -> Vec<bool> {
     let last = world.collision_objects().map(|object| object.handle().uid()).max();
     let mut touching = vec![false; last.map_or(0, |last| last + 1)];
@@ -237,6 +239,7 @@ fn draw_selected<N: Viewed<D>, const D: usize, T>(
         return;
     }
     let (before, own) = (gather.is_shown, *drawing.options());
+    // Meshes are kept only under equal mesh options.
     let all = options(own.mesh, N::lit(framing.size), &[true; LAYERS.len()]);
     gather.is_shown = before.map(|is_shown| !is_shown);
     drawing.set_options(all);

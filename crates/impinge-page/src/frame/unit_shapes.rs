@@ -4,7 +4,7 @@ use impinge::math::{Space, Vector};
 use impinge::shape::{Ball, Cuboid, Ellipsoid, ShapeHandle, ShapeKind};
 use impinge_record::{Recordable, ShapeData};
 
-use crate::mesh::single;
+use crate::frame::mesh::single;
 
 /// The scale of a mesh that is drawn as it is.
 pub(crate) const UNSCALED: [f32; 3] = [1.0; 3];

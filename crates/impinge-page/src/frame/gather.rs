@@ -7,12 +7,12 @@ use impinge::debug_render::{Color, DebugRender, Drawn, ShapeMesh};
 use impinge::math::{Point, Vector};
 use serde::Serialize;
 
-use crate::color::{ASKED, LAYERS, layer_of, word};
-use crate::framing::FAR;
-use crate::mesh::{MeshTable, single};
-use crate::payload::{Payload, Section};
+use crate::frame::color::{ASKED, LAYERS, layer_of, word};
+use crate::frame::framing::FAR;
+use crate::frame::mesh::{MeshTable, single};
+use crate::frame::payload::{Payload, Section};
+use crate::frame::unit_shapes::UNSCALED;
 use crate::space::{Viewed, coordinates};
-use crate::unit_shapes::UNSCALED;
 
 /// The number of an instance that is no object.
 const NO_OBJECT: u32 = u32::MAX;
@@ -121,6 +121,7 @@ impl<N: Viewed<D>, const D: usize> Gather<'_, N, D> {
         let mut translation = coordinates(&N::translation(position));
         // Only a mesh without a scale has another centre than the origin of its shape.
         if center != [0.0; 3] {
+            // Turned with the shape, and only then added to its translation.
             let center =
                 N::pose(position).vector(&Vector::<N, D>::from_fn(|axis, _| N::lit(center[axis])));
             let turned = coordinates(&center);
@@ -145,6 +146,7 @@ fn is_nowhere<const COUNT: usize>(numbers: &[[f32; 3]; COUNT]) -> bool {
 
 impl<N: Viewed<D>, const D: usize> DebugRender<N, D> for Gather<'_, N, D> {
     fn line(&mut self, ends: [Point<N, D>; 2], color: Color, what: Drawn) {
+        // A layer that is off costs no conversion.
         let Some(layer) = self.layer(what) else { return };
         let ends = ends.map(|end| self.at(&end));
         if !is_nowhere(&ends) {

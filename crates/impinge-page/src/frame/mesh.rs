@@ -6,7 +6,7 @@ use impinge::debug_render::ShapeMesh;
 use impinge::math::Real;
 use serde::Serialize;
 
-use crate::payload::{Payload, Section};
+use crate::frame::payload::{Payload, Section};
 use crate::space::coordinates;
 
 /// The number of frames after which an unused mesh is dropped.
