@@ -49,7 +49,8 @@ Examples:
   impinge inspect boxes.json --json
 
 Fields of --json: file, kind (\"scene\" or \"recording\"), dimension, scalar; of scenes objects (name, shape,
-low, high) and meshes (file, name, vertices, triangles, pieces, closed, solid, volume, boundary_edges, problems);
+low, high) and meshes (file, name, vertices, triangles, pieces, closed, solid, volume, boundary_edges, problems),
+joints_beyond_limits (a sentence for each joint of a robot outside the limits of its URDF file; no problem);
 of recordings version, writer, steps. Exit code 1 if a mesh has a problem; an open surface is none.")]
 pub(crate) struct InspectArgs {
     #[command(flatten)]
