@@ -60,9 +60,11 @@
 //! * `glam`: the same to and from glam 0.33: points, vectors, rotations and isometries by `into`.
 #![forbid(unsafe_code)]
 
+pub mod batch;
 pub mod bounding_volume;
 pub mod broad_phase;
 mod bvh;
+pub(crate) mod chunks;
 mod collide;
 pub(crate) mod convex;
 #[cfg(feature = "debug_render")]

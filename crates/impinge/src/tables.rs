@@ -7,6 +7,7 @@
 
 use core::fmt;
 
+use crate::batch::{BatchTables, SolidGroup, update_group2, update_group3};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::collide::far::{Apart, are_beyond};
@@ -94,6 +95,9 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) contacts: ContactsFn<N, D>,
     /// Those of some pairs of a group, several at a time, if that can be done.
     pub(crate) update_lanes: UpdateLanesFn<N, D>,
+    /// The same of pairs of a batch.
+    pub(crate) update_group: UpdateGroupFn<N, D>,
+    pub(crate) batch: BatchTables<N, D>,
     /// Two directions across a normal; the second is zero in 2D.
     pub(crate) tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
@@ -159,6 +163,8 @@ type ContactsFn<N, const D: usize> =
     fn(&Pair<'_, N, D>, &ManifoldRequest<N>, &mut RawManifold<N, D>);
 type UpdateLanesFn<N, const D: usize> =
     fn([&Solid<N, D>; 2], &mut DueContacts<'_, '_, N, D>) -> bool;
+type UpdateGroupFn<N, const D: usize> =
+    fn([&Solid<N, D>; 2], &mut SolidGroup<'_, '_, N, D>) -> bool;
 type FindPairsFn<N, const D: usize> =
     fn(&mut PairFinder<N, D>, &mut dyn FnMut(u32, u32) -> bool, &mut dyn FnMut(u32, u32, bool));
 
@@ -260,6 +266,7 @@ struct Particular<N: Space<D>, const D: usize> {
     seen: SeenFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
+    update_group: UpdateGroupFn<N, D>,
     tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     witness_features: FeaturesFn<N, D>,
     witness_feature: FeatureFn<N, D>,
@@ -283,6 +290,7 @@ impl<N: Real> Particular<N, 2> {
         seen: seen_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
+        update_group: update_group2,
         tangents: tangents2,
         witness_features: witness_features2,
         witness_feature: witness_feature2,
@@ -307,6 +315,7 @@ impl<N: Real> Particular<N, 3> {
         seen: seen_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
+        update_group: update_group3,
         tangents: tangents3,
         witness_features: witness_features3,
         witness_feature: witness_feature3,
@@ -352,6 +361,8 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             is_crossed,
             contacts: particular.contacts,
             update_lanes: particular.update_lanes,
+            update_group: particular.update_group,
+            batch: BatchTables::new(),
             tangents: particular.tangents,
             update_contacts: ContactState::update,
             public_manifold: ContactState::manifolds,

@@ -27,5 +27,6 @@ pub(crate) use manifold::{
     witness_feature2, witness_feature3, witness_features2, witness_features3,
 };
 pub(crate) use mesh::{CompositeContacts, contact_in_world, own_distance};
-pub(crate) use pair::{Pair, Placed, canonical};
+pub(crate) use pair::{Pair, Placed, Placing, canonical};
 pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
+pub(crate) use separation::AtIsometry;

@@ -43,6 +43,16 @@ pub(crate) struct Placed<'a, N: Real, const D: usize> {
     pub(crate) shape: Geometry<'a, N, D>,
 }
 
+/// A shape that is placed when it is near enough: its position is read before its rotation is made a matrix.
+pub(crate) trait Placing<'a, N: Real, const D: usize> {
+    fn shape(&self) -> Geometry<'a, N, D>;
+
+    /// Where the origin of its frame is.
+    fn translation(&self) -> Vector<N, D>;
+
+    fn placed(&self) -> Placed<'a, N, D>;
+}
+
 /// The pair in an order that does not depend on the order of the arguments, and whether that order
 /// is the opposite of theirs.
 ///

@@ -56,6 +56,41 @@ pub mod debug_render {
     pub type SweptShape<'a, N> = crate::debug_render::SweptShape<'a, N, 2>;
 }
 
+/// One question about many placed shapes, with the answers in columns.
+pub mod batch {
+    pub use crate::batch::{
+        AsPose, BatchError, Control, MatrixError, NO_FEATURE, OnePose, PoseSource, pairs_within,
+        pairs_within_one,
+    };
+
+    /// The shapes of one side of a batch.
+    pub type Shapes<'a, N> = crate::batch::Shapes<'a, N, 2>;
+    /// Shapes and where they are.
+    pub type Side<'a, N> = crate::batch::Side<'a, N, 2>;
+    /// Poses as homogeneous matrices in a flat array.
+    pub type Matrices<'a, N> = crate::batch::Matrices<'a, N, 2>;
+    /// Pairs of placed shapes, element by element.
+    pub type PairBatch<'a, N> = crate::batch::PairBatch<'a, N, 2>;
+    /// Points against placed shapes.
+    pub type PointBatch<'a, N> = crate::batch::PointBatch<'a, N, 2>;
+    /// Rays against placed shapes.
+    pub type RayColumns<'a, N> = crate::batch::RayColumns<'a, N, 2>;
+    /// Slots for nearest points.
+    pub type ClosestColumns<'a, N> = crate::batch::ClosestColumns<'a, N, 2>;
+    /// Slots for witnesses.
+    pub type WitnessColumns<'a, N> = crate::batch::WitnessColumns<'a, N, 2>;
+    /// Slots for contacts.
+    pub type ContactColumns<'a, N> = crate::batch::ContactColumns<'a, N, 2>;
+    /// Slots for impacts.
+    pub type ImpactColumns<'a, N> = crate::batch::ImpactColumns<'a, N, 2>;
+    /// Slots for projections of points.
+    pub type ProjectionColumns<'a, N> = crate::batch::ProjectionColumns<'a, N, 2>;
+    /// Slots for hits of rays.
+    pub type HitColumns<'a, N> = crate::batch::HitColumns<'a, N, 2>;
+    /// The contact points of many pairs.
+    pub type ManifoldRows<N> = crate::batch::ManifoldRows<N, 2>;
+}
+
 /// Which objects may touch: pairs whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;

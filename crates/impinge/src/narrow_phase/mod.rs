@@ -30,6 +30,7 @@ pub use default_narrow_phase::DefaultNarrowPhase;
 pub use detector::{DefaultProximityDispatcher, PairProximityDetector};
 pub(crate) use due::{DueContacts, update_lanes2, update_lanes3};
 pub use events::{ContactEvent, Events, ProximityEvent};
+pub(crate) use generator::conforming_points;
 pub use generator::{DefaultContactDispatcher, PairManifoldGenerator};
 pub use handle::{CollisionObjectHandle, Interaction};
 pub use ids::IdAllocator;

@@ -1,6 +1,6 @@
 //! A contact: two points and a normal.
 
-use crate::collide::pair::Placed;
+use crate::collide::{AtIsometry, Placed, Placing};
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::Shape;
 
@@ -69,7 +69,17 @@ pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     prediction: N,
 ) -> Option<Contact<N, D>> {
-    let [placed1, placed2] = Placed::within(m1, g1, m2, g2, prediction)?;
+    contact_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), prediction)
+}
+
+/// [`contact`] of shapes that are placed in any way.
+#[inline]
+pub(crate) fn contact_between<'a, N: Space<D>, const D: usize>(
+    one: &impl Placing<'a, N, D>,
+    other: &impl Placing<'a, N, D>,
+    prediction: N,
+) -> Option<Contact<N, D>> {
+    let [placed1, placed2] = Placed::within(one, other, prediction)?;
     let found = (N::tables().contact_in_world)(&placed1, &placed2, prediction)?;
     found.distance.is_finite_number().then(|| Contact {
         world1: found.point1,

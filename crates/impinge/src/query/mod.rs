@@ -14,9 +14,12 @@ pub(crate) mod ray;
 mod witness;
 
 pub use crate::bounding_volume::Ray;
+pub(crate) use closest_points::separation_between;
 pub use closest_points::{ClosestPoints, closest_points};
+pub(crate) use contact::contact_between;
 pub use contact::{Contact, contact};
 pub use distance::distance;
+pub(crate) use distance::{distance_between, distance_within};
 pub use impact::{
     ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, impact,
     nonlinear_time_of_impact, time_of_impact,
@@ -27,9 +30,12 @@ pub use manifold::{ContactId, ContactManifold, TrackedContact};
 pub(crate) use manifold::{Placement, materialise};
 pub use manifold_view::{ContactPoint, ManifoldView};
 pub(crate) use manifold_view::{PairRef, PlacedSolids};
+pub(crate) use point::located_at;
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
+pub(crate) use proximity::proximity_between;
 pub use proximity::{Proximity, proximity};
 pub use ray::{RayBatch, RayCast, RayIntersection};
-pub(crate) use ray::{cast_on, surely_misses};
+pub(crate) use ray::{cast_at, cast_on, surely_misses};
 pub(crate) use witness::in_world as witness_in_world;
+pub(crate) use witness::witness_between;
 pub use witness::{Witness, witness};

@@ -1,6 +1,7 @@
 //! Whether two solids intersect, are within a margin, or are disjoint.
 
-use crate::collide::pair::Placed;
+use super::distance::distance_within;
+use crate::collide::{AtIsometry, Placing};
 use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
 
@@ -41,11 +42,17 @@ pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     margin: N,
 ) -> Proximity {
-    let limit = max(margin, N::ZERO);
-    let Some([placed1, placed2]) = Placed::within(m1, g1, m2, g2, limit) else {
-        return Proximity::Disjoint;
-    };
-    match (N::tables().distance_in_world)(&placed1, &placed2, limit) {
+    proximity_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), margin)
+}
+
+/// [`proximity`] of shapes that are placed in any way.
+#[inline]
+pub(crate) fn proximity_between<'a, N: Space<D>, const D: usize>(
+    one: &impl Placing<'a, N, D>,
+    other: &impl Placing<'a, N, D>,
+    margin: N,
+) -> Proximity {
+    match distance_within(one, other, max(margin, N::ZERO)) {
         None => Proximity::Disjoint,
         Some(distance) if distance <= N::ZERO => Proximity::Intersecting,
         Some(_) => Proximity::WithinMargin,

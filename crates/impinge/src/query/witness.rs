@@ -1,8 +1,8 @@
 //! The nearest points of two shapes with all that is known about them.
 
-use crate::collide::pair::Placed;
 use crate::collide::parts::{Between, PartPair, PartSeparation, Wanted, nearest_between};
 use crate::collide::separation::placed;
+use crate::collide::{AtIsometry, Placed, Placing};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Shape};
@@ -98,7 +98,17 @@ pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> Option<Witness<N, D>> {
-    let [placed1, placed2] = Placed::within(m1, g1, m2, g2, max_distance)?;
+    witness_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), max_distance)
+}
+
+/// [`witness`] of shapes that are placed in any way.
+#[inline]
+pub(crate) fn witness_between<'a, N: Space<D>, const D: usize>(
+    one: &impl Placing<'a, N, D>,
+    other: &impl Placing<'a, N, D>,
+    max_distance: N,
+) -> Option<Witness<N, D>> {
+    let [placed1, placed2] = Placed::within(one, other, max_distance)?;
     (N::tables().witness_in_world)(&placed1, &placed2, max_distance)
 }
 

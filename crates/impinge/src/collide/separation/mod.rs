@@ -54,7 +54,9 @@ pub(crate) use segments::segment_lanes::{SegmentGap, is_usual, nearest_on_segmen
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
 pub(crate) use triangles::{BallQuestion, NearTriangles, gaps2, gaps3, near_triangles};
-pub(crate) use world::{distance_in_world, in_world, of_ordered, placed, touching_in_world};
+pub(crate) use world::{
+    AtIsometry, distance_in_world, in_world, of_ordered, placed, touching_in_world,
+};
 
 /// An algorithm for one pair of kinds.
 pub(crate) type Algorithm<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<Separation<N, D>>;

@@ -1,10 +1,10 @@
 //! The separation of two solids in the world, in the order in which they are given.
 
 use crate::collide::far::Apart;
-use crate::collide::pair::{Ordered, Placed};
+use crate::collide::pair::{Ordered, Placed, Placing};
 use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Pose, Real, Space};
+use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 use crate::shape::{Geometry, Shape};
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
@@ -140,23 +140,53 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         Self { pose: if shape.turns() { *pose } else { pose.without_rotation() }, shape }
     }
 
-    /// Two shapes where the user's isometries put them; `None` if they are certainly farther apart than
-    /// `limit`.
+    /// Two shapes where they are placed; `None` if they are certainly farther apart than `limit`.
     #[inline]
-    pub(crate) fn within<R: AbstractRotation<N, D>>(
-        isometry1: &Isometry<N, R, D>,
-        shape1: &'a dyn Shape<N, D>,
-        isometry2: &Isometry<N, R, D>,
-        shape2: &'a dyn Shape<N, D>,
+    pub(crate) fn within(
+        one: &impl Placing<'a, N, D>,
+        other: &impl Placing<'a, N, D>,
         limit: N,
     ) -> Option<[Self; 2]> {
-        let shapes = [shape1.geometry(), shape2.geometry()];
-        let between = isometry2.translation.vector - isometry1.translation.vector;
+        let shapes = [one.shape(), other.shape()];
+        let between = other.translation() - one.translation();
         let apart = Apart { shapes, between };
         let known = apart.is_known_beyond(limit);
         if known.unwrap_or_else(|| (N::tables().are_beyond)(&apart, limit)) {
             return None;
         }
-        Some([Self::at(isometry1, shapes[0]), Self::at(isometry2, shapes[1])])
+        Some([one.placed(), other.placed()])
+    }
+}
+
+/// A shape where the user's isometry puts it.
+#[derive(Clone, Copy)]
+pub(crate) struct AtIsometry<'i, 'a, N: Real, R, const D: usize> {
+    isometry: &'i Isometry<N, R, D>,
+    shape: Geometry<'a, N, D>,
+}
+
+impl<'i, 'a, N: Real, R, const D: usize> AtIsometry<'i, 'a, N, R, D> {
+    #[inline]
+    pub(crate) fn new(isometry: &'i Isometry<N, R, D>, shape: &'a dyn Shape<N, D>) -> Self {
+        Self { isometry, shape: shape.geometry() }
+    }
+}
+
+impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Placing<'a, N, D>
+    for AtIsometry<'_, 'a, N, R, D>
+{
+    #[inline]
+    fn shape(&self) -> Geometry<'a, N, D> {
+        self.shape
+    }
+
+    #[inline]
+    fn translation(&self) -> Vector<N, D> {
+        self.isometry.translation.vector
+    }
+
+    #[inline]
+    fn placed(&self) -> Placed<'a, N, D> {
+        Placed::at(self.isometry, self.shape)
     }
 }

@@ -187,11 +187,21 @@ pub trait PointQuery<N: Real, const D: usize> {
         point: &Point<N, D>,
         solid: bool,
     ) -> (PointProjection<N, D>, PointLocation<N>) {
-        let pose = Pose::from_isometry(m);
-        let asked = pose.inverse_point(point);
-        let (local, location) = self.project_local_point_with_location(&asked, solid);
-        (placed(&local, &pose, point, solid), location)
+        located_at(self, &Pose::from_isometry(m), point, solid)
     }
+}
+
+/// [`PointQuery::project_point_with_location`] at a pose.
+#[inline]
+pub(crate) fn located_at<N: Real, const D: usize>(
+    shape: &(impl PointQuery<N, D> + ?Sized),
+    pose: &Pose<N, D>,
+    point: &Point<N, D>,
+    solid: bool,
+) -> (PointProjection<N, D>, PointLocation<N>) {
+    let asked = pose.inverse_point(point);
+    let (local, location) = shape.project_local_point_with_location(&asked, solid);
+    (placed(&local, pose, point, solid), location)
 }
 
 /// The projection in the world frame.

@@ -1,12 +1,11 @@
 //! Many rays in one call.
 
+use core::ops::{ControlFlow, Range};
+
 use super::RayIntersection;
 use crate::bounding_volume::Ray;
+use crate::chunks::each_chunk;
 use crate::math::Real;
-
-/// Rays that one thread answers at a time; a constant, so that nothing depends on the threads.
-#[cfg(feature = "parallel")]
-const CHUNK: usize = 64;
 
 /// Rays that are asked about together, with what all of them have in common.
 ///
@@ -67,15 +66,12 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
         hits: &mut [Option<RayIntersection<N, D>>],
         answer: impl Fn(&Ray<N, D>) -> Option<RayIntersection<N, D>> + Sync,
     ) {
-        #[cfg(feature = "parallel")]
-        if self.rays.len() > CHUNK && rayon::current_num_threads() > 1 {
-            use rayon::prelude::*;
-            self.check(hits.len());
-            let chunks = self.rays.par_chunks(CHUNK).zip(hits.par_chunks_mut(CHUNK));
-            chunks.for_each(|(rays, hits)| Self { rays, ..*self }.each(hits, &answer));
-            return;
-        }
-        self.each(hits, answer);
+        self.check(hits.len());
+        let work = |range: Range<usize>, hits: &mut [_]| {
+            Self { rays: &self.rays[range], ..*self }.each(hits, &answer);
+            ControlFlow::Continue(())
+        };
+        _ = each_chunk(0..self.rays.len(), hits, &work);
     }
 
     #[track_caller]

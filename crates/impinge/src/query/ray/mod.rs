@@ -27,6 +27,7 @@ mod triangle3;
 mod volume;
 
 pub use batch::RayBatch;
+use passing::may_hold;
 pub(crate) use passing::surely_misses;
 pub(crate) use span::Span;
 
@@ -210,10 +211,7 @@ pub trait RayCast<N: Real, const D: usize> {
         max_time: N,
         solid: bool,
     ) -> Option<RayIntersection<N, D>> {
-        let pose = Pose::from_isometry(m);
-        let local = ray.inverse_transformed_by(&pose);
-        let hit = self.cast_local_ray_until(&local, max_time, solid)?;
-        Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
+        cast_at(self, &Pose::from_isometry(m), ray, max_time, solid)
     }
 
     /// The first hit by `max_time` that `counts`, on the shape placed at `m`; the others are passed by. Of a
@@ -381,6 +379,20 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
     }
 }
 
+/// [`RayCast::first_hit_with_ray`] at a pose.
+#[inline]
+pub(crate) fn cast_at<N: Real, const D: usize>(
+    shape: &(impl RayCast<N, D> + ?Sized),
+    pose: &Pose<N, D>,
+    ray: &Ray<N, D>,
+    max_time: N,
+    solid: bool,
+) -> Option<RayIntersection<N, D>> {
+    let local = ray.inverse_transformed_by(pose);
+    let hit = shape.cast_local_ray_until(&local, max_time, solid)?;
+    Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
+}
+
 /// See [`RayCast::cast_local_ray_until`].
 #[inline]
 pub(crate) fn cast_on<N: Space<D>, const D: usize>(
@@ -460,37 +472,4 @@ fn cast<N: Real, const D: usize>(
     };
     let toi = hit.toi / unit;
     toi.is_finite_number().then_some(RayIntersection { toi, ..hit })
-}
-
-/// False where a solid is certainly too far from a point to hold it: a quick look at the kinds of which
-/// there are most, since most rays that come near do not hit.
-fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
-    match kind {
-        Kind::Triangle(triangle) => may_lie_on(triangle, point),
-        Kind::Cuboid(cuboid) => {
-            let is_beside = |axis: usize| point[axis].abs() > cuboid.half_extents()[axis];
-            !(0..D).any(is_beside)
-        }
-        Kind::Ball(ball) => {
-            let reach = ball.radius() * ball.radius();
-            let slack = N::lit(16.0) * N::EPSILON * reach + N::MIN_POSITIVE;
-            let is_beyond = point.coords.norm_squared() > reach + slack;
-            !is_beyond
-        }
-        _ => true,
-    }
-}
-
-fn may_lie_on<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> bool {
-    let [a, b, c] = triangle.corners();
-    let largest = |corner: &Point<N, D>| max_component(&corner.coords);
-    let scale = max(max(largest(a), largest(b)), max(largest(c), largest(point)));
-    // Twice what a point may be beside a thin set.
-    let slack = N::lit(16.0) * N::EPSILON * scale * N::TWO;
-    (0..D).all(|axis| {
-        let low = min(min(a[axis], b[axis]), c[axis]);
-        let high = max(max(a[axis], b[axis]), c[axis]);
-        let is_beside = point[axis] < low - slack || point[axis] > high + slack;
-        !is_beside
-    })
 }

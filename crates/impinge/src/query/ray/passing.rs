@@ -1,8 +1,9 @@
-//! Rays that certainly pass a ball or a box: most of those that meet its box.
+//! Rays that certainly pass a ball or a box, which are most of those that meet its box, and points that a solid
+//! certainly does not hold.
 
 use crate::bounding_volume::Ray;
-use crate::math::{Point, Real, Vector};
-use crate::shape::{Geometry, Kind};
+use crate::math::{Point, Real, Vector, max, max_component, min};
+use crate::shape::{Geometry, Kind, Triangle};
 
 /// Rounding units, of products of coordinates and directions, by which a ray must pass a solid: several
 /// times what the exact test counts as touching.
@@ -91,6 +92,39 @@ fn is_behind<N: Real, const D: usize>(
     let goes_away = if origin < N::ZERO { speed <= N::ZERO } else { speed >= N::ZERO };
     let distance = origin.abs();
     goes_away && exceeds(distance, half[axis], unit * distance + lost())
+}
+
+/// False where a solid is certainly too far from a point to hold it: a quick look at the kinds of which
+/// there are most, since most rays that come near do not hit.
+pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Point<N, D>) -> bool {
+    match kind {
+        Kind::Triangle(triangle) => may_lie_on(triangle, point),
+        Kind::Cuboid(cuboid) => {
+            let is_beside = |axis: usize| point[axis].abs() > cuboid.half_extents()[axis];
+            !(0..D).any(is_beside)
+        }
+        Kind::Ball(ball) => {
+            let reach = ball.radius() * ball.radius();
+            let slack = N::lit(16.0) * N::EPSILON * reach + N::MIN_POSITIVE;
+            let is_beyond = point.coords.norm_squared() > reach + slack;
+            !is_beyond
+        }
+        _ => true,
+    }
+}
+
+fn may_lie_on<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> bool {
+    let [a, b, c] = triangle.corners();
+    let largest = |corner: &Point<N, D>| max_component(&corner.coords);
+    let scale = max(max(largest(a), largest(b)), max(largest(c), largest(point)));
+    // Twice what a point may be beside a thin set.
+    let slack = N::lit(16.0) * N::EPSILON * scale * N::TWO;
+    (0..D).all(|axis| {
+        let low = min(min(a[axis], b[axis]), c[axis]);
+        let high = max(max(a[axis], b[axis]), c[axis]);
+        let is_beside = point[axis] < low - slack || point[axis] > high + slack;
+        !is_beside
+    })
 }
 
 #[cfg(test)]

@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the ground up.
-const FLOORS: [&[&str]; 12] = [
-    &["generation", "math", "memory"],
+const FLOORS: [&[&str]; 13] = [
+    &["chunks", "generation", "math", "memory"],
     &["bounding_volume", "pairs"],
     &["bvh"],
     &["partitioning"],
@@ -17,6 +17,7 @@ const FLOORS: [&[&str]; 12] = [
     &["collide"],
     &["query"],
     &["broad_phase", "narrow_phase"],
+    &["batch"],
     &["world"],
     &["debug_render"],
     &["dim2", "dim3"],

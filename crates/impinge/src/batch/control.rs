@@ -1,0 +1,146 @@
+//! Progress and cancellation.
+
+use core::fmt;
+use core::ops::{ControlFlow, Range};
+use core::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+use super::BatchError;
+use crate::chunks::{CHUNK, Cut, PerChunk, each_chunk};
+
+/// Gets the number of finished elements.
+type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
+
+/// Chunks whose lists are joined at a time: what they hold beside the joined list stays bounded.
+const CHUNKS_PER_WAVE: usize = 1024;
+
+/// Hears of the progress of a batch, and may cancel it.
+///
+/// The callback gets the number of elements finished so far after each chunk of 64 elements; the last call
+/// gets all. If it breaks, the batch ends with [`BatchError::Cancelled`] and the callback is not called again.
+/// The numbers ascend. With the feature `parallel` calls come from the threads of the pool, one at a time.
+///
+/// ```
+/// use core::ops::ControlFlow;
+/// use impinge::dim2::batch::{BatchError, Control, OnePose, PairBatch, Shapes, Side};
+/// use impinge::dim2::math::Pose;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, poses) = (Ball::new(1.0_f64), vec![Pose::identity(); 1000]);
+/// let here = OnePose(Pose::identity());
+/// let one = Side::try_new(Shapes::One(&ball), &here)?;
+/// let batch = PairBatch::try_new(one, Side::try_new(Shapes::One(&ball), &poses)?)?;
+/// let mut distances = vec![0.0; 1000];
+///
+/// let until = |done: usize| if done < 500 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) };
+/// let found = batch.distances(&Control::with_progress(&until), &mut distances);
+/// assert_eq!(found, Err(BatchError::Cancelled { done: 512 }));
+/// batch.distances(&Control::new(), &mut distances)?;
+/// # Ok::<(), BatchError>(())
+/// ```
+#[derive(Clone, Copy, Default)]
+pub struct Control<'a> {
+    report: Option<Report<'a>>,
+}
+
+impl<'a> Control<'a> {
+    /// To the end, without a word.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { report: None }
+    }
+
+    /// Calls with the number of finished elements after each chunk.
+    #[must_use]
+    pub const fn with_progress(report: &'a (dyn Fn(usize) -> ControlFlow<()> + Sync)) -> Self {
+        Self { report: Some(report) }
+    }
+}
+
+impl fmt::Debug for Control<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Control").field("has_progress", &self.report.is_some()).finish()
+    }
+}
+
+/// How far a batch is.
+pub(super) struct Progress<'a> {
+    report: Option<Report<'a>>,
+    /// What the callback was told last. It is locked while the callback runs.
+    done: Mutex<usize>,
+    is_cancelled: AtomicBool,
+}
+
+impl<'a> Progress<'a> {
+    pub(super) const fn new(control: &Control<'a>) -> Self {
+        let is_cancelled = AtomicBool::new(false);
+        Self { report: control.report, done: Mutex::new(0), is_cancelled }
+    }
+
+    /// Does a whole batch, chunk by chunk.
+    pub(super) fn run<C: Cut>(
+        &self,
+        count: usize,
+        columns: C,
+        work: impl Fn(Range<usize>, C) + Sync,
+    ) -> Result<(), BatchError> {
+        self.each(0..count, columns, &work)
+    }
+
+    /// Does a whole batch whose chunks yield lists, and hands these on in order.
+    pub(super) fn collect<T: Default + Send>(
+        &self,
+        count: usize,
+        work: impl Fn(Range<usize>, &mut T) + Sync,
+        mut take: impl FnMut(&mut T),
+    ) -> Result<(), BatchError> {
+        let mut lists: Vec<T> = Vec::new();
+        lists.resize_with(count.div_ceil(CHUNK).min(CHUNKS_PER_WAVE), T::default);
+        let mut start = 0;
+        while start < count {
+            let end = count.min(start + CHUNKS_PER_WAVE * CHUNK);
+            self.each(start..end, PerChunk(&mut lists), &|range, PerChunk(lists)| {
+                lists.iter_mut().for_each(|list| work(range.clone(), list));
+            })?;
+            lists.iter_mut().take((end - start).div_ceil(CHUNK)).for_each(&mut take);
+            start = end;
+        }
+        Ok(())
+    }
+
+    fn each<C: Cut>(
+        &self,
+        range: Range<usize>,
+        columns: C,
+        work: &(impl Fn(Range<usize>, C) + Sync),
+    ) -> Result<(), BatchError> {
+        let chunk = |range: Range<usize>, columns| {
+            if self.is_cancelled.load(Ordering::Relaxed) {
+                return ControlFlow::Break(());
+            }
+            let count = range.len();
+            work(range, columns);
+            self.advance(count)
+        };
+        match each_chunk(range, columns, &chunk) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => {
+                let done = *self.done.lock().unwrap_or_else(PoisonError::into_inner);
+                Err(BatchError::Cancelled { done })
+            }
+        }
+    }
+
+    /// Some more elements are finished.
+    fn advance(&self, count: usize) -> ControlFlow<()> {
+        let Some(report) = self.report else { return ControlFlow::Continue(()) };
+        let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.is_cancelled.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
+        *done += count;
+        let flow = report(*done);
+        self.is_cancelled.store(flow.is_break(), Ordering::Relaxed);
+        flow
+    }
+}

@@ -1,0 +1,169 @@
+//! Why a batch has no answers.
+
+use core::fmt;
+
+/// Why a batch was refused, or ended early.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Shapes, Side};
+/// use impinge::dim2::math::Pose;
+/// use impinge::dim2::shape::{Ball, ShapeHandle};
+///
+/// let shapes: Vec<ShapeHandle<f64>> = vec![ShapeHandle::new(Ball::new(1.0)); 2];
+/// let poses = vec![Pose::identity(); 3];
+/// let refused = Side::try_new(Shapes::Each(&shapes), &poses).expect_err("two and three");
+/// assert_eq!(refused, BatchError::Length { argument: "poses", given: 3, needed: 2 });
+/// assert_eq!(refused.to_string(), "`poses` has 3 elements where 2 are needed");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum BatchError {
+    /// An array is not as long as the batch.
+    Length {
+        /// What the array is called.
+        argument: &'static str,
+        /// How many elements it has.
+        given: usize,
+        /// How many it needs.
+        needed: usize,
+    },
+    /// A flat array ends within a row.
+    PartialRow {
+        /// What the array is called.
+        argument: &'static str,
+        /// How many numbers it has.
+        given: usize,
+        /// How many numbers make a row.
+        width: usize,
+    },
+    /// An element picks a shape that there is not.
+    Pick {
+        /// The element.
+        index: usize,
+        /// What it picks.
+        pick: u32,
+        /// How many shapes there are.
+        shapes: usize,
+    },
+    /// A matrix is no pose.
+    Matrix {
+        /// The number of the matrix.
+        index: usize,
+        /// What is wrong with it.
+        error: MatrixError,
+    },
+    /// The distance up to which pairs are wanted is negative or NaN.
+    Distance {
+        /// The distance.
+        value: f64,
+    },
+    /// There are more elements than 32 bits can number.
+    TooMany {
+        /// How many were given.
+        given: usize,
+    },
+    /// The callback of the [`Control`](super::Control) ended the batch.
+    Cancelled {
+        /// How many elements it was told are done.
+        done: usize,
+    },
+}
+
+/// Why a matrix is no pose; rows and columns are counted from zero.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Matrices, MatrixError};
+///
+/// let mirror = [-1.0_f64, 0.0, 5.0, 0.0, 1.0, 5.0, 0.0, 0.0, 1.0];
+/// let error = MatrixError::NotARotation { determinant: -1.0 };
+/// assert_eq!(Matrices::<f64>::try_new(&mirror).err(), Some(BatchError::Matrix { index: 0, error }));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MatrixError {
+    /// An entry is infinite or NaN.
+    NotFinite {
+        /// The row of the entry.
+        row: usize,
+        /// The column of the entry.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// The last row is not 0, …, 0, 1.
+    LastRow {
+        /// The column of the wrong entry.
+        column: usize,
+        /// The wrong entry.
+        value: f64,
+    },
+    /// Two columns of the rotation are not perpendicular, or one is not a unit vector.
+    NotOrthogonal {
+        /// The columns, or the column twice.
+        columns: [usize; 2],
+        /// Their scalar product, where 0, or of one column 1, is needed.
+        product: f64,
+    },
+    /// The rotation part mirrors.
+    NotARotation {
+        /// Its determinant, where 1 is needed.
+        determinant: f64,
+    },
+}
+
+impl fmt::Display for BatchError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length { argument, given, needed } => {
+                write!(f, "`{argument}` has {given} elements where {needed} are needed")
+            }
+            Self::PartialRow { argument, given, width } => {
+                write!(f, "`{argument}` has {given} numbers, which are not whole rows of {width}")
+            }
+            Self::Pick { index, pick, shapes } => {
+                write!(f, "element {index} picks shape {pick} of {shapes}")
+            }
+            Self::Matrix { index, error } => write!(f, "matrix {index} is no pose: {error}"),
+            Self::Distance { value } => {
+                write!(f, "the distance is {value}, where zero or more is needed")
+            }
+            Self::TooMany { given } => {
+                write!(f, "{given} elements are more than 32 bits can number")
+            }
+            Self::Cancelled { done } => write!(f, "cancelled after {done} elements"),
+        }
+    }
+}
+
+impl fmt::Display for MatrixError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { row, column, value } => {
+                write!(f, "the entry in row {row} and column {column} is {value}")
+            }
+            Self::LastRow { column, value } => {
+                write!(f, "the last row has {value} in column {column}, where 0, …, 0, 1 is needed")
+            }
+            Self::NotOrthogonal { columns: [one, other], product } if one == other => {
+                write!(f, "column {one} of the rotation has the squared length {product}")
+            }
+            Self::NotOrthogonal { columns: [one, other], product } => {
+                write!(f, "columns {one} and {other} of the rotation have the product {product}")
+            }
+            Self::NotARotation { determinant } => {
+                write!(f, "the rotation has the determinant {determinant}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for BatchError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Matrix { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}
+
+impl core::error::Error for MatrixError {}

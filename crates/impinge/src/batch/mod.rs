@@ -1,0 +1,68 @@
+//! Batches: one question about many placed shapes, with the answers in columns that the caller owns.
+//!
+//! ```text
+//!   Shapes: one, one each, or picked     Side ─┐
+//!   PoseSource: one, or one each         ──────┤  PairBatch: element i of one side with element i of the other
+//!                                        Side ─┘
+//!   element       0     1     2     3    …        a length of one stands for every element
+//!   distance   [ d0 ][ d1 ][ d2 ][ d3 ]  …        one slot for each element, in this order
+//!   point1     [ p0 ][ p1 ][ p2 ][ p3 ]  …        an empty column is not wanted
+//! ```
+//!
+//! Every answer has the bits of the single call of [`query`](crate::query) about the same shapes and poses. They
+//! do not depend on the number of threads: with the feature `parallel` the elements are cut into chunks of 64,
+//! which the threads of rayon's current pool share.
+//!
+//! | one answer | many answers |
+//! |---|---|
+//! | [`distance`](crate::query::distance()) | [`PairBatch::distances`], [`PairBatch::nearest`] |
+//! | [`closest_points`](crate::query::closest_points()) | [`PairBatch::closest_points`] |
+//! | [`witness`](crate::query::witness()) | [`PairBatch::witnesses`] |
+//! | [`proximity`](crate::query::proximity()) | [`PairBatch::proximities`], [`pairs_within`], [`pairs_within_one`] |
+//! | [`contact`](crate::query::contact()) | [`PairBatch::contacts`] |
+//! | [`impact`](crate::query::impact()) | [`PairBatch::impacts`] |
+//! | [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator), new | [`PairBatch::manifolds`] |
+//! | [`PointQuery`](crate::query::PointQuery) | [`PointBatch`] |
+//! | [`RayCast`](crate::query::RayCast) | [`RayColumns`] |
+//!
+//! # No answer
+//!
+//! An element without an answer (beyond the limit, or with a pose, point, ray or velocity that is not finite) has the
+//! distance and the time `INFINITY`, the depth `-INFINITY`, `NaN` in points and normals, `u32::MAX` as its part
+//! and [`NO_FEATURE`] as its feature.
+//!
+//! # Errors
+//!
+//! Each method checks all lengths before it computes anything; then no column is changed. After
+//! [`BatchError::Cancelled`] some slots are filled.
+
+mod columns;
+mod control;
+mod error;
+mod manifolds;
+mod matrices;
+mod pairs;
+mod points;
+mod poses;
+mod rays;
+mod rows;
+mod side;
+mod tables;
+mod within;
+
+pub use columns::{
+    ClosestColumns, ContactColumns, HitColumns, ImpactColumns, NO_FEATURE, ProjectionColumns,
+    WitnessColumns,
+};
+pub use control::Control;
+pub use error::{BatchError, MatrixError};
+pub(crate) use manifolds::{SolidGroup, update_group2, update_group3};
+pub use matrices::Matrices;
+pub use pairs::PairBatch;
+pub use points::PointBatch;
+pub use poses::{AsPose, OnePose, PoseSource};
+pub use rays::RayColumns;
+pub use rows::ManifoldRows;
+pub use side::{Shapes, Side};
+pub(crate) use tables::BatchTables;
+pub use within::{pairs_within, pairs_within_one};

@@ -1,0 +1,170 @@
+//! Points against placed shapes.
+
+use super::columns::Columns;
+use super::control::Progress;
+use super::side::{PreparedSide, common_length, index_in};
+use super::{BatchError, Control, ProjectionColumns, Side};
+use crate::math::{Point, Pose, Real, Space};
+use crate::query::{PointQuery, located_at};
+use crate::shape::Shape;
+
+/// Points of the world, each against an element of a side: element `i` against point `i`, or one of either
+/// against all of the other.
+///
+/// The answers are those of [`PointQuery`], to the bit. See there for what inside means of composites
+/// and sets without thickness.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control, OnePose, PointBatch, ProjectionColumns, Shapes, Side};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, place) = (Ball::new(2.0_f64), OnePose(Isometry::translation(10.0, 0.0)));
+/// let side = Side::try_new(Shapes::One(&ball), &place)?;
+/// let points = [[10.0, 5.0], [11.0, 0.0], [0.0, 0.0]];
+/// let batch = PointBatch::try_new(side, &points)?;
+///
+/// let mut distance = [0.0; 3];
+/// batch.signed_distances(&Control::new(), &mut distance)?;
+/// assert_eq!(distance, [3.0, -1.0, 8.0]);
+///
+/// let mut point = [[0.0; 2]; 3];
+/// let wanted = ProjectionColumns { point: &mut point, ..Default::default() };
+/// batch.project(false, &Control::new(), wanted)?;
+/// assert_eq!(point, [[10.0, 2.0], [12.0, 0.0], [8.0, 0.0]]);
+/// # Ok::<(), BatchError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct PointBatch<'a, N: Real, const D: usize> {
+    side: Side<'a, N, D>,
+    points: &'a [[N; D]],
+    len: usize,
+}
+
+impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
+    /// Points beside as many placed shapes, or one of either.
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] if there are several of both and not as many.
+    pub fn try_new(side: Side<'a, N, D>, points: &'a [[N; D]]) -> Result<Self, BatchError> {
+        let len = common_length(side.len(), ("points", points.len()))?;
+        Ok(Self { side, points, len })
+    }
+
+    /// How many questions there are.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// There is no question.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The point of each shape, or with `solid` false of its boundary, that is nearest to the point: see
+    /// [`PointQuery::project_point_with_location`].
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
+    pub fn project(
+        &self,
+        solid: bool,
+        control: &Control<'_>,
+        out: ProjectionColumns<'_, N, D>,
+    ) -> Result<(), BatchError> {
+        (N::tables().batch.project)(self, solid, control, out)
+    }
+
+    /// How far each point is from the boundary of the shape, negative inside: see [`PointQuery::distance_to_point`].
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
+    pub fn signed_distances(&self, control: &Control<'_>, out: &mut [N]) -> Result<(), BatchError> {
+        (N::tables().batch.signed_distances)(self, control, out)
+    }
+
+    /// Whether each point lies in the shape or on its boundary: see [`PointQuery::contains_point`].
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
+    pub fn contains(&self, control: &Control<'_>, out: &mut [bool]) -> Result<(), BatchError> {
+        (N::tables().batch.contains)(self, control, out)
+    }
+
+    /// Calls with each question and the slot of its answer in the columns of a chunk; without a question where the
+    /// point or the pose is not finite.
+    fn each<C: Columns>(
+        &self,
+        control: &Control<'_>,
+        out: C,
+        answer: impl Fn(Option<PointQuestion<'a, N, D>>, &mut C, usize) + Sync,
+    ) -> Result<(), BatchError> {
+        out.check(self.len)?;
+        let side = PreparedSide::new(&self.side);
+        Progress::new(control).run(self.len, out, |range, mut columns| {
+            for (slot, index) in range.enumerate() {
+                let point = Point::from(self.points[index_in(self.points.len(), index)]);
+                let question =
+                    PointQuestion { shape: side.shape(index), pose: side.pose(index), point };
+                answer(question.if_finite(), &mut columns, slot);
+            }
+        })
+    }
+}
+
+/// A point and a placed shape.
+struct PointQuestion<'a, N: Real, const D: usize> {
+    shape: &'a dyn Shape<N, D>,
+    pose: Pose<N, D>,
+    point: Point<N, D>,
+}
+
+impl<N: Real, const D: usize> PointQuestion<'_, N, D> {
+    fn if_finite(self) -> Option<Self> {
+        let is_finite = self.pose.is_finite() && self.point.iter().all(|x| x.is_finite_number());
+        is_finite.then_some(self)
+    }
+
+    /// The point in the frame of the shape.
+    fn local(&self) -> Point<N, D> {
+        self.pose.inverse_point(&self.point)
+    }
+}
+
+/// See [`PointBatch::project`].
+pub(super) fn project<N: Space<D>, const D: usize>(
+    batch: &PointBatch<'_, N, D>,
+    solid: bool,
+    control: &Control<'_>,
+    out: ProjectionColumns<'_, N, D>,
+) -> Result<(), BatchError> {
+    batch.each(control, out, |question, out, slot| {
+        let found = question.map(|q| located_at(q.shape, &q.pose, &q.point, solid));
+        out.put(slot, found);
+    })
+}
+
+/// See [`PointBatch::signed_distances`].
+pub(super) fn signed_distances<N: Space<D>, const D: usize>(
+    batch: &PointBatch<'_, N, D>,
+    control: &Control<'_>,
+    out: &mut [N],
+) -> Result<(), BatchError> {
+    batch.each(control, out, |question, out, slot| {
+        let distance = question.map(|q| q.shape.signed_distance_to_local_point(&q.local()));
+        out[slot] = distance.unwrap_or(N::INFINITY);
+    })
+}
+
+/// See [`PointBatch::contains`].
+pub(super) fn contains<N: Space<D>, const D: usize>(
+    batch: &PointBatch<'_, N, D>,
+    control: &Control<'_>,
+    out: &mut [bool],
+) -> Result<(), BatchError> {
+    batch.each(control, out, |question, out, slot| {
+        out[slot] = question.is_some_and(|q| q.shape.contains_local_point(&q.local()));
+    })
+}

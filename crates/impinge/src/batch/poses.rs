@@ -1,0 +1,189 @@
+//! Where the shapes of a batch are.
+
+use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
+
+/// What places a shape: a [`Pose`], nalgebra's isometries, or a type of your own.
+///
+/// ```
+/// use impinge::dim2::batch::AsPose;
+/// use impinge::dim2::math::{Pose, Vector};
+///
+/// /// A body that does not turn.
+/// struct Body([f32; 2]);
+///
+/// impl AsPose<f32, 2> for Body {
+///     fn to_pose(&self) -> Pose<f32, 2> {
+///         Pose::from_translation(Vector::from(self.0))
+///     }
+/// }
+/// assert_eq!(Body([1.0, 2.0]).translation(), Vector::new(1.0, 2.0));
+/// ```
+pub trait AsPose<N: Real, const D: usize>: Sync {
+    /// The pose: a rotation matrix and a translation.
+    fn to_pose(&self) -> Pose<N, D>;
+
+    /// The translation alone, to the bit; shapes that are far apart by it are never rotated.
+    fn translation(&self) -> Vector<N, D> {
+        self.to_pose().translation
+    }
+
+    /// The pose of what looks the same however it is turned, such as a ball: see [`Pose::unturned`].
+    fn unturned(&self) -> Pose<N, D> {
+        self.to_pose().without_rotation()
+    }
+}
+
+impl<N: Real, const D: usize> AsPose<N, D> for Pose<N, D> {
+    #[inline]
+    fn to_pose(&self) -> Self {
+        *self
+    }
+
+    #[inline]
+    fn translation(&self) -> Vector<N, D> {
+        self.translation
+    }
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> AsPose<N, D>
+    for Isometry<N, R, D>
+{
+    #[inline]
+    fn to_pose(&self) -> Pose<N, D> {
+        Pose::from_isometry(self)
+    }
+
+    #[inline]
+    fn translation(&self) -> Vector<N, D> {
+        self.translation.vector
+    }
+
+    #[inline]
+    fn unturned(&self) -> Pose<N, D> {
+        Pose::unturned(self)
+    }
+}
+
+/// The poses of one side of a batch, known by their indices.
+///
+/// A vector, an array or a slice (`&slice`, as the batch takes a reference) of what [`AsPose`] is implemented
+/// for; [`Matrices`](super::Matrices); [`OnePose`]. Implement it to read poses where they lie in memory of your own.
+///
+/// A source of one pose places every element of its side there. Poses need not be finite: an element with
+/// a pose that is not has no answer.
+pub trait PoseSource<N: Real, const D: usize>: Sync {
+    /// How many poses there are.
+    fn len(&self) -> usize;
+
+    /// A pose: a rotation matrix and a translation. It is asked for with an `index` below [`Self::len`], and always
+    /// the same for one index.
+    fn pose(&self, index: usize) -> Pose<N, D>;
+
+    /// There is no pose.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The translation of a pose, to the bit.
+    fn translation(&self, index: usize) -> Vector<N, D> {
+        self.pose(index).translation
+    }
+
+    /// The pose of what looks the same however it is turned: see [`Pose::unturned`].
+    fn unturned(&self, index: usize) -> Pose<N, D> {
+        self.pose(index).without_rotation()
+    }
+}
+
+/// One pose for all elements.
+///
+/// ```
+/// use impinge::dim3::batch::{OnePose, PoseSource};
+/// use impinge::dim3::math::Isometry;
+///
+/// let above = OnePose(Isometry::translation(0.0_f64, 2.0, 0.0));
+/// assert_eq!((above.len(), above.pose(0).translation.y), (1, 2.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnePose<P>(pub P);
+
+impl<N: Real, P: AsPose<N, D>, const D: usize> PoseSource<N, D> for OnePose<P> {
+    fn len(&self) -> usize {
+        1
+    }
+
+    fn pose(&self, _: usize) -> Pose<N, D> {
+        self.0.to_pose()
+    }
+
+    fn translation(&self, _: usize) -> Vector<N, D> {
+        self.0.translation()
+    }
+
+    fn unturned(&self, _: usize) -> Pose<N, D> {
+        self.0.unturned()
+    }
+}
+
+impl<N: Real, P: AsPose<N, D>, const D: usize> PoseSource<N, D> for &[P] {
+    fn len(&self) -> usize {
+        (**self).len()
+    }
+
+    #[inline]
+    fn pose(&self, index: usize) -> Pose<N, D> {
+        self[index].to_pose()
+    }
+
+    #[inline]
+    fn translation(&self, index: usize) -> Vector<N, D> {
+        self[index].translation()
+    }
+
+    #[inline]
+    fn unturned(&self, index: usize) -> Pose<N, D> {
+        self[index].unturned()
+    }
+}
+
+impl<N: Real, P: AsPose<N, D>, const D: usize> PoseSource<N, D> for Vec<P> {
+    fn len(&self) -> usize {
+        self.as_slice().len()
+    }
+
+    #[inline]
+    fn pose(&self, index: usize) -> Pose<N, D> {
+        self[index].to_pose()
+    }
+
+    #[inline]
+    fn translation(&self, index: usize) -> Vector<N, D> {
+        self[index].translation()
+    }
+
+    #[inline]
+    fn unturned(&self, index: usize) -> Pose<N, D> {
+        self[index].unturned()
+    }
+}
+
+impl<N: Real, P: AsPose<N, D>, const COUNT: usize, const D: usize> PoseSource<N, D> for [P; COUNT] {
+    fn len(&self) -> usize {
+        COUNT
+    }
+
+    #[inline]
+    fn pose(&self, index: usize) -> Pose<N, D> {
+        self[index].to_pose()
+    }
+
+    #[inline]
+    fn translation(&self, index: usize) -> Vector<N, D> {
+        self[index].translation()
+    }
+
+    #[inline]
+    fn unturned(&self, index: usize) -> Pose<N, D> {
+        self[index].unturned()
+    }
+}

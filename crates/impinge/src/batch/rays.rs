@@ -1,0 +1,113 @@
+//! Rays against placed shapes.
+
+use super::columns::Columns;
+use super::control::Progress;
+use super::side::{PreparedSide, common_length, index_in};
+use super::{BatchError, Control, HitColumns, Side};
+use crate::bounding_volume::Ray;
+use crate::math::{Point, Real, Space, Vector};
+use crate::query::cast_at;
+
+/// Rays of the world as arrays of origins and directions, each against an element of a side: element `i` against ray
+/// `i`, or one of either against all of the other.
+///
+/// The answers are those of [`RayCast::first_hit_with_ray`](crate::query::RayCast::first_hit_with_ray), to the bit.
+/// Of several shapes each ray meets its own; a world or a [`Compound`](crate::shape::Compound) finds the first of many.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control, HitColumns, OnePose, RayColumns, Shapes, Side};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, place) = (Ball::new(1.0_f64), OnePose(Isometry::translation(5.0, 0.0)));
+/// let side = Side::try_new(Shapes::One(&ball), &place)?;
+/// let origins = [[0.0, 0.0], [0.0, 3.0], [5.0, 0.0]];
+/// let rays = RayColumns::try_new(side, &origins, &[[2.0, 0.0]])?.until(10.0);
+///
+/// let (mut time, mut normal) = ([0.0; 3], [[0.0; 2]; 3]);
+/// rays.cast(&Control::new(), HitColumns { time: &mut time, normal: &mut normal, ..Default::default() })?;
+/// assert_eq!(time, [2.0, f64::INFINITY, 0.0], "the last starts inside");
+/// assert_eq!(normal[0], [-1.0, 0.0]);
+/// # Ok::<(), BatchError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct RayColumns<'a, N: Real, const D: usize> {
+    side: Side<'a, N, D>,
+    origins: &'a [[N; D]],
+    directions: &'a [[N; D]],
+    max_time: N,
+    solid: bool,
+    len: usize,
+}
+
+impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
+    /// Rays without an end beside as many placed solids, or one of either. A single origin or direction is that of all
+    /// rays. Times are in units of the length of each direction.
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] if there are several of two of these and not as many.
+    pub fn try_new(
+        side: Side<'a, N, D>,
+        origins: &'a [[N; D]],
+        directions: &'a [[N; D]],
+    ) -> Result<Self, BatchError> {
+        let len = common_length(side.len(), ("origins", origins.len()))?;
+        let len = common_length(len, ("directions", directions.len()))?;
+        Ok(Self { side, origins, directions, max_time: N::INFINITY, solid: true, len })
+    }
+
+    /// The same rays up to a time; no hit is found if it is negative or NaN.
+    #[must_use]
+    pub const fn until(self, max_time: N) -> Self {
+        Self { max_time, ..self }
+    }
+
+    /// The same rays among boundaries: those that start inside a shape hit where they leave it.
+    #[must_use]
+    pub const fn hollow(self) -> Self {
+        Self { solid: false, ..self }
+    }
+
+    /// How many rays there are.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// There is no ray.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// The first hit of each ray.
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
+    pub fn cast(&self, control: &Control<'_>, out: HitColumns<'_, N, D>) -> Result<(), BatchError> {
+        (N::tables().batch.cast)(self, control, out)
+    }
+
+    #[inline]
+    fn ray(&self, index: usize) -> Ray<N, D> {
+        let origin = self.origins[index_in(self.origins.len(), index)];
+        let direction = self.directions[index_in(self.directions.len(), index)];
+        Ray::new(Point::from(origin), Vector::<N, D>::from(direction))
+    }
+}
+
+/// See [`RayColumns::cast`].
+pub(super) fn cast<N: Space<D>, const D: usize>(
+    rays: &RayColumns<'_, N, D>,
+    control: &Control<'_>,
+    out: HitColumns<'_, N, D>,
+) -> Result<(), BatchError> {
+    out.check(rays.len)?;
+    let side = PreparedSide::new(&rays.side);
+    Progress::new(control).run(rays.len, out, |range, mut out| {
+        for (slot, index) in range.enumerate() {
+            let (shape, pose, ray) = (side.shape(index), side.pose(index), rays.ray(index));
+            out.put(slot, cast_at(shape, &pose, &ray, rays.max_time, rays.solid));
+        }
+    })
+}

@@ -1,0 +1,156 @@
+//! The contact points of many pairs, row by row.
+
+use core::ops::Range;
+
+use crate::math::Real;
+use crate::query::ManifoldView;
+use crate::shape::FeatureId;
+
+/// The contact points of many pairs in columns: those of pair `i` are in the slots `starts[i]..starts[i + 1]`, as a
+/// sparse matrix in compressed rows has its entries.
+///
+/// ```text
+///   starts      0        2  2           6            one more than there are pairs
+///   depth     [ p p    ][  ][ p p  p p ]             pair 1 has no contact
+///   manifold  [ 0 0    ][  ][ 0 0  1 1 ]             pair 2 has two manifolds of two points each
+/// ```
+///
+/// Two convex solids have at most one manifold, composites one for each flat patch that they touch in. The points of a
+/// manifold share one normal.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control, ManifoldRows, OnePose, PairBatch, Shapes, Side};
+/// use impinge::dim2::math::{Isometry, Pose, Vector};
+/// use impinge::dim2::query::ContactPrediction;
+/// use impinge::dim2::shape::Cuboid;
+///
+/// let (square, here) = (Cuboid::new(Vector::new(1.0_f64, 1.0)), OnePose(Pose::identity()));
+/// let places = [1.75, 5.0].map(|y| Isometry::translation(0.0, y));
+/// let one = Side::try_new(Shapes::One(&square), &here)?;
+/// let batch = PairBatch::try_new(one, Side::try_new(Shapes::One(&square), &places)?)?;
+/// let mut rows = ManifoldRows::new();
+/// batch.manifolds(&ContactPrediction::new(0.0, 0.0, 0.0), None, &Control::new(), &mut rows)?;
+/// assert_eq!(rows.starts, [0, 2, 2], "two points, and none");
+/// assert_eq!(rows.depth, [0.25; 2]);
+/// assert_eq!(rows.normal[rows.points_of(0)], [[0.0, 1.0]; 2]);
+/// # Ok::<(), BatchError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ManifoldRows<N: Real, const D: usize> {
+    /// Where the points of each pair begin, and where those of the last end.
+    pub starts: Vec<usize>,
+    /// The number of the manifold of each point within its pair.
+    pub manifold: Vec<u32>,
+    /// The point on the surface of the first shape, in the world frame.
+    pub point1: Vec<[N; D]>,
+    /// The point on the surface of the second shape, in the world frame.
+    pub point2: Vec<[N; D]>,
+    /// The unit vector from the first shape to the second.
+    pub normal: Vec<[N; D]>,
+    /// How deep the shapes overlap there along the normal; minus the distance when apart.
+    pub depth: Vec<N>,
+    /// The part of the first shape; 0 for a convex solid.
+    pub part1: Vec<u32>,
+    /// The part of the second shape; 0 for a convex solid.
+    pub part2: Vec<u32>,
+    /// The feature of that part of the first shape.
+    pub feature1: Vec<FeatureId>,
+    /// The feature of that part of the second shape.
+    pub feature2: Vec<FeatureId>,
+}
+
+impl<N: Real, const D: usize> ManifoldRows<N, D> {
+    /// The rows of no pairs.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            starts: vec![0],
+            manifold: Vec::new(),
+            point1: Vec::new(),
+            point2: Vec::new(),
+            normal: Vec::new(),
+            depth: Vec::new(),
+            part1: Vec::new(),
+            part2: Vec::new(),
+            feature1: Vec::new(),
+            feature2: Vec::new(),
+        }
+    }
+
+    /// How many pairs there are.
+    #[must_use]
+    pub const fn num_pairs(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// How many points all pairs have.
+    #[must_use]
+    pub const fn num_points(&self) -> usize {
+        self.depth.len()
+    }
+
+    /// The slots of the points of a pair.
+    ///
+    /// # Panics
+    /// If there is no such pair.
+    #[must_use]
+    pub fn points_of(&self, pair: usize) -> Range<usize> {
+        self.starts[pair]..self.starts[pair + 1]
+    }
+
+    /// Forgets all pairs and keeps the memory.
+    pub fn clear(&mut self) {
+        let Self { starts, manifold, point1, point2, normal, depth, .. } = self;
+        starts.clear();
+        starts.push(0);
+        manifold.clear();
+        [point1, point2, normal].into_iter().for_each(Vec::clear);
+        depth.clear();
+        [&mut self.part1, &mut self.part2].into_iter().for_each(Vec::clear);
+        [&mut self.feature1, &mut self.feature2].into_iter().for_each(Vec::clear);
+    }
+
+    /// Appends the points of one manifold to the pair under way.
+    #[inline]
+    pub(super) fn push(&mut self, manifold: u32, view: &ManifoldView<'_, N, D>) {
+        for point in view.contacts() {
+            self.manifold.push(manifold);
+            self.point1.push(point.contact.world1.coords.into());
+            self.point2.push(point.contact.world2.coords.into());
+            self.normal.push((*point.contact.normal).into());
+            self.depth.push(point.contact.depth);
+            self.part1.push(point.part1);
+            self.part2.push(point.part2);
+            self.feature1.push(point.feature1);
+            self.feature2.push(point.feature2);
+        }
+    }
+
+    /// The pair under way has no more points.
+    #[inline]
+    pub(super) fn end_pair(&mut self) {
+        self.starts.push(self.depth.len());
+    }
+
+    /// Moves the pairs of other rows behind the own ones.
+    pub(super) fn append(&mut self, other: &mut Self) {
+        let before = self.depth.len();
+        self.starts.extend(other.starts.iter().skip(1).map(|start| before + start));
+        self.manifold.append(&mut other.manifold);
+        self.point1.append(&mut other.point1);
+        self.point2.append(&mut other.point2);
+        self.normal.append(&mut other.normal);
+        self.depth.append(&mut other.depth);
+        self.part1.append(&mut other.part1);
+        self.part2.append(&mut other.part2);
+        self.feature1.append(&mut other.feature1);
+        self.feature2.append(&mut other.feature2);
+        other.clear();
+    }
+}
+
+impl<N: Real, const D: usize> Default for ManifoldRows<N, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

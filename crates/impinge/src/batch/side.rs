@@ -1,0 +1,238 @@
+//! One side of a batch: shapes and where they are.
+
+use core::fmt;
+
+use super::{BatchError, PoseSource};
+use crate::collide::{Placed, Placing};
+use crate::math::{Pose, Real, Space, Vector};
+use crate::shape::{Geometry, Shape, ShapeHandle};
+
+/// The shapes of one side of a batch.
+///
+/// ```
+/// use impinge::dim3::batch::Shapes;
+/// use impinge::dim3::shape::{Ball, ShapeHandle};
+///
+/// let (large, small) = (ShapeHandle::new(Ball::new(2.0_f32)), ShapeHandle::new(Ball::new(1.0)));
+/// let all: Shapes<'_, f32> = Shapes::One(&*large);
+/// assert_eq!(all.len(), 1);
+/// let kinds = [large, small];
+/// let mixed: Shapes<'_, f32> = Shapes::Picked { shapes: &kinds, picks: &[0, 1, 1, 0, 1] };
+/// assert_eq!(mixed.len(), 5);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub enum Shapes<'a, N: Real, const D: usize> {
+    /// One shape for all elements.
+    One(&'a dyn Shape<N, D>),
+    /// A shape for each element; a single one is for all.
+    Each(&'a [ShapeHandle<N, D>]),
+    /// For each element the number of one of some shapes; a single number is for all.
+    Picked {
+        /// What there is to pick from.
+        shapes: &'a [ShapeHandle<N, D>],
+        /// The number of the shape of each element.
+        picks: &'a [u32],
+    },
+}
+
+impl<'a, N: Real, const D: usize> Shapes<'a, N, D> {
+    /// How many elements have a shape of their own: 1 for one shape for all.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        match self {
+            Self::One(_) => 1,
+            Self::Each(shapes) => shapes.len(),
+            Self::Picked { picks, .. } => picks.len(),
+        }
+    }
+
+    /// No element has a shape.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The shape at an index below the length.
+    #[inline]
+    fn at(&self, index: usize) -> &'a dyn Shape<N, D> {
+        match *self {
+            Self::One(shape) => shape,
+            Self::Each(shapes) => &*shapes[index],
+            Self::Picked { shapes, picks } => &*shapes[picks[index] as usize],
+        }
+    }
+
+    fn check(&self) -> Result<(), BatchError> {
+        let Self::Picked { shapes, picks } = *self else { return Ok(()) };
+        match picks.iter().position(|&pick| pick as usize >= shapes.len()) {
+            None => Ok(()),
+            Some(index) => {
+                let (pick, shapes) = (picks[index], shapes.len());
+                Err(BatchError::Pick { index, pick, shapes })
+            }
+        }
+    }
+}
+
+/// Shapes and where they are: element `i` is shape `i` at pose `i`, and a single shape or pose is that of every
+/// element.
+///
+/// ```
+/// use impinge::dim3::batch::{OnePose, Shapes, Side};
+/// use impinge::dim3::math::{Isometry, Pose};
+/// use impinge::dim3::shape::Ball;
+///
+/// let ball = Ball::new(1.0_f64);
+/// let places = [0.0, 4.0, 8.0].map(|x| Isometry::translation(x, 0.0, 0.0));
+/// assert_eq!(Side::try_new(Shapes::One(&ball), &places)?.len(), 3, "one ball at three places");
+/// let here = OnePose(Pose::identity());
+/// assert_eq!(Side::try_new(Shapes::One(&ball), &here)?.len(), 1, "one ball");
+/// # Ok::<(), impinge::batch::BatchError>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Side<'a, N: Real, const D: usize> {
+    shapes: Shapes<'a, N, D>,
+    poses: &'a dyn PoseSource<N, D>,
+    len: usize,
+}
+
+impl<'a, N: Real, const D: usize> Side<'a, N, D> {
+    /// Shapes at poses; of each as many, or one.
+    ///
+    /// # Errors
+    /// [`BatchError::Length`] if there are several of both and not as many, [`BatchError::Pick`] for the first
+    /// element that picks a shape that there is not.
+    pub fn try_new(
+        shapes: Shapes<'a, N, D>,
+        poses: &'a dyn PoseSource<N, D>,
+    ) -> Result<Self, BatchError> {
+        shapes.check()?;
+        let len = common_length(shapes.len(), ("poses", poses.len()))?;
+        Ok(Self { shapes, poses, len })
+    }
+
+    /// How many elements there are; a side of one stands for as many as are needed.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.len
+    }
+
+    /// There is no element.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+}
+
+impl<N: Real, const D: usize> fmt::Debug for Side<'_, N, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let poses = self.poses.len();
+        f.debug_struct("Side").field("shapes", &self.shapes).field("poses", &poses).finish()
+    }
+}
+
+/// The length of two lists side by side, where a single element stands for as many as are needed.
+pub(super) fn common_length(
+    needed: usize,
+    (argument, given): (&'static str, usize),
+) -> Result<usize, BatchError> {
+    match (needed, given) {
+        (1, count) | (count, 1) => Ok(count),
+        _ if needed == given => Ok(needed),
+        _ => Err(BatchError::Length { argument, given, needed }),
+    }
+}
+
+/// The index of what belongs to an element in a list with one entry for each, or with one for all.
+#[inline]
+pub(super) const fn index_in(len: usize, element: usize) -> usize {
+    if len == 1 { 0 } else { element }
+}
+
+/// A side with what all of its elements have in common looked up once.
+pub(super) struct PreparedSide<'a, N: Real, const D: usize> {
+    side: Side<'a, N, D>,
+    /// How many poses there are.
+    poses: usize,
+    /// The shape of all elements.
+    shape: Option<(&'a dyn Shape<N, D>, Geometry<'a, N, D>)>,
+    /// The only element: its pose, and where it is placed.
+    only: Option<(Pose<N, D>, Placed<'a, N, D>)>,
+}
+
+impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
+    pub(super) fn new(side: &Side<'a, N, D>) -> Self {
+        let shape = (side.shapes.len() == 1).then(|| side.shapes.at(0));
+        let shape = shape.map(|shape| (shape, shape.geometry()));
+        let unique = shape.filter(|_| side.poses.len() == 1);
+        let only = unique.map(|(_, geometry)| {
+            let shape = geometry;
+            let unturned = || side.poses.unturned(0);
+            let pose = side.poses.pose(0);
+            let placed = Placed { pose: if shape.turns() { pose } else { unturned() }, shape };
+            (pose, placed)
+        });
+        Self { side: *side, poses: side.poses.len(), shape, only }
+    }
+
+    /// The shape of an element.
+    #[inline]
+    pub(super) fn shape(&self, element: usize) -> &'a dyn Shape<N, D> {
+        match self.shape {
+            Some((shape, _)) => shape,
+            None => self.side.shapes.at(element),
+        }
+    }
+
+    /// The pose of an element, with a rotation also if it is a ball.
+    #[inline]
+    pub(super) fn pose(&self, element: usize) -> Pose<N, D> {
+        match &self.only {
+            Some((pose, _)) => *pose,
+            None => self.side.poses.pose(index_in(self.poses, element)),
+        }
+    }
+
+    /// An element, which is placed when it is near enough.
+    #[inline]
+    pub(super) fn element(&self, element: usize) -> Element<'_, 'a, N, D> {
+        let shape = match self.shape {
+            Some((_, shape)) => shape,
+            None => self.side.shapes.at(element).geometry(),
+        };
+        Element { side: self, shape, pose: index_in(self.poses, element) }
+    }
+}
+
+/// An element of a side.
+pub(super) struct Element<'s, 'a, N: Real, const D: usize> {
+    side: &'s PreparedSide<'a, N, D>,
+    shape: Geometry<'a, N, D>,
+    /// The index of its pose.
+    pose: usize,
+}
+
+impl<'a, N: Space<D>, const D: usize> Placing<'a, N, D> for Element<'_, 'a, N, D> {
+    #[inline]
+    fn shape(&self) -> Geometry<'a, N, D> {
+        self.shape
+    }
+
+    #[inline]
+    fn translation(&self) -> Vector<N, D> {
+        match &self.side.only {
+            Some((pose, _)) => pose.translation,
+            None => self.side.side.poses.translation(self.pose),
+        }
+    }
+
+    #[inline]
+    fn placed(&self) -> Placed<'a, N, D> {
+        if let Some((_, placed)) = &self.side.only {
+            return *placed;
+        }
+        let (poses, shape) = (self.side.side.poses, self.shape);
+        let pose = if shape.turns() { poses.pose(self.pose) } else { poses.unturned(self.pose) };
+        Placed { pose, shape }
+    }
+}

@@ -1,0 +1,210 @@
+//! All pairs of two sets of placed shapes that are near each other.
+//!
+//! A tree is built over the boxes of the smaller set, and each element of the larger one searches it with its own box,
+//! grown by the distance. What is proposed is decided by the proximity of the two shapes.
+//!
+//! ```text
+//!    +-------------+  the box of an element, rounded outwards and grown by the rounding errors of its pair
+//!    |   shape     |
+//!    +-------------+ <----- distance -----> |   the searched volume ends here
+//! ```
+//!
+//! The algorithms for pairs are off by some hundred rounding errors of the lengths of the pair, as
+//! [`crate::collide::far`] has it: the sizes of both solids about their origins, and the distance. So each box is grown
+//! by 2¹⁰ rounding errors of the reach of its own solid, and the volume by as many of the distance, before anything
+//! is rejected.
+
+use core::ops::Range;
+
+use super::control::Progress;
+use super::side::PreparedSide;
+use super::{BatchError, Control, Side};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::collide::Placing;
+use crate::collide::parts::bounds::enclosing;
+use crate::math::{Real, Space, max};
+use crate::partitioning::BoxTree;
+use crate::query::{Proximity, proximity_between};
+
+/// Boxes are grown by so many rounding errors of the lengths that they stand for.
+const ROUNDING_ERRORS: f64 = 1024.0;
+
+/// The pairs `[i, j]` of an element `i` of the first side and an element `j` of the second that touch, overlap, or
+/// are at most `distance` apart, ascending.
+///
+/// What counts is what [`proximity`](crate::query::proximity()) says of the two: a distance equal to `distance` is
+/// within it. Elements with a pose that is not finite, and composites without parts, have no pairs.
+///
+/// The callback of `control` hears of the elements of the larger side.
+///
+/// Cost: O((n + m) log n) for n and m elements, n ≤ m, and the proximity of each pair whose boxes are within the
+/// distance. Half-spaces that do not lie along an axis are held against every element of the other side.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control, OnePose, Shapes, Side, pairs_within};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::Ball;
+///
+/// let ball = Ball::new(1.0_f64);
+/// let (low, high) = ([0.0, 3.0, 6.0].map(|x| Isometry::translation(x, 0.0)), OnePose(Isometry::translation(6.0, 3.0)));
+/// let (low, high) = (Side::try_new(Shapes::One(&ball), &low)?, Side::try_new(Shapes::One(&ball), &high)?);
+/// assert_eq!(pairs_within(&low, &high, 1.0, &Control::new())?, [[2, 0]]);
+/// assert!(pairs_within(&low, &high, 0.5, &Control::new())?.is_empty());
+/// # Ok::<(), BatchError>(())
+/// ```
+///
+/// # Errors
+/// [`BatchError::Distance`] if `distance` is negative or NaN, [`BatchError::TooMany`] if 32 bits cannot number the
+/// elements, [`BatchError::Cancelled`].
+pub fn pairs_within<N: Space<D>, const D: usize>(
+    side1: &Side<'_, N, D>,
+    side2: &Side<'_, N, D>,
+    distance: N,
+    control: &Control<'_>,
+) -> Result<Vec<[u32; 2]>, BatchError> {
+    (N::tables().batch.pairs_within)(side1, Some(side2), distance, control)
+}
+
+/// The pairs `[i, j]`, `i < j`, of elements of one side that touch, overlap, or are at most `distance` apart,
+/// ascending: [`pairs_within`] of a side and itself, without pairs of an element with itself and with each pair once.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, pairs_within_one};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, places) = (Ball::new(1.0_f64), [0.0, 3.0, 6.5].map(|x| Isometry::translation(x, 0.0)));
+/// let row = Side::try_new(Shapes::One(&ball), &places)?;
+/// assert_eq!(pairs_within_one(&row, 1.0, &Control::new())?, [[0, 1]]);
+/// # Ok::<(), BatchError>(())
+/// ```
+///
+/// # Errors
+/// As [`pairs_within`].
+pub fn pairs_within_one<N: Space<D>, const D: usize>(
+    side: &Side<'_, N, D>,
+    distance: N,
+    control: &Control<'_>,
+) -> Result<Vec<[u32; 2]>, BatchError> {
+    (N::tables().batch.pairs_within)(side, None, distance, control)
+}
+
+/// The elements of a side and their boxes.
+struct BoxedSide<'a, N: Real, const D: usize> {
+    side: PreparedSide<'a, N, D>,
+    /// `None` for what is nowhere.
+    boxes: Vec<Option<Aabb<N, D>>>,
+}
+
+/// See [`pairs_within`], and [`pairs_within_one`] without a second side.
+pub(super) fn pairs_of<N: Space<D>, const D: usize>(
+    side1: &Side<'_, N, D>,
+    side2: Option<&Side<'_, N, D>>,
+    distance: N,
+    control: &Control<'_>,
+) -> Result<Vec<[u32; 2]>, BatchError> {
+    let is_usable = distance >= N::ZERO;
+    if !is_usable {
+        return Err(BatchError::Distance { value: distance.as_f64() });
+    }
+    let boxed1 = BoxedSide::new(side1)?;
+    let mut pairs = match side2 {
+        None => boxed1.pairs_with(&boxed1, distance, control, |walker, found| {
+            (walker < found).then_some([walker, found])
+        }),
+        Some(side2) => {
+            let boxed2 = BoxedSide::new(side2)?;
+            if side1.len() < side2.len() {
+                boxed2.pairs_with(&boxed1, distance, control, |walker, found| Some([found, walker]))
+            } else {
+                boxed1.pairs_with(&boxed2, distance, control, |walker, found| Some([walker, found]))
+            }
+        }
+    }?;
+    pairs.sort_unstable();
+    Ok(pairs)
+}
+
+impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
+    fn new(side: &Side<'a, N, D>) -> Result<Self, BatchError> {
+        let given = side.len();
+        // The largest number is that of no element.
+        if u32::try_from(given).is_err() {
+            return Err(BatchError::TooMany { given });
+        }
+        let (side, mut boxes) = (PreparedSide::new(side), vec![None; given]);
+        let work = |range: Range<usize>, boxes: &mut [Option<Aabb<N, D>>]| {
+            for (place, element) in boxes.iter_mut().zip(range) {
+                *place = grown_box(&side, element);
+            }
+        };
+        Progress::new(&Control::new()).run(given, &mut boxes[..], work)?;
+        Ok(Self { side, boxes })
+    }
+
+    /// The pairs of elements of this side, which search, and of the other, as `named` has them, in any order.
+    fn pairs_with(
+        &self,
+        other: &Self,
+        distance: N,
+        control: &Control<'_>,
+        named: impl Fn(u32, u32) -> Option<[u32; 2]> + Sync,
+    ) -> Result<Vec<[u32; 2]>, BatchError> {
+        let (numbers, tree) = other.tree()?;
+        let margin = distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON;
+        let work = |range: Range<usize>, pairs: &mut Vec<[u32; 2]>| {
+            for walker in range {
+                let Some(aabb) = &self.boxes[walker] else { continue };
+                tree.visit_overlapping(&aabb.loosened(margin), |index| {
+                    let number = numbers[index];
+                    let Some(pair) = named(number_of(walker), number) else { return };
+                    let (one, found) =
+                        (self.side.element(walker), other.side.element(number as usize));
+                    if proximity_between(&one, &found, distance) != Proximity::Disjoint {
+                        pairs.push(pair);
+                    }
+                });
+            }
+        };
+        let mut all = Vec::new();
+        let progress = Progress::new(control);
+        progress.collect(self.boxes.len(), work, |pairs| all.append(pairs))?;
+        Ok(all)
+    }
+
+    /// A tree over the boxes that there are, and the numbers of their elements.
+    fn tree(&self) -> Result<(Vec<u32>, BoxTree<N, D>), BatchError> {
+        let boxes = (0..).zip(&self.boxes);
+        let (numbers, boxes): (Vec<u32>, Vec<_>) =
+            boxes.filter_map(|(number, aabb)| Some((number, (*aabb)?))).unzip();
+        let given = boxes.len();
+        // The boxes are neither inverted nor NaN, so it can only be their number.
+        let tree = BoxTree::try_from_vec(boxes).map_err(|_| BatchError::TooMany { given })?;
+        Ok((numbers, tree))
+    }
+}
+
+/// An index of a side, whose length was checked.
+fn number_of(element: usize) -> u32 {
+    u32::try_from(element).expect("32 bits can number the elements")
+}
+
+/// A box around an element that arithmetic on pairs does not leave; `None` if it is nowhere.
+fn grown_box<N: Space<D>, const D: usize>(
+    side: &PreparedSide<'_, N, D>,
+    element: usize,
+) -> Option<Aabb<N, D>> {
+    let pose = side.element(element).placed().pose;
+    let aabb = side.shape(element).aabb(&pose);
+    if !pose.is_finite() || !aabb.holds_finite_point() {
+        return None;
+    }
+    let mut reach = N::ZERO;
+    for axis in 0..D {
+        for face in [aabb.mins()[axis], aabb.maxs()[axis]] {
+            let away = (face - pose.translation[axis]).abs();
+            reach = if away.is_finite_number() { max(away, reach) } else { reach };
+        }
+    }
+    Some(enclosing(&aabb, &pose).loosened(reach * N::lit(ROUNDING_ERRORS) * N::EPSILON))
+}

@@ -1,0 +1,142 @@
+//! Long lists of work, cut into chunks: in order on one thread, with the feature `parallel` on several.
+//!
+//! ```text
+//!   range    | 0..64 | 64..128 | 128..192 | 192..200 |     the last may be shorter
+//!   columns  |   c   |    c    |    c     |    c     |     the slots of the same elements
+//!             \______________/   \__________________/
+//!                 one half            the other            halves of halves go to threads that are free
+//! ```
+//!
+//! Where a chunk ends follows from the number of elements alone, and no chunk reads what another writes. So
+//! the bits of the answers do not depend on the threads.
+
+use core::ops::{ControlFlow, Range};
+
+/// The elements that one thread computes at a time: enough to hide what a chunk costs beside its elements, few
+/// enough to end soon after a cancellation.
+pub(crate) const CHUNK: usize = 64;
+
+/// Slots for the answers about a range of elements, which can be cut where the range is.
+pub(crate) trait Cut: Sized + Send {
+    /// The slots of the first `at` elements and those of the others.
+    fn cut(self, at: usize) -> (Self, Self);
+}
+
+/// A slot for each element, or none for any.
+impl<T: Send> Cut for &mut [T] {
+    #[inline]
+    fn cut(self, at: usize) -> (Self, Self) {
+        let at = at.min(self.len());
+        self.split_at_mut(at)
+    }
+}
+
+/// For work whose answers lie elsewhere.
+impl Cut for () {
+    fn cut(self, _: usize) -> ((), ()) {
+        ((), ())
+    }
+}
+
+/// A slot for each chunk.
+pub(crate) struct PerChunk<'a, T>(pub(crate) &'a mut [T]);
+
+impl<T: Send> Cut for PerChunk<'_, T> {
+    fn cut(self, at: usize) -> (Self, Self) {
+        let at = at.div_ceil(CHUNK).min(self.0.len());
+        let (front, back) = self.0.split_at_mut(at);
+        (Self(front), Self(back))
+    }
+}
+
+/// Calls `work` with each chunk of a range and its slots, until a call breaks. Several threads may be within
+/// `work` at a time, and then some chunks after the one that breaks are begun, too.
+pub(crate) fn each_chunk<C: Cut>(
+    range: Range<usize>,
+    columns: C,
+    work: &(impl Fn(Range<usize>, C) -> ControlFlow<()> + Sync),
+) -> ControlFlow<()> {
+    #[cfg(feature = "parallel")]
+    if range.len() > CHUNK && rayon::current_num_threads() > 1 {
+        return in_halves(range, columns, work);
+    }
+    in_order(range, columns, work)
+}
+
+/// One chunk after the other.
+fn in_order<C: Cut>(
+    range: Range<usize>,
+    mut columns: C,
+    work: &impl Fn(Range<usize>, C) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let mut start = range.start;
+    while start < range.end {
+        let end = range.end.min(start + CHUNK);
+        let (chunk, rest) = columns.cut(end - start);
+        work(start..end, chunk)?;
+        (start, columns) = (end, rest);
+    }
+    ControlFlow::Continue(())
+}
+
+/// Both halves of the chunks at once. The depth is the logarithm of their number.
+#[cfg(feature = "parallel")]
+fn in_halves<C: Cut>(
+    range: Range<usize>,
+    columns: C,
+    work: &(impl Fn(Range<usize>, C) -> ControlFlow<()> + Sync),
+) -> ControlFlow<()> {
+    if range.len() <= CHUNK {
+        return work(range, columns);
+    }
+    let half = range.len().div_ceil(CHUNK) / 2 * CHUNK;
+    let middle = range.start + half;
+    let (front, back) = columns.cut(half);
+    let (one, other) = rayon::join(
+        || in_halves(range.start..middle, front, work),
+        || in_halves(middle..range.end, back, work),
+    );
+    if one.is_break() { one } else { other }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_element_has_its_slot() {
+        for count in [0, 1, CHUNK - 1, CHUNK, CHUNK + 1, 5 * CHUNK, 7 * CHUNK + 3] {
+            let mut found = vec![0; count];
+            let work = |range: Range<usize>, slots: &mut [usize]| {
+                assert!(range.start % CHUNK == 0 && range.len() <= CHUNK, "a chunk: {range:?}");
+                assert_eq!(slots.len(), range.len(), "a slot for each");
+                for (slot, index) in slots.iter_mut().zip(range) {
+                    *slot = index + 1;
+                }
+                ControlFlow::Continue(())
+            };
+            assert!(each_chunk(0..count, &mut found[..], &work).is_continue(), "to the end");
+            assert!(found.iter().copied().eq(1..=count), "{count} elements");
+        }
+    }
+
+    #[test]
+    fn columns_that_are_not_wanted_stay_empty() {
+        let work = |_: Range<usize>, slots: &mut [u8]| {
+            assert!(slots.is_empty(), "there are none");
+            ControlFlow::Continue(())
+        };
+        assert!(each_chunk(0..3 * CHUNK, &mut [][..], &work).is_continue(), "to the end");
+    }
+
+    #[test]
+    fn in_order_nothing_follows_a_break() {
+        let mut found = vec![false; 4 * CHUNK];
+        let work = |range: Range<usize>, slots: &mut [bool]| {
+            slots.fill(true);
+            if range.start == CHUNK { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        assert!(in_order(0..4 * CHUNK, &mut found[..], &work).is_break(), "it says so");
+        assert_eq!(found.iter().filter(|&&is_done| is_done).count(), 2 * CHUNK, "two chunks");
+    }
+}
