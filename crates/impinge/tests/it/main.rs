@@ -6,6 +6,7 @@
 mod support;
 
 mod api;
+mod batch;
 mod broad_phase;
 mod cases;
 mod composites;

@@ -37,10 +37,8 @@ use super::PointProjection;
 use super::composite::RayQuestion;
 use super::point::length;
 use crate::bounding_volume::Ray;
-use crate::math::{
-    AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max, max_component, min,
-};
-use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape, Triangle};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max_component};
+use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 /// Where and when a ray first meets a solid.
 ///

@@ -6,6 +6,7 @@ pub(crate) mod growth;
 pub(crate) mod part_search;
 pub(crate) mod query_support;
 pub(crate) mod scene_stage;
+pub(crate) mod shape_table;
 pub(crate) mod slides;
 pub(crate) mod solids;
 #[macro_use]

@@ -1,0 +1,12 @@
+//! Batches against single calls, bit for bit.
+
+mod cancelled;
+mod manifolds;
+mod nearest;
+mod pairs;
+mod points;
+mod poses;
+mod rays;
+mod refused;
+mod scene;
+mod within;

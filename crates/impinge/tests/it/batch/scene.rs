@@ -1,0 +1,120 @@
+//! All shapes in all settings, side by side.
+
+use impinge::batch::{PairBatch, PoseSource, Shapes, Side};
+use impinge::math::na::{UnitComplex, UnitQuaternion};
+use impinge::math::{AbstractRotation, Isometry, Point, Real, Space, Vector};
+use impinge::shape::ShapeHandle;
+
+use crate::support::query_support::random::Random;
+use crate::support::shape_table;
+
+/// Pairs of shapes from a list.
+pub(super) struct Scene<N: Real, R, const D: usize> {
+    pub(super) shapes: Vec<ShapeHandle<N, D>>,
+    pub(super) picks: [Vec<u32>; 2],
+    pub(super) poses: [Vec<Isometry<N, R, D>>; 2],
+}
+
+/// Every shape with every other: at one place, with touching boxes, turned and overlapping, near, far, and
+/// with a place that is NaN. All about a point so far from the origin along every axis.
+fn scene<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize>(
+    table: shape_table::Shapes<N, D>,
+    away: f64,
+    turn: fn(&mut Random) -> R,
+) -> Scene<N, R, D> {
+    let random = &mut Random(17, false);
+    let shapes: Vec<_> = table.into_iter().map(|(_, shape)| shape).collect();
+    let mut scene = Scene { shapes, picks: Default::default(), poses: Default::default() };
+    let origin = Vector::<N, D>::repeat(N::lit(away));
+    let count = u32::try_from(scene.shapes.len()).expect("a few");
+    for (pick1, pick2) in (0..count).flat_map(|one| (0..count).map(move |other| (one, other))) {
+        let [box1, box2] = [pick1, pick2].map(|pick| scene.shapes[pick as usize].local_aabb());
+        let mut beside = Vector::<N, D>::zeros();
+        let gap = box1.maxs()[0] - box2.mins()[0];
+        beside[0] = if gap.is_finite_number() { gap } else { N::ONE };
+        let mut nowhere = Vector::<N, D>::zeros();
+        nowhere[D - 1] = N::lit(f64::NAN);
+        let still = R::identity();
+        let places = [
+            (still, still, Vector::<N, D>::zeros()),
+            (still, still, beside),
+            (turn(random), turn(random), random.vector()),
+            (turn(random), turn(random), random.vector() * N::lit(4.0)),
+            (turn(random), turn(random), random.vector() * N::lit(40.0)),
+        ];
+        let lost = (pick2 % 7 == 0).then_some((still, still, nowhere));
+        for (turn1, turn2, by) in places.into_iter().chain(lost) {
+            for (list, pick) in scene.picks.iter_mut().zip([pick1, pick2]) {
+                list.push(pick);
+            }
+            scene.poses[0].push(Isometry::from_parts(origin.into(), turn1));
+            scene.poses[1].push(Isometry::from_parts((origin + by).into(), turn2));
+        }
+    }
+    scene
+}
+
+pub(super) fn scene2<N: Real>(away: f64) -> Scene<N, UnitComplex<N>, 2> {
+    scene(shape_table::plane(N::ONE), away, Random::turn2)
+}
+
+pub(super) fn scene3<N: Real>(away: f64) -> Scene<N, UnitQuaternion<N>, 3> {
+    scene(shape_table::space(N::ONE), away, Random::turn3)
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, D> {
+    pub(super) fn len(&self) -> usize {
+        self.picks[0].len()
+    }
+
+    /// The shape of one side of a pair.
+    pub(super) fn shape(&self, side: usize, index: usize) -> &ShapeHandle<N, D> {
+        &self.shapes[self.picks[side][index] as usize]
+    }
+
+    pub(super) fn picked(&self, side: usize) -> Shapes<'_, N, D> {
+        Shapes::Picked { shapes: &self.shapes, picks: &self.picks[side] }
+    }
+
+    /// One side with the scene's shapes at poses.
+    pub(super) fn side<'a>(
+        &'a self,
+        side: usize,
+        poses: &'a dyn PoseSource<N, D>,
+    ) -> Side<'a, N, D> {
+        Side::try_new(self.picked(side), poses).expect("a pose for each")
+    }
+
+    pub(super) fn batch(&self) -> PairBatch<'_, N, D> {
+        let [side1, side2] = [0, 1].map(|side| self.side(side, &self.poses[side]));
+        PairBatch::try_new(side1, side2).expect("as many on both sides")
+    }
+}
+
+/// Runs on a pool of so many threads; they share the chunks of a batch if the library is parallel.
+pub(super) fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.expect("threads").install(run)
+}
+
+/// The same numbers to the bit, or all NaN in place of nothing.
+#[track_caller]
+pub(super) fn assert_point<N: Real, const D: usize>(
+    found: &[N; D],
+    expected: Option<Point<N, D>>,
+    what: &str,
+) {
+    match expected {
+        Some(expected) => {
+            let bits = |x: &N| x.bits();
+            assert!(found.iter().map(bits).eq(expected.iter().map(bits)), "{what}: {found:?}");
+        }
+        None => assert!(found.iter().all(|x| x.partial_cmp(x).is_none()), "{what}: {found:?}"),
+    }
+}
+
+/// The same number to the bit.
+#[track_caller]
+pub(super) fn assert_number<N: Real>(found: N, expected: N, what: &str) {
+    assert_eq!(found.bits(), expected.bits(), "{what}: {found} and {expected}");
+}

@@ -1,0 +1,175 @@
+//! All pairs within a distance against all pairs, one by one.
+
+use impinge::batch::{BatchError, Control, OnePose, Shapes, Side, pairs_within, pairs_within_one};
+use impinge::math::{AbstractRotation, Isometry, Isometry2, Pose, Space, Unit, Vector};
+use impinge::query::{Proximity, proximity};
+use impinge::shape::{Ball, Compound, Cuboid, Plane, ShapeHandle};
+
+use super::scene::{Scene, on_threads, scene2, scene3};
+
+/// Some placed shapes of a scene.
+struct Crowd<N: Space<D>, R, const D: usize> {
+    shapes: Vec<ShapeHandle<N, D>>,
+    poses: Vec<Isometry<N, R, D>>,
+}
+
+impl<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize> Crowd<N, R, D> {
+    /// Every so many of the second solids of a scene, spread over a volume; two at one place, one a hundred times as
+    /// large as the others.
+    fn of(scene: &Scene<N, R, D>, step: usize) -> Self {
+        let all = (0..scene.len()).step_by(step);
+        let shapes = all.clone().map(|index| scene.shape(1, index).clone());
+        let spread = |index: usize| {
+            let pose = scene.poses[1][index];
+            let by = |axis: usize| N::lit(((index * [7, 5, 3][axis]) % [23, 19, 17][axis]) as f64);
+            let by = Vector::<N, D>::from_fn(|axis, _| by(axis));
+            Isometry::from_parts((pose.translation.vector + by).into(), pose.rotation)
+        };
+        let mut crowd = Self { shapes: shapes.collect(), poses: all.map(spread).collect() };
+        let huge = Cuboid::new(Vector::<N, D>::repeat(N::lit(100.0)));
+        let far = Vector::<N, D>::repeat(N::lit(95.0));
+        crowd.add(ShapeHandle::new(huge), Isometry { ..crowd.poses[1] });
+        crowd.poses.last_mut().expect("it").translation.vector += far;
+        crowd.add(crowd.shapes[0].clone(), crowd.poses[0]);
+        crowd
+    }
+
+    fn add(&mut self, shape: ShapeHandle<N, D>, pose: Isometry<N, R, D>) {
+        self.shapes.push(shape);
+        self.poses.push(pose);
+    }
+
+    fn side(&self) -> Side<'_, N, D> {
+        Side::try_new(Shapes::Each(&self.shapes), &self.poses).expect("as many")
+    }
+
+    fn are_within(&self, one: usize, other: &Self, two: usize, distance: N) -> bool {
+        let (g1, g2) = (&*self.shapes[one], &*other.shapes[two]);
+        proximity(&self.poses[one], g1, &other.poses[two], g2, distance) != Proximity::Disjoint
+    }
+
+    fn brute(&self, other: &Self, distance: N) -> Vec<[u32; 2]> {
+        let mut pairs = Vec::new();
+        for one in 0..self.shapes.len() {
+            for two in 0..other.shapes.len() {
+                if self.are_within(one, other, two, distance) {
+                    pairs.push([one, two].map(|index| u32::try_from(index).expect("few")));
+                }
+            }
+        }
+        pairs
+    }
+}
+
+fn check<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
+    scene: &Scene<N, R, D>,
+    steps: [usize; 2],
+) {
+    let [few, many] = steps.map(|step| Crowd::of(scene, step));
+    let count = many.shapes.len();
+    assert!(few.shapes.len() < 64 && count > 200, "{count} in more than one chunk");
+    for (threads, distance) in [(1, 0.0), (4, 0.5), (1, f64::INFINITY)] {
+        let distance = N::lit(distance);
+        on_threads(threads, || {
+            let expected = few.brute(&many, distance);
+            let found = pairs_within(&few.side(), &many.side(), distance, &Control::new());
+            assert_eq!(found.as_ref(), Ok(&expected), "few and many within {distance}");
+            let mut turned: Vec<_> = expected.iter().map(|&[one, other]| [other, one]).collect();
+            turned.sort_unstable();
+            let found = pairs_within(&many.side(), &few.side(), distance, &Control::new());
+            assert_eq!(found, Ok(turned), "many and few within {distance}");
+            let mut own = many.brute(&many, distance);
+            own.retain(|[one, other]| one < other);
+            let found = pairs_within_one(&many.side(), distance, &Control::new());
+            assert_eq!(found.as_ref(), Ok(&own), "among themselves within {distance}");
+            let all = count * (count - 1) / 2;
+            let is_some = own.len() * 100 > all && own.len() < all;
+            assert!(is_some, "{} of {all} pairs within {distance}", own.len());
+        });
+    }
+}
+
+#[test]
+fn pairs_are_those_that_single_calls_find() {
+    check(&scene2::<f32>(0.0), [89, 7]);
+    check(&scene2::<f64>(1e6), [89, 7]);
+    check(&scene3::<f32>(0.0), [97, 13]);
+    check(&scene3::<f64>(0.0), [97, 13]);
+    check(&scene3::<f64>(1e6), [97, 13]);
+}
+
+/// Balls of radius 1 on a grid of the size 3: neighbours are exactly 1 apart.
+#[test]
+fn touching_at_exactly_the_distance_counts() {
+    for away in [0.0, 1048576.0] {
+        let ball = Ball::new(1.0_f64);
+        let at = |index: u32| {
+            let [x, y] = [index % 20, index / 20].map(|x| 3.0 * f64::from(x) + away);
+            Pose::from_translation(Vector::<f64, 2>::new(x, y))
+        };
+        let grid: Vec<_> = (0..400).map(at).collect();
+        let side = Side::try_new(Shapes::One(&ball), &grid).expect("one ball");
+        let within = |distance| pairs_within_one(&side, distance, &Control::new());
+        let neighbours = within(1.0).expect("good");
+        assert_eq!(neighbours.len(), 2 * 19 * 20, "beside and above");
+        assert!(neighbours.is_sorted() && neighbours[..2] == [[0, 1], [0, 20]], "ascending");
+        assert_eq!(within(1.0_f64.next_down()), Ok(Vec::new()), "a little less");
+        assert_eq!(within(1.25).map(|pairs| pairs.len()), Ok(760), "not the diagonals");
+        assert_eq!(within(2.25).map(|pairs| pairs.len()), Ok(760 + 2 * 19 * 19), "these");
+    }
+}
+
+#[test]
+fn half_spaces_meet_all_that_is_near_them() {
+    let tilted = Unit::new_normalize(Vector::<f64, 2>::new(1.0, 3.0));
+    let (ball, cuboid) = (Ball::new(0.5), Cuboid::new(Vector::<f64, 2>::new(0.5, 0.25)));
+    let shapes: Vec<ShapeHandle<f64, 2>> = vec![
+        ShapeHandle::new(Plane::new(tilted)),
+        ShapeHandle::new(ball),
+        ShapeHandle::new(Plane::new(Unit::new_unchecked(Vector::<f64, 2>::y()))),
+        ShapeHandle::new(cuboid),
+    ];
+    let shapes: Vec<_> = shapes.iter().cycle().take(100).cloned().collect();
+    let place = |index: u32| {
+        let [x, y] = [index % 10, index / 10].map(|x| f64::from(x) - 5.0);
+        Isometry2::translation(3.0 * x, 2.0 * y)
+    };
+    let crowd = Crowd { shapes, poses: (0..100).map(place).collect() };
+    for distance in [0.0, 1.0, 7.5] {
+        let mut expected = crowd.brute(&crowd, distance);
+        expected.retain(|[one, other]| one < other);
+        let found = pairs_within_one(&crowd.side(), distance, &Control::new()).expect("good");
+        assert_eq!(found, expected, "within {distance}");
+    }
+}
+
+#[test]
+fn what_is_nowhere_has_no_pairs() {
+    let (ball, nobody) = (ShapeHandle::new(Ball::new(1.0_f64)), Compound::<f64, 2>::new(vec![]));
+    let shapes = [ball.clone(), ShapeHandle::new(nobody), ball.clone(), ball.clone(), ball];
+    let mut poses = [Pose::<f64, 2>::identity(); 5];
+    poses[2].translation[1] = f64::NAN;
+    poses[3].rotation[(0, 1)] = f64::INFINITY;
+    let side = Side::try_new(Shapes::Each(&shapes), &poses).expect("as many");
+    for distance in [0.0, 5.0, f64::INFINITY] {
+        let found = pairs_within_one(&side, distance, &Control::new());
+        assert_eq!(found, Ok(vec![[0, 4]]), "within {distance}");
+        let found = pairs_within(&side, &side, distance, &Control::new());
+        assert_eq!(found, Ok(vec![[0, 0], [0, 4], [4, 0], [4, 4]]), "within {distance}");
+    }
+    let empty: [Pose<f64, 2>; 0] = [];
+    let empty = Side::try_new(Shapes::Each(&[]), &empty).expect("none");
+    assert_eq!(pairs_within(&empty, &side, 1.0, &Control::new()), Ok(Vec::new()), "none");
+    assert_eq!(pairs_within_one(&empty, 1.0, &Control::new()), Ok(Vec::new()), "none");
+}
+
+#[test]
+fn distances_that_are_none_are_refused() {
+    let (ball, here) = (Ball::new(1.0_f64), OnePose(Pose::<f64, 2>::identity()));
+    let side = Side::try_new(Shapes::One(&ball), &here).expect("one");
+    let error = pairs_within(&side, &side, -0.5, &Control::new()).expect_err("negative");
+    assert_eq!(error, BatchError::Distance { value: -0.5 }, "by its value");
+    assert_eq!(error.to_string(), "the distance is -0.5, where zero or more is needed", "so");
+    let error = pairs_within_one(&side, f64::NAN, &Control::new()).expect_err("no distance");
+    assert!(matches!(error, BatchError::Distance { value } if value.is_nan()), "{error}");
+}
