@@ -96,7 +96,8 @@ fn lanes_take_pairs_of_mixed_kinds() {
     ];
     let picks: [Vec<u32>; 2] =
         [(); 2].map(|()| (0..1001).map(|_| (random.bits() % 5) as u32).collect());
-    let mut place = || Isometry3::from_parts((random.vector() * 1.5).into(), random.turn3());
+    let mut place =
+        || Isometry3::from_parts((random.vector::<f64, 3>() * 1.5).into(), random.turn3());
     let poses = [(); 2].map(|()| (0..1001).map(|_| place()).collect::<Vec<_>>());
     let scene = Scene { shapes: shapes.to_vec(), picks, poses };
     rows_of_lanes(&scene);

@@ -67,7 +67,7 @@ fn a_fan_from_one_origin() {
     let scene = scene3::<f64>(0.0);
     let pose = scene.poses[1][3];
     let (random, here) = (&mut Random(6, false), OnePose(pose));
-    let directions: Vec<[f64; 3]> = (0..200).map(|_| random.vector().into()).collect();
+    let directions: Vec<[f64; 3]> = (0..200).map(|_| random.vector::<f64, 3>().into()).collect();
     let origins = [[0.25, 3.0, 0.5]];
     for shape in &scene.shapes {
         let side = Side::try_new(Shapes::One(&**shape), &here).expect("one");

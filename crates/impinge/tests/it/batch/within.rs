@@ -3,9 +3,10 @@
 use impinge::batch::{BatchError, Control, OnePose, Shapes, Side, pairs_within, pairs_within_one};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Pose, Space, Unit, Vector};
 use impinge::query::{Proximity, proximity};
-use impinge::shape::{Ball, Compound, Cuboid, Plane, ShapeHandle};
+use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 
 use super::scene::{Scene, on_threads, scene2, scene3};
+use crate::support::composite_support::Pieces;
 
 /// Some placed shapes of a scene.
 struct Crowd<N: Space<D>, R, const D: usize> {
@@ -145,7 +146,7 @@ fn half_spaces_meet_all_that_is_near_them() {
 
 #[test]
 fn what_is_nowhere_has_no_pairs() {
-    let (ball, nobody) = (ShapeHandle::new(Ball::new(1.0_f64)), Compound::<f64, 2>::new(vec![]));
+    let (ball, nobody) = (ShapeHandle::new(Ball::new(1.0_f64)), Pieces::<f64, 2>::new(vec![]));
     let shapes = [ball.clone(), ShapeHandle::new(nobody), ball.clone(), ball.clone(), ball];
     let mut poses = [Pose::<f64, 2>::identity(); 5];
     poses[2].translation[1] = f64::NAN;
