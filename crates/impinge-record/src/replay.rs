@@ -373,7 +373,17 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
         Ok(())
     }
 
-    /// Applies the calls after the last update too, where queries may be.
+    /// Goes to the end: applies the calls after the last update too. A recording of a world that was never updated
+    /// has all of its objects there.
+    ///
+    /// # Errors
+    /// As [`Self::seek`].
+    pub fn seek_end(&mut self) -> Result<(), ReadError> {
+        self.seek(self.len())?;
+        self.finish()
+    }
+
+    /// Applies all calls from here on.
     fn finish(&mut self) -> Result<(), ReadError> {
         while self.offset < self.cursor.offset() {
             self.apply_next()?;

@@ -153,7 +153,10 @@ pub(crate) fn joins_alike<N: Recordable<D>, const D: usize>(
 
 impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
     /// The shape, by the constructors that check their arguments; `shape` gives those within it, and those with names.
-    pub(crate) fn make(
+    ///
+    /// # Errors
+    /// If a constructor refuses the numbers, if `shape` does, or if this dimension has no such shape.
+    pub fn make(
         &self,
         shape: &dyn Fn(u32) -> Result<ShapeHandle<N, D>, Problem>,
     ) -> Result<ShapeHandle<N, D>, Problem> {

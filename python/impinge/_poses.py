@@ -1,0 +1,158 @@
+"""Poses and vectors in the forms that people have them, as arrays that the library reads where they lie."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, unused-ignore]
+
+Array = NDArray[Any]
+
+
+class Poses:
+    """Rotations and translations as matrices: `Poses.matrices` has the shape (n, D+1, D+1), or (D+1, D+1).
+
+    A pose x -> rotation x + translation takes the frame of a shape to the world. Any function that takes poses
+    also takes the matrices themselves, in C order and of the dtype of the shape without a copy.
+
+    translations: (D,) or (n, D). quaternions: (4,) or (n, 4), of any length but zero, in the order "xyzw" (SciPy, ROS) or
+    "wxyz" (MuJoCo, trimesh), in 3D. angles: a number or (n,) in radians, counter-clockwise, in 2D.
+
+    >>> half_turn = Poses([1, 2, 3], quaternions=[0, 0, 1, 0], order="xyzw")
+    >>> half_turn.matrices[0].tolist()
+    [-1.0, 0.0, 0.0, 1.0]
+    >>> Poses([[1, 2], [3, 4]], angles=np.pi / 2).matrices.shape
+    (2, 3, 3)
+    """
+
+    def __init__(
+        self,
+        translations: ArrayLike,
+        quaternions: ArrayLike | None = None,
+        *,
+        order: str | None = None,
+        angles: ArrayLike | None = None,
+    ) -> None:
+        places = _finite(np.asarray(translations, dtype=np.float64), "translations")
+        if places.ndim not in (1, 2) or places.shape[-1] not in (2, 3):
+            raise ValueError(f"translations has the shape {places.shape}, where (D,) or (n, D) is needed")
+        if quaternions is not None:
+            if places.shape[-1] != 3:
+                raise ValueError("quaternions are rotations of 3D, but translations have 2 numbers")
+            if order not in ("xyzw", "wxyz"):
+                raise ValueError(f'order is {order!r}: name the order of quaternions, "xyzw" or "wxyz"')
+            rotations = _of_quaternions(np.asarray(quaternions, dtype=np.float64), order)
+        elif angles is not None:
+            if places.shape[-1] != 2:
+                raise ValueError("angles are rotations of 2D, but translations have 3 numbers")
+            rotations = _of_angles(_finite(np.asarray(angles, dtype=np.float64), "angles"))
+        else:
+            rotations = np.eye(places.shape[-1])
+        self.matrices = _joined(rotations, places)
+
+    @classmethod
+    def from_rotation(cls, rotation: Rotation, translations: ArrayLike) -> Poses:
+        """Of a `scipy.spatial.transform.Rotation`, one or many, in 3D."""
+        poses = cls(translations)
+        poses.matrices = _joined(np.asarray(rotation.as_matrix()), poses.matrices[..., :-1, -1])
+        return poses
+
+    @classmethod
+    def from_matrices(cls, matrices: ArrayLike) -> Poses:
+        """Of matrices (D+1, D+1) or (n, D+1, D+1)."""
+        array = np.asarray(matrices, dtype=np.float64)
+        poses = cls(np.zeros(array.shape[-1] - 1))
+        poses.matrices = array
+        return poses
+
+    def __len__(self) -> int:
+        if self.matrices.ndim == 2:
+            raise TypeError("one pose has no length")
+        return len(self.matrices)
+
+    def __getitem__(self, index: Any) -> Poses:
+        if self.matrices.ndim == 2:
+            raise TypeError("one pose has no elements")
+        return Poses.from_matrices(self.matrices[index])
+
+    def __repr__(self) -> str:
+        return f"<impinge.Poses {self.matrices.shape}>"
+
+
+def _finite(array: Array, name: str) -> Array:
+    if not np.isfinite(array).all():
+        row = tuple(int(index) for index in np.argwhere(~np.isfinite(array))[0])
+        raise ValueError(f"{name}{list(row)} is {array[row]}")
+    return array
+
+
+def _of_quaternions(quaternions: Array, order: str) -> Array:
+    _finite(quaternions, "quaternions")
+    if quaternions.ndim not in (1, 2) or quaternions.shape[-1] != 4:
+        raise ValueError(f"quaternions has the shape {quaternions.shape}, where (4,) or (n, 4) is needed")
+    # The largest component is brought to 1 first: squares of huge and tiny ones do not overflow or vanish.
+    largest = np.abs(quaternions).max(axis=-1, keepdims=True)
+    if not (largest > 0).all():
+        row = int(np.argmin(largest.ravel()))
+        raise ValueError(f"quaternions[{row}] is zero")
+    scaled = quaternions / largest
+    unit = scaled / np.linalg.norm(scaled, axis=-1, keepdims=True)
+    if order == "wxyz":
+        unit = np.roll(unit, -1, axis=-1)
+    x, y, z, w = np.moveaxis(unit, -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _of_angles(angles: Array) -> Array:
+    if angles.ndim > 1:
+        raise ValueError(f"angles has the shape {angles.shape}, where a number or (n,) is needed")
+    cosine, sine = np.cos(angles), np.sin(angles)
+    return np.stack([np.stack([cosine, -sine], axis=-1), np.stack([sine, cosine], axis=-1)], axis=-2)
+
+
+def _joined(rotations: Array, translations: Array) -> Array:
+    """Homogeneous matrices; one rotation or translation stands for all."""
+    many = {len(rotations)} if rotations.ndim == 3 else set()
+    many |= {len(translations)} if translations.ndim == 2 else set()
+    if len(many) > 1:
+        raise ValueError(f"there are {len(rotations)} rotations and {len(translations)} translations")
+    dim = translations.shape[-1]
+    matrices = np.zeros((*many, dim + 1, dim + 1))
+    matrices[..., :dim, :dim] = rotations
+    matrices[..., :dim, dim] = translations
+    matrices[..., dim, dim] = 1
+    return matrices
+
+
+def matrices(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
+    """An argument as an array (dim+1, dim+1) or (n, dim+1, dim+1) in C order."""
+    if isinstance(given, Poses):
+        given = given.matrices
+    try:
+        array = np.asarray(given, dtype=dtype, order="C")
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} is no array of matrices, Poses or None: {type(given).__name__}") from error
+    if array.ndim not in (2, 3) or array.shape[-2:] != (dim + 1, dim + 1):
+        need = f"({dim + 1}, {dim + 1}) or (n, {dim + 1}, {dim + 1})"
+        raise ValueError(f"{name} has the shape {array.shape}, where {need} is needed in {dim}D")
+    return array
+
+
+def vectors(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
+    """An argument as an array (dim,) or (n, dim) in C order."""
+    try:
+        array = np.asarray(given, dtype=dtype, order="C")
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} is no array of vectors: {type(given).__name__}") from error
+    if array.ndim not in (1, 2) or array.shape[-1] != dim:
+        raise ValueError(f"{name} has the shape {array.shape}, where ({dim},) or (n, {dim}) is needed in {dim}D")
+    return array

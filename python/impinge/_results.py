@@ -1,0 +1,103 @@
+"""What the functions return: columns of arrays, or scalars where the question was about one pair."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+
+class Proximity(IntEnum):
+    """How two shapes lie to each other: the numbers that `proximity` returns."""
+
+    INTERSECTING = 0
+    WITHIN_MARGIN = 1
+    DISJOINT = 2
+
+
+class ClosestPoints(NamedTuple):
+    """The nearest points of two shapes, in the world frame; (n,) and (n, D), or a float and (D,)."""
+
+    distance: Any
+    point1: Any
+    point2: Any
+
+
+class Witness(NamedTuple):
+    """The nearest or deepest points of two shapes, and the parts of composites they lie on."""
+
+    distance: Any
+    point1: Any
+    point2: Any
+    normal: Any
+    part1: Any
+    part2: Any
+
+
+class Contact(NamedTuple):
+    """Where two shapes touch: the depth is positive where they overlap."""
+
+    depth: Any
+    normal: Any
+    point1: Any
+    point2: Any
+
+
+class Impact(NamedTuple):
+    """When two moving shapes meet, and where."""
+
+    time: Any
+    normal: Any
+    point1: Any
+    point2: Any
+    is_reached: Any
+
+
+class Nearest(NamedTuple):
+    """The nearest pair of a batch; -1 if none is near enough."""
+
+    pair: int
+    distance: float
+
+
+class Manifolds(NamedTuple):
+    """Contact points in rows: those of pair i are `starts[i]` to `starts[i + 1]`."""
+
+    starts: Any
+    depth: Any
+    normal: Any
+    point1: Any
+    point2: Any
+    manifold: Any
+    part1: Any
+    part2: Any
+
+    def of(self, pair: int) -> Manifolds:
+        """The points of one pair.
+
+        >>> import impinge, numpy as np
+        >>> poses = np.tile(np.eye(4), (2, 1, 1)); poses[:, 1, 3] = [5, 1.5]
+        >>> rows = impinge.contact_manifolds(impinge.Ball(1), None, impinge.Ball(1), poses)
+        >>> len(rows.of(0).depth), rows.of(1).depth.tolist()
+        (0, [0.5])
+        """
+        if not 0 <= pair < len(self.starts) - 1:
+            raise IndexError(f"there is no pair {pair}")
+        begin, end = int(self.starts[pair]), int(self.starts[pair + 1])
+        columns = [column[begin:end] for column in self[1:]]
+        return Manifolds(self.starts[pair : pair + 2] - begin, *columns)
+
+
+class Projection(NamedTuple):
+    """The points of shapes that are nearest to given ones."""
+
+    point: Any
+    is_inside: Any
+    part: Any
+
+
+class RayHit(NamedTuple):
+    """Where rays meet shapes; the time is infinite without a hit."""
+
+    time: Any
+    normal: Any
+    part: Any

@@ -1,0 +1,354 @@
+//! The functions of batches as Python sees them, with their texts.
+//!
+//! Common to all: a shape is a `Shape`, a sequence with one for each element, or `Picked`; poses are `None` (the
+//! identity), a matrix, an array of matrices, or `Poses`. One element stands against each of the other side.
+#![expect(clippy::too_many_arguments, reason = "Python's arguments are named")]
+
+use pyo3::prelude::*;
+
+use crate::pairs::{
+    Closest, Contacts, Distances, Form, Manifolds, Nearest, PairCall, Proximities, Witnesses,
+};
+use crate::points;
+use crate::points::{PointQuestion, ask_points};
+use crate::supervise::Call;
+
+/// Adds the functions about pairs.
+pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(distance, module)?)?;
+    module.add_function(wrap_pyfunction!(closest_points, module)?)?;
+    module.add_function(wrap_pyfunction!(witness, module)?)?;
+    module.add_function(wrap_pyfunction!(proximity, module)?)?;
+    module.add_function(wrap_pyfunction!(contact, module)?)?;
+    module.add_function(wrap_pyfunction!(contact_manifolds, module)?)?;
+    module.add_function(wrap_pyfunction!(nearest, module)?)?;
+    module.add_function(wrap_pyfunction!(impact, module)?)?;
+    module.add_function(wrap_pyfunction!(pairs_within, module)?)?;
+    module.add_function(wrap_pyfunction!(project_points, module)?)?;
+    module.add_function(wrap_pyfunction!(signed_distance, module)?)?;
+    module.add_function(wrap_pyfunction!(contains, module)?)?;
+    module.add_function(wrap_pyfunction!(cast_rays, module)?)
+}
+
+type Object<'py> = Bound<'py, PyAny>;
+type Answer<'py> = PyResult<Object<'py>>;
+
+/// How far apart two solids are: zero if they touch or overlap.
+///
+/// shape1, shape2: a `Shape`, a sequence with one for each element, or `Picked`.
+/// poses1, poses2: `None`, a matrix (D+1, D+1), an array (n, D+1, D+1) or `Poses`. One stands for all.
+/// threads: how many; those of the machine without. progress: an object with `update(n)`, as tqdm's bars have it.
+///
+/// Returns a float, or an array (n,) if an argument has many elements. Infinite if a pose is not finite.
+///
+/// >>> import impinge, numpy as np
+/// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 2, 5]
+/// >>> impinge.distance(impinge.Ball(1), None, impinge.Ball(0.5), poses)
+/// array([0. , 0.5, 3.5])
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2, poses2, *, threads=None, progress=None))]
+fn distance<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
+        .ask(Distances, Form::ByArguments)
+}
+
+/// The nearest points of two solids that are at most `max_distance` apart.
+///
+/// Arguments as `distance`. Returns `ClosestPoints(distance, point1, point2)` in the world frame: the distance is zero
+/// and the points are NaN where the solids touch or overlap, infinite and NaN beyond the limit.
+///
+/// >>> import impinge, numpy as np
+/// >>> pose = np.eye(4); pose[0, 3] = 4
+/// >>> found = impinge.closest_points(impinge.Ball(1), None, impinge.Cuboid([1, 1, 1]), pose)
+/// >>> found.distance, found.point1.tolist()
+/// (2.0, [1.0, 0.0, 0.0])
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2, poses2, max_distance=f64::INFINITY, *, threads=None, progress=None))]
+fn closest_points<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    max_distance: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
+        .ask(Closest(max_distance), Form::ByArguments)
+}
+
+/// The nearest or deepest points of two shapes, with the signed distance, the normal and the parts.
+///
+/// Arguments as `distance`. Returns `Witness(distance, point1, point2, normal, part1, part2)`: the distance is negative
+/// where the shapes overlap, and `point2 = point1 + distance * normal`. Beyond `max_distance` it is infinite, points are
+/// NaN and parts 4294967295.
+///
+/// >>> import impinge, numpy as np
+/// >>> pose = np.eye(4); pose[0, 3] = 1.75
+/// >>> found = impinge.witness(impinge.Ball(1), None, impinge.Ball(1), pose)
+/// >>> found.distance, found.normal.tolist()
+/// (-0.25, [1.0, 0.0, 0.0])
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2, poses2, max_distance=f64::INFINITY, *, threads=None, progress=None))]
+fn witness<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    max_distance: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
+        .ask(Witnesses(max_distance), Form::ByArguments)
+}
+
+/// Whether two solids intersect (0), are at most `margin` apart (1), or farther (2): see `Proximity`.
+///
+/// Arguments as `distance`. Returns an int, or an array of bytes. Touching counts as intersecting.
+///
+/// >>> import impinge, numpy as np
+/// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [2, 3, 4]
+/// >>> impinge.proximity(impinge.Ball(1), None, impinge.Ball(1), poses, 1.0).tolist()
+/// [0, 1, 2]
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2, poses2, margin=0.0, *, threads=None, progress=None))]
+fn proximity<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    margin: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
+        .ask(Proximities(margin), Form::ByArguments)
+}
+
+/// The contact of two solids that overlap, touch, or are at most `prediction` apart.
+///
+/// Arguments as `distance`. Returns `Contact(depth, normal, point1, point2)`: the depth is positive where they overlap
+/// and minus the distance where they are apart; `-inf` and NaN without a contact. The normal is from the first to the
+/// second. Composites: the deepest contact of their manifolds.
+///
+/// >>> import impinge, numpy as np
+/// >>> pose = np.eye(4); pose[1, 3] = 1.75
+/// >>> found = impinge.contact(impinge.Cuboid([10, 1, 10]), None, impinge.Ball(1), pose)
+/// >>> found.depth, found.normal.tolist()
+/// (0.25, [0.0, 1.0, 0.0])
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2, poses2, prediction=0.0, *, threads=None, progress=None))]
+fn contact<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    prediction: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
+        .ask(Contacts(prediction), Form::ByArguments)
+}
+
+/// All contact points of each pair that is at most `prediction` apart.
+///
+/// Arguments as `distance`; `max_points` bounds the points of a manifold. Returns `Manifolds` with rows: the points of
+/// pair i are `starts[i]` to `starts[i + 1]` of `depth`, `normal`, `point1`, `point2`, `manifold` (its number within the
+/// pair), `part1`, `part2`.
+///
+/// >>> import impinge, numpy as np
+/// >>> pose = np.eye(4); pose[1, 3] = 1.9
+/// >>> found = impinge.contact_manifolds(impinge.Cuboid([9, 1, 9]), None, impinge.Cuboid([1, 1, 1]), pose)
+/// >>> found.starts.tolist(), found.depth.round(3).tolist()
+/// ([0, 4], [0.1, 0.1, 0.1, 0.1])
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2, poses2, prediction=0.0, max_points=None, *, threads=None, progress=None))]
+fn contact_manifolds<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    prediction: f64,
+    max_points: Option<usize>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
+        .ask(Manifolds { prediction, max_points }, Form::Columns)
+}
+
+/// The nearest pair of a batch: `Nearest(pair, distance)`, or -1 and an infinite distance beyond `max_distance`.
+///
+/// Arguments as `distance`. Quicker than all distances, since the limit shrinks. Of equal ones the lowest index.
+///
+/// >>> import impinge, numpy as np
+/// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [7, 3, 5]
+/// >>> impinge.nearest(impinge.Ball(1), None, impinge.Ball(1), poses)
+/// Nearest(pair=1, distance=1.0)
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2, poses2, max_distance=f64::INFINITY, *, threads=None, progress=None))]
+fn nearest<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    max_distance: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
+        .ask(Nearest(max_distance), Form::Single)
+}
+
+/// When two solids that move along straight lines, without turning, first come within `target_distance`.
+///
+/// Arguments as `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time. Returns
+/// `Impact(time, normal, point1, point2, is_reached)`, points and normal at that time; without an impact by `max_time` the
+/// time is infinite. `is_reached` is false where the search ended early: the solids do not meet before `time`.
+///
+/// >>> import impinge, numpy as np
+/// >>> pose = np.eye(4); pose[0, 3] = 6
+/// >>> impinge.impact(impinge.Ball(1), None, [0, 0, 0], impinge.Ball(1), pose, [-2, 0, 0]).time
+/// 2.0
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, velocity1, shape2, poses2, velocity2, max_time=f64::INFINITY, target_distance=0.0, *, threads=None, progress=None))]
+fn impact<'py>(
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    velocity1: &Object<'py>,
+    shape2: &Object<'py>,
+    poses2: &Object<'py>,
+    velocity2: &Object<'py>,
+    max_time: f64,
+    target_distance: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask_impacts(
+        [velocity1, velocity2],
+        max_time,
+        target_distance,
+    )
+}
+
+/// The pairs of elements that are at most `distance` apart, as an ascending array (m, 2) of uint32.
+///
+/// With one side: its pairs [i, j] with i < j. With two: i of the first and j of the second, all against all.
+///
+/// >>> import impinge, numpy as np
+/// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 3, 6.5]
+/// >>> impinge.pairs_within(impinge.Ball(1), poses, distance=1.0).tolist()
+/// [[0, 1]]
+#[pyfunction]
+#[pyo3(signature = (shape1, poses1, shape2=None, poses2=None, *, distance=0.0, threads=None, progress=None))]
+fn pairs_within<'py>(
+    py: Python<'py>,
+    shape1: &Object<'py>,
+    poses1: &Object<'py>,
+    shape2: Option<&Object<'py>>,
+    poses2: Option<&Object<'py>>,
+    distance: f64,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    let none = py.None().into_bound(py);
+    let call = |shape2| {
+        PairCall::new([shape1, poses1, shape2, poses2.unwrap_or(&none)], threads, progress)
+    };
+    call(shape2.unwrap_or(shape1)).ask_within(shape2.is_some(), distance)
+}
+
+/// The points of shapes that are nearest to points of the world.
+///
+/// shape, poses: as of `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`. A point inside is
+/// its own projection if `solid`, else it goes to the boundary. What is not finite has NaN and part 4294967295.
+///
+/// >>> import impinge
+/// >>> impinge.project_points(impinge.Ball(1), None, [4, 0, 0]).point.tolist()
+/// [1.0, 0.0, 0.0]
+#[pyfunction]
+#[pyo3(signature = (shape, poses, points, solid=true, *, threads=None, progress=None))]
+fn project_points<'py>(
+    shape: &Object<'py>,
+    poses: &Object<'py>,
+    points: &Object<'py>,
+    solid: bool,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    let question = PointQuestion::Project { solid };
+    ask_points([shape, poses, points], question, Call { threads, progress })
+}
+
+/// The distances of points from shapes, negative inside.
+///
+/// Arguments as `project_points`. Returns a float or an array (n,); infinite for what is not finite.
+///
+/// >>> import impinge
+/// >>> impinge.signed_distance(impinge.Ball(2), None, [[5, 0, 0], [0, 1, 0]]).tolist()
+/// [3.0, -1.0]
+#[pyfunction]
+#[pyo3(signature = (shape, poses, points, *, threads=None, progress=None))]
+fn signed_distance<'py>(
+    shape: &Object<'py>,
+    poses: &Object<'py>,
+    points: &Object<'py>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    ask_points([shape, poses, points], PointQuestion::SignedDistance, Call { threads, progress })
+}
+
+/// Whether points are inside shapes, or on them.
+///
+/// Arguments as `project_points`. Returns a bool or an array of bools.
+///
+/// >>> import impinge
+/// >>> impinge.contains(impinge.Cuboid([1, 1]), None, [[0, 0], [1, 1], [1, 2]]).tolist()
+/// [True, True, False]
+#[pyfunction]
+#[pyo3(signature = (shape, poses, points, *, threads=None, progress=None))]
+fn contains<'py>(
+    shape: &Object<'py>,
+    poses: &Object<'py>,
+    points: &Object<'py>,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    ask_points([shape, poses, points], PointQuestion::Contains, Call { threads, progress })
+}
+
+/// Where rays meet shapes.
+///
+/// shape, poses: as of `distance`. origins, directions: (D,) or (n, D); a direction need not be a unit vector, and times are
+/// in units of its length. Returns `RayHit(time, normal, part)`: the time is infinite without a hit by `max_time`. A ray that
+/// starts inside hits at time zero if `solid`, else where it leaves.
+///
+/// >>> import impinge
+/// >>> hit = impinge.cast_rays(impinge.Ball(1), None, [-4, 0, 0], [2, 0, 0])
+/// >>> hit.time, hit.normal.tolist()
+/// (1.5, [-1.0, 0.0, 0.0])
+#[pyfunction]
+#[pyo3(signature = (shape, poses, origins, directions, max_time=f64::INFINITY, solid=true, *, threads=None, progress=None))]
+fn cast_rays<'py>(
+    shape: &Object<'py>,
+    poses: &Object<'py>,
+    origins: &Object<'py>,
+    directions: &Object<'py>,
+    max_time: f64,
+    solid: bool,
+    threads: Option<usize>,
+    progress: Option<Py<PyAny>>,
+) -> Answer<'py> {
+    let call = Call { threads, progress };
+    points::cast_rays([shape, poses, origins, directions], max_time, solid, call)
+}

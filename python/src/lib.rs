@@ -1,0 +1,35 @@
+//! impinge for Python: the extension module `impinge._native`.
+//!
+//! Python gives shapes, arrays and limits; [`space`] chooses the scalar and the dimension, and everything behind it is
+//! generic. Arrays of the right type and layout are read where they lie. The interpreter is released while the library
+//! works ([`supervise`]), and columns come back as NumPy arrays without a copy ([`answer`]).
+//!
+//! What reads arguments of other forms (lists, rotations of SciPy, arrays of other types) is written in Python, in
+//! `impinge/_poses.py`; the way from a shape and a matrix to an answer is short.
+#![forbid(unsafe_code)]
+
+mod answer;
+mod error;
+mod functions;
+mod pairs;
+mod points;
+mod poses;
+mod scene;
+mod shapes;
+mod side;
+mod space;
+mod supervise;
+mod vectors;
+mod world;
+mod world_queries;
+
+use pyo3::prelude::*;
+
+/// The library behind the package `impinge`.
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<shapes::Shape>()?;
+    module.add_class::<world::World>()?;
+    functions::add_to(module)?;
+    scene::add_to(module)
+}

@@ -1,0 +1,142 @@
+//! Questions about points and rays beside placed shapes.
+
+use impinge::batch::{HitColumns, PointBatch, ProjectionColumns, RayColumns};
+use impinge::math::na::convert;
+use pyo3::prelude::*;
+
+use crate::answer::{Column, into_python};
+use crate::error;
+use crate::shapes::kind_of;
+use crate::side::SideArgument;
+use crate::space::{Kind, Numeric, Task, run_in};
+use crate::supervise::{Call, supervise};
+use crate::vectors::Vectors;
+
+/// What is asked of points.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PointQuestion {
+    /// The nearest point; inside points are their own projection if `solid`.
+    Project {
+        solid: bool,
+    },
+    SignedDistance,
+    Contains,
+}
+
+/// Points beside a side.
+struct AskPoints<'a, 'py> {
+    side: SideArgument<'a, 'py>,
+    points: &'a Bound<'py, PyAny>,
+    question: PointQuestion,
+    call: Call,
+    kind: Kind,
+}
+
+/// Asks about points of the world.
+pub(crate) fn ask_points<'py>(
+    [shape, poses, points]: [&Bound<'py, PyAny>; 3],
+    question: PointQuestion,
+    call: Call,
+) -> PyResult<Bound<'py, PyAny>> {
+    let kind = kind_of(shape, "shape")?;
+    let side = SideArgument { shapes: shape, poses, names: ["shape", "poses"] };
+    run_in(kind, AskPoints { side, points, question, call, kind })
+}
+
+impl<'py> Task for AskPoints<'_, 'py> {
+    type Answer = Bound<'py, PyAny>;
+
+    fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
+        let py = self.points.py();
+        let points = Vectors::<N, D>::of(self.points, "points")?;
+        let given = self.side.read::<N, D>(self.kind)?;
+        let poses = given.poses()?;
+        let batch = PointBatch::try_new(given.side(&*poses)?, points.rows()?);
+        let batch = batch.map_err(|error| error::of_batch(&error, "points"))?;
+        let len = batch.len();
+        let found = supervise(py, len, &self.call, |control| match self.question {
+            PointQuestion::SignedDistance => {
+                let mut distance = vec![N::ZERO; len];
+                batch.signed_distances(control, &mut distance)?;
+                Ok(vec![Column::Numbers(distance)])
+            }
+            PointQuestion::Contains => {
+                let mut is_inside = vec![false; len];
+                batch.contains(control, &mut is_inside)?;
+                Ok(vec![Column::Flags(is_inside)])
+            }
+            PointQuestion::Project { solid } => {
+                let (mut point, mut is_inside) = (vec![[N::ZERO; D]; len], vec![false; len]);
+                let mut part = vec![0; len];
+                let columns = ProjectionColumns {
+                    point: &mut point,
+                    is_inside: &mut is_inside,
+                    part: &mut part,
+                    ..Default::default()
+                };
+                batch.project(solid, control, columns)?;
+                Ok(vec![Column::Vectors(point), Column::Flags(is_inside), Column::Indices(part)])
+            }
+        })?;
+        let columns: Vec<Column<N, D>> =
+            found.map_err(|error| error::of_batch(&error, "points"))?;
+        let class = matches!(self.question, PointQuestion::Project { .. }).then_some("Projection");
+        into_python(py, class, columns, given.is_lone() && points.is_lone())
+    }
+}
+
+/// Rays beside a side.
+struct CastRays<'a, 'py> {
+    side: SideArgument<'a, 'py>,
+    rays: [&'a Bound<'py, PyAny>; 2],
+    max_time: f64,
+    solid: bool,
+    call: Call,
+    kind: Kind,
+}
+
+/// Casts rays with these origins and directions.
+pub(crate) fn cast_rays<'py>(
+    [shape, poses, origins, directions]: [&Bound<'py, PyAny>; 4],
+    max_time: f64,
+    solid: bool,
+    call: Call,
+) -> PyResult<Bound<'py, PyAny>> {
+    let kind = kind_of(shape, "shape")?;
+    let side = SideArgument { shapes: shape, poses, names: ["shape", "poses"] };
+    run_in(kind, CastRays { side, rays: [origins, directions], max_time, solid, call, kind })
+}
+
+impl<'py> Task for CastRays<'_, 'py> {
+    type Answer = Bound<'py, PyAny>;
+
+    fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
+        let [origins, directions] = self.rays;
+        let py = origins.py();
+        let origins = Vectors::<N, D>::of(origins, "origins")?;
+        let directions = Vectors::<N, D>::of(directions, "directions")?;
+        let given = self.side.read::<N, D>(self.kind)?;
+        let poses = given.poses()?;
+        let rays = RayColumns::try_new(given.side(&*poses)?, origins.rows()?, directions.rows()?);
+        let rays = rays.map_err(|error| error::of_batch(&error, "origins"))?;
+        let rays = rays.until(convert(self.max_time));
+        let rays = if self.solid { rays } else { rays.hollow() };
+        let len = rays.len();
+        let found = supervise(py, len, &self.call, |control| {
+            let (mut time, mut normal) = (vec![N::ZERO; len], vec![[N::ZERO; D]; len]);
+            let mut part = vec![0; len];
+            let columns = HitColumns {
+                time: &mut time,
+                normal: &mut normal,
+                part: &mut part,
+                ..Default::default()
+            };
+            rays.cast(control, columns)?;
+            Ok([Column::Numbers(time), Column::Vectors(normal), Column::Indices(part)])
+        })?;
+        let columns: [Column<N, D>; 3] =
+            found.map_err(|error| error::of_batch(&error, "origins"))?;
+        let is_lone = given.is_lone() && origins.is_lone() && directions.is_lone();
+        into_python(py, Some("RayHit"), columns.into(), is_lone)
+    }
+}

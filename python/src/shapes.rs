@@ -1,0 +1,358 @@
+//! Shapes: handles of the library behind one Python class, whatever their scalar and dimension.
+
+use std::any::Any;
+use std::sync::Arc;
+
+use impinge::batch::Shapes;
+use impinge::math::na::convert;
+use impinge::math::{Point, Space, Vector};
+use impinge::shape::ShapeHandle;
+use impinge_record::{Field, Mesh, Problem, ShapeData};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+use crate::poses::Poses;
+use crate::scene::scene_bytes;
+use crate::space::{Kind, Numeric, Task, run_in};
+
+/// A solid or a surface, in its own frame. It does not change; the functions of the package make it.
+#[pyclass(frozen, module = "impinge")]
+pub(crate) struct Shape {
+    pub(crate) kind: Kind,
+    /// A `ShapeHandle` of the kind.
+    handle: Arc<dyn Any + Send + Sync>,
+    /// What the library calls shapes like it.
+    name: String,
+}
+
+impl Shape {
+    /// A shape of the library as Python has it.
+    pub(crate) fn of<N: Numeric<D>, const D: usize>(kind: Kind, shape: ShapeHandle<N, D>) -> Self {
+        let name = format!("{:?}", shape.geometry().kind());
+        Self { kind, handle: Arc::new(shape), name }
+    }
+
+    /// The shape of the library.
+    ///
+    /// # Errors
+    /// `TypeError` if it is of another scalar or dimension.
+    pub(crate) fn handle<N: Numeric<D>, const D: usize>(
+        &self,
+        argument: &str,
+        kind: Kind,
+    ) -> PyResult<&ShapeHandle<N, D>> {
+        kind.expect(argument, self.kind)?;
+        self.handle.downcast_ref().ok_or_else(|| PyTypeError::new_err("a shape of another kind"))
+    }
+}
+
+/// The arguments of a constructor as arrays; which of them count depends on the kind of shape.
+struct Description<'a, 'py> {
+    name: &'a str,
+    numbers: &'a [f64],
+    points: Option<PyReadonlyArray2<'py, f64>>,
+    parts: Option<PyReadonlyArray2<'py, u32>>,
+    children: &'a [PyRef<'py, Shape>],
+    poses: &'a Bound<'py, PyAny>,
+    one_sided: bool,
+    keep_internal_edges: bool,
+    kind: Kind,
+}
+
+/// What Python calls [`Shape`] with: see [`Description`] for the last eight.
+type Arguments<'py> = (
+    String,
+    u8,
+    String,
+    PyReadonlyArray1<'py, f64>,
+    Option<PyReadonlyArray2<'py, f64>>,
+    Option<PyReadonlyArray2<'py, u32>>,
+    Vec<PyRef<'py, Shape>>,
+    Bound<'py, PyAny>,
+    bool,
+    bool,
+);
+
+#[pymethods]
+impl Shape {
+    /// Use the functions of the package.
+    #[new]
+    #[pyo3(signature = (*arguments))]
+    fn new(arguments: &Bound<'_, PyTuple>) -> PyResult<Self> {
+        let (name, dim, dtype, numbers, points, parts, children, poses, one_sided, keep) =
+            arguments.extract::<Arguments<'_>>()?;
+        let kind = Kind::parse(dim, &dtype)?;
+        let description = Description {
+            name: &name,
+            kind,
+            numbers: numbers.as_slice()?,
+            points,
+            parts,
+            children: &children,
+            poses: &poses,
+            one_sided,
+            keep_internal_edges: keep,
+        };
+        run_in(kind, Make(&description))
+    }
+
+    /// What kind of shape it is.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How many dimensions it has: 2 or 3.
+    #[getter]
+    fn dim(&self) -> u8 {
+        self.kind.dim()
+    }
+
+    /// The type of its numbers: "float32" or "float64".
+    #[getter]
+    fn dtype(&self) -> &'static str {
+        self.kind.dtype()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<impinge.{} {}D {}>", self.name, self.dim(), self.dtype())
+    }
+
+    /// Pickled as the bytes of a scene of this shape alone.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, shape) = (slf.py(), slf.get());
+        let bytes = scene_bytes(slf.as_any(), &py.None().into_bound(py))?;
+        let read = py.import("impinge._native")?.getattr("shape_of_bytes")?;
+        (read, (bytes, shape.dim(), shape.dtype())).into_pyobject(py)
+    }
+}
+
+/// Makes a shape of the library.
+struct Make<'d, 'a, 'py>(&'d Description<'a, 'py>);
+
+impl Task for Make<'_, '_, '_> {
+    type Answer = Shape;
+
+    fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
+        let Self(description) = self;
+        let children: Vec<ShapeHandle<N, D>> = description
+            .children
+            .iter()
+            .map(|child| child.handle("a child", description.kind).cloned())
+            .collect::<PyResult<_>>()?;
+        let data = description.data::<N, D>()?;
+        let child = |number: u32| Ok(children[number as usize].clone());
+        let shape: ShapeHandle<N, D> = data.make(&child).map_err(|problem| refused(&problem))?;
+        Ok(Shape::of(description.kind, shape))
+    }
+}
+
+fn refused(problem: &Problem) -> PyErr {
+    PyValueError::new_err(problem.to_string())
+}
+
+impl Description<'_, '_> {
+    /// The constructor's arguments with their scalar and dimension.
+    fn data<N: Numeric<D>, const D: usize>(&self) -> PyResult<ShapeData<N, D>> {
+        let data = match self.name {
+            "Ball" => ShapeData::Ball(self.number(0)?),
+            "Cuboid" => ShapeData::Cuboid(self.vector()?),
+            "Ellipsoid" => ShapeData::Ellipsoid(self.vector()?),
+            "HalfSpace" => ShapeData::HalfSpace(self.vector()?),
+            "Capsule" => ShapeData::Capsule { ends: self.points()?, radius: self.number(0)? },
+            "TaperedCapsule" => ShapeData::TaperedCapsule {
+                ends: self.points()?,
+                radii: [self.number(0)?, self.number(1)?],
+            },
+            "Cylinder" => ShapeData::Cylinder([self.number(0)?, self.number(1)?]),
+            "Cone" => ShapeData::Cone([self.number(0)?, self.number(1)?]),
+            "Segment" => ShapeData::Segment(self.points()?),
+            "Triangle" => ShapeData::Triangle(self.points()?),
+            "Tetrahedron" => ShapeData::Tetrahedron(self.points()?),
+            "Rounded" => ShapeData::Rounded { shape: 0, radius: self.number(0)? },
+            _ => return self.composite(),
+        };
+        Ok(data)
+    }
+
+    /// The same of hulls and of what has parts.
+    fn composite<N: Numeric<D>, const D: usize>(&self) -> PyResult<ShapeData<N, D>> {
+        Ok(match self.name {
+            "ConvexHull" => ShapeData::Hull { points: self.vertices()?, faces: Vec::new() },
+            "ConvexPolygon" => ShapeData::Outline(self.vertices()?),
+            "TriMesh" => ShapeData::TriMesh(self.mesh()?),
+            "Polyline" => ShapeData::Polyline(self.mesh()?),
+            "HeightField" => ShapeData::HeightField(self.field()?),
+            "Compound" => ShapeData::Compound(self.placed_children::<N, D>()?),
+            name => return Err(PyValueError::new_err(format!("there is no shape {name:?}"))),
+        })
+    }
+
+    fn number<N: Numeric<D>, const D: usize>(&self, index: usize) -> PyResult<N> {
+        let missing = || PyValueError::new_err(format!("{} lacks number {index}", self.name));
+        self.numbers.get(index).map(|number| convert(*number)).ok_or_else(missing)
+    }
+
+    /// The first numbers as a vector.
+    fn vector<N: Numeric<D>, const D: usize>(&self) -> PyResult<Vector<N, D>> {
+        if self.numbers.len() != D {
+            let given = self.numbers.len();
+            return Err(PyValueError::new_err(format!(
+                "{} has {given} numbers in {D}D",
+                self.name
+            )));
+        }
+        Ok(Vector::from_fn(|axis, _| convert(self.numbers[axis])))
+    }
+
+    /// All points.
+    fn vertices<N: Numeric<D>, const D: usize>(&self) -> PyResult<Vec<Point<N, D>>> {
+        let Some(points) = &self.points else {
+            return Err(PyValueError::new_err(format!("{} lacks points", self.name)));
+        };
+        let (rows, _) = points.as_slice()?.as_chunks::<D>();
+        Ok(rows
+            .iter()
+            .map(|row| Point::from(Vector::from_fn(|axis, _| convert(row[axis]))))
+            .collect())
+    }
+
+    /// As many points as the shape has.
+    fn points<N: Numeric<D>, const D: usize, const COUNT: usize>(
+        &self,
+    ) -> PyResult<[Point<N, D>; COUNT]> {
+        let wrong = |points: Vec<_>| {
+            PyValueError::new_err(format!("{} has {} points, not {COUNT}", self.name, points.len()))
+        };
+        self.vertices()?.try_into().map_err(wrong)
+    }
+
+    fn mesh<N: Space<D> + Numeric<D>, const D: usize, const ENDS: usize>(
+        &self,
+    ) -> PyResult<Mesh<N, D, ENDS>> {
+        let Some(parts) = &self.parts else {
+            return Err(PyValueError::new_err(format!("{} lacks parts", self.name)));
+        };
+        Ok(Mesh {
+            vertices: self.vertices()?,
+            parts: parts.as_slice()?.as_chunks::<ENDS>().0.to_vec(),
+            is_one_sided: self.one_sided,
+            keeps_internal_edges: self.keep_internal_edges,
+        })
+    }
+
+    /// The first `D` numbers are the scale, the next the columns, the rest the heights.
+    fn field<N: Numeric<D>, const D: usize>(&self) -> PyResult<Field<N, D>> {
+        let [scale @ .., columns] = &self.numbers[..self.numbers.len().min(D + 1)] else {
+            return Err(PyValueError::new_err("HeightField lacks numbers"));
+        };
+        let heights: Vec<N> =
+            self.numbers.iter().skip(D + 1).map(|&height| convert(height)).collect();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a count from Python's side"
+        )]
+        let columns = *columns as usize;
+        let rows = if D == 3 { heights.len() / columns.max(1) } else { 2 };
+        let cells = rows.saturating_sub(1) * columns.saturating_sub(1);
+        Ok(Field {
+            columns,
+            heights,
+            scale: Vector::from_fn(|axis, _| convert(scale[axis])),
+            marks: vec![0; cells],
+            is_one_sided: self.one_sided,
+            keeps_internal_edges: self.keep_internal_edges,
+        })
+    }
+
+    fn placed_children<N: Numeric<D>, const D: usize>(&self) -> PyResult<Vec<(N::Isometry, u32)>> {
+        let poses = Poses::<N, D>::of(self.poses, "poses")?;
+        let source = poses.source()?;
+        if source.len() != self.children.len() {
+            let (poses, shapes) = (source.len(), self.children.len());
+            return Err(PyValueError::new_err(format!("{poses} poses for {shapes} shapes")));
+        }
+        Ok((0..)
+            .take(source.len())
+            .map(|child| (N::isometry(&source.pose(child as usize)), child))
+            .collect())
+    }
+}
+
+/// One shape, a shape for each element, or an object with the fields `shapes` and `picks`, as an argument.
+pub(crate) struct ShapesArgument<'py, N: Numeric<D>, const D: usize> {
+    shapes: Vec<ShapeHandle<N, D>>,
+    picks: Option<PyReadonlyArray1<'py, u32>>,
+    is_lone: bool,
+}
+
+/// The shapes of an argument, and what picks among them.
+type Given<'py> = (Vec<PyRef<'py, Shape>>, Option<PyReadonlyArray1<'py, u32>>);
+
+fn given<'py>(argument: &Bound<'py, PyAny>, name: &str) -> PyResult<Given<'py>> {
+    let py = argument.py();
+    let wrong = |error: PyErr| {
+        let message = format!("{name} is no Shape, sequence of Shapes, or Picked");
+        let refused = PyTypeError::new_err(message);
+        refused.set_cause(py, Some(error));
+        refused
+    };
+    match argument.getattr_opt("picks")? {
+        None => Ok((argument.extract().map_err(wrong)?, None)),
+        Some(picks) => {
+            let shapes = argument.getattr("shapes")?.extract().map_err(wrong)?;
+            Ok((shapes, Some(picks.extract()?)))
+        }
+    }
+}
+
+/// The scalar and dimension of the shapes of an argument: those of the first.
+pub(crate) fn kind_of(argument: &Bound<'_, PyAny>, name: &str) -> PyResult<Kind> {
+    if let Ok(shape) = argument.cast::<Shape>() {
+        return Ok(shape.get().kind);
+    }
+    match given(argument, name)?.0.first() {
+        Some(shape) => Ok(shape.kind),
+        None => Err(PyValueError::new_err(format!("{name} has no shape"))),
+    }
+}
+
+impl<'py, N: Numeric<D>, const D: usize> ShapesArgument<'py, N, D> {
+    pub(crate) fn of(argument: &Bound<'py, PyAny>, name: &str, kind: Kind) -> PyResult<Self> {
+        if let Ok(shape) = argument.cast::<Shape>() {
+            let shapes = vec![shape.get().handle(name, kind)?.clone()];
+            return Ok(Self { shapes, picks: None, is_lone: true });
+        }
+        let (shapes, picks) = given(argument, name)?;
+        let handles = shapes
+            .iter()
+            .enumerate()
+            .map(|(index, shape)| shape.handle(&format!("{name}[{index}]"), kind).cloned());
+        Ok(Self { shapes: handles.collect::<PyResult<_>>()?, picks, is_lone: false })
+    }
+
+    /// There is one shape, not a sequence.
+    pub(crate) const fn is_lone(&self) -> bool {
+        self.is_lone
+    }
+
+    /// The shape of an element; a single one is for all.
+    pub(crate) fn at(&self, element: usize) -> &ShapeHandle<N, D> {
+        let index = |len| if len == 1 { 0 } else { element };
+        match self.picks.as_ref().and_then(|picks| picks.as_slice().ok()) {
+            None => &self.shapes[index(self.shapes.len())],
+            Some(picks) => &self.shapes[picks[index(picks.len())] as usize],
+        }
+    }
+
+    /// As the library reads them.
+    pub(crate) fn shapes(&self) -> PyResult<Shapes<'_, N, D>> {
+        Ok(match &self.picks {
+            None => Shapes::Each(&self.shapes),
+            Some(picks) => Shapes::Picked { shapes: &self.shapes, picks: picks.as_slice()? },
+        })
+    }
+}

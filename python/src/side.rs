@@ -1,0 +1,68 @@
+//! One side of a batch as Python gives it: shapes and poses.
+
+use impinge::batch::{BatchError, PoseSource, Side};
+use impinge::shape::ShapeHandle;
+use pyo3::prelude::*;
+
+use crate::error;
+use crate::poses::Poses;
+use crate::shapes::ShapesArgument;
+use crate::space::{Kind, Numeric};
+
+/// The arguments of a side, and what Python calls them.
+#[derive(Clone, Copy)]
+pub(crate) struct SideArgument<'a, 'py> {
+    pub(crate) shapes: &'a Bound<'py, PyAny>,
+    pub(crate) poses: &'a Bound<'py, PyAny>,
+    pub(crate) names: [&'static str; 2],
+}
+
+impl<'py> SideArgument<'_, 'py> {
+    /// Reads both, which must be of this kind.
+    pub(crate) fn read<N: Numeric<D>, const D: usize>(
+        &self,
+        kind: Kind,
+    ) -> PyResult<GivenSide<'py, N, D>> {
+        let [shapes, poses] = self.names;
+        Ok(GivenSide {
+            shapes: ShapesArgument::of(self.shapes, shapes, kind)?,
+            poses: Poses::of(self.poses, poses)?,
+            names: self.names,
+        })
+    }
+}
+
+/// Shapes and poses that are kept alive while a batch reads them.
+pub(crate) struct GivenSide<'py, N: Numeric<D>, const D: usize> {
+    shapes: ShapesArgument<'py, N, D>,
+    poses: Poses<'py, N, D>,
+    names: [&'static str; 2],
+}
+
+impl<N: Numeric<D>, const D: usize> GivenSide<'_, N, D> {
+    /// One shape at one pose: the answer is no array.
+    pub(crate) fn is_lone(&self) -> bool {
+        self.shapes.is_lone() && self.poses.is_lone()
+    }
+
+    /// The shape of an element.
+    pub(crate) fn shape(&self, element: usize) -> &ShapeHandle<N, D> {
+        self.shapes.at(element)
+    }
+
+    /// The poses as the library reads them.
+    pub(crate) fn poses(&self) -> PyResult<Box<dyn PoseSource<N, D> + '_>> {
+        self.poses.source()
+    }
+
+    /// As the library reads it.
+    pub(crate) fn side<'a>(&'a self, poses: &'a dyn PoseSource<N, D>) -> PyResult<Side<'a, N, D>> {
+        let [_, name] = self.names;
+        Side::try_new(self.shapes.shapes()?, poses).map_err(|error| match error {
+            BatchError::Length { given, needed, .. } => {
+                error::of_batch(&BatchError::Length { argument: name, given, needed }, name)
+            }
+            other => error::of_batch(&other, name),
+        })
+    }
+}

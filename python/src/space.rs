@@ -1,0 +1,82 @@
+//! The scalar and the dimension of a call: the one place where they are chosen.
+
+use impinge_record::Recordable;
+use numpy::Element;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// A scalar and a dimension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Kind {
+    /// Numbers have 64 bits, else 32.
+    pub(crate) is_double: bool,
+    /// In 3D, else in 2D.
+    pub(crate) is_spatial: bool,
+}
+
+impl Kind {
+    /// Of the number of dimensions and the name of NumPy's type.
+    pub(crate) fn parse(dim: u8, dtype: &str) -> PyResult<Self> {
+        let is_spatial = match dim {
+            2 => false,
+            3 => true,
+            _ => return Err(PyValueError::new_err(format!("dim is {dim}: it is 2 or 3"))),
+        };
+        let is_double = match dtype {
+            "float32" => false,
+            "float64" => true,
+            _ => {
+                let message = format!("dtype is {dtype:?}: it is \"float32\" or \"float64\"");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        Ok(Self { is_double, is_spatial })
+    }
+
+    /// The number of dimensions.
+    pub(crate) const fn dim(self) -> u8 {
+        if self.is_spatial { 3 } else { 2 }
+    }
+
+    /// The name of NumPy's type.
+    pub(crate) const fn dtype(self) -> &'static str {
+        if self.is_double { "float64" } else { "float32" }
+    }
+
+    /// An argument of another kind is refused.
+    pub(crate) fn expect(self, argument: &str, given: Self) -> PyResult<()> {
+        if self == given {
+            return Ok(());
+        }
+        let (dim, dtype) = (self.dim(), self.dtype());
+        Err(PyTypeError::new_err(format!(
+            "{argument} is {}D {}, where {dim}D {dtype} is needed",
+            given.dim(),
+            given.dtype()
+        )))
+    }
+}
+
+/// A scalar and a dimension in which Python works.
+pub(crate) trait Numeric<const D: usize>: Recordable<D> + Element {}
+
+impl<N: Recordable<D> + Element, const D: usize> Numeric<D> for N {}
+
+/// A computation that is generic over the scalar and the dimension. It is a type, because a closure cannot be generic.
+pub(crate) trait Task {
+    /// Its result.
+    type Answer;
+
+    /// Computes it.
+    fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer>;
+}
+
+/// Runs a task in a scalar and a dimension.
+pub(crate) fn run_in<T: Task>(kind: Kind, task: T) -> PyResult<T::Answer> {
+    match (kind.is_double, kind.is_spatial) {
+        (false, false) => task.run::<f32, 2>(),
+        (false, true) => task.run::<f32, 3>(),
+        (true, false) => task.run::<f64, 2>(),
+        (true, true) => task.run::<f64, 3>(),
+    }
+}

@@ -1,0 +1,137 @@
+//! Long work beside the interpreter: it is released, hears of progress, and may interrupt.
+//!
+//! Signals and progress bars belong to the thread that called. It sleeps while another one works, wakes every
+//! [`TICK`], and stops the work by the callback of the batch.
+
+use core::ops::ControlFlow;
+use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use core::time::Duration;
+use std::panic::resume_unwind;
+use std::sync::OnceLock;
+use std::thread;
+
+use impinge::batch::{BatchError, Control};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+
+/// Batches of at most so many elements are done by the calling thread: the library does not share them out either.
+const SMALL: usize = 64;
+
+/// How often signals are looked for, and progress is shown.
+const TICK: Duration = Duration::from_millis(50);
+
+/// How a call is to be done.
+#[derive(Debug, Default)]
+pub(crate) struct Call {
+    /// How many threads; those of the machine without.
+    pub(crate) threads: Option<usize>,
+    /// An object with the method `update(n)`, as tqdm's bars have it.
+    pub(crate) progress: Option<Py<PyAny>>,
+}
+
+/// Does `work` about so many elements with the interpreter released.
+///
+/// # Errors
+/// What the work and the progress bar raise, and `KeyboardInterrupt`; the work has stopped then.
+pub(crate) fn supervise<T: Send>(
+    py: Python<'_>,
+    len: usize,
+    call: &Call,
+    work: impl Fn(&Control<'_>) -> Result<T, BatchError> + Sync,
+) -> PyResult<Result<T, BatchError>> {
+    if call.threads == Some(0) {
+        return Err(PyValueError::new_err("threads is 0: it is at least 1, or None"));
+    }
+    if len <= SMALL && call.progress.is_none() {
+        return Ok(py.detach(|| work(&Control::new())));
+    }
+    py.detach(|| beside(call, &work))
+}
+
+/// Works in another thread and looks after it in this one, which has released the interpreter.
+fn beside<T: Send>(
+    call: &Call,
+    work: &(impl Fn(&Control<'_>) -> Result<T, BatchError> + Sync),
+) -> PyResult<Result<T, BatchError>> {
+    let watch = Watch::default();
+    let report = |done| watch.report(done);
+    let caller = thread::current();
+    thread::scope(|scope| {
+        let worker = scope.spawn(|| {
+            let found = in_pool(call.threads, || work(&Control::with_progress(&report)));
+            watch.is_finished.store(true, Ordering::Release);
+            caller.unpark();
+            found
+        });
+        let outcome = watch.wait(call);
+        let found = worker.join().unwrap_or_else(|panic| resume_unwind(panic));
+        outcome?;
+        found.map_err(|error| PyRuntimeError::new_err(format!("no threads: {error}")))
+    })
+}
+
+/// What the two threads tell each other.
+#[derive(Debug, Default)]
+struct Watch {
+    done: AtomicUsize,
+    is_stopped: AtomicBool,
+    is_finished: AtomicBool,
+}
+
+impl Watch {
+    /// The worker has done so many elements.
+    fn report(&self, done: usize) -> ControlFlow<()> {
+        self.done.store(done, Ordering::Relaxed);
+        if self.is_stopped.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    /// Waits for the worker; shows its progress, and stops it at the first exception.
+    fn wait(&self, call: &Call) -> PyResult<()> {
+        let (mut shown, mut outcome) = (0, Ok(()));
+        loop {
+            let is_finished = self.is_finished.load(Ordering::Acquire);
+            if outcome.is_ok() {
+                outcome = Python::attach(|py| self.tick(py, call, &mut shown));
+                self.is_stopped.store(outcome.is_err(), Ordering::Relaxed);
+            }
+            if is_finished {
+                return outcome;
+            }
+            thread::park_timeout(TICK);
+        }
+    }
+
+    fn tick(&self, py: Python<'_>, call: &Call, shown: &mut usize) -> PyResult<()> {
+        py.check_signals()?;
+        let done = self.done.load(Ordering::Relaxed);
+        if let Some(bar) = call.progress.as_ref().filter(|_| done > *shown) {
+            bar.call_method1(py, "update", (done - *shown,))?;
+            *shown = done;
+        }
+        Ok(())
+    }
+}
+
+/// Runs the work on so many threads.
+fn in_pool<T: Send>(
+    threads: Option<usize>,
+    work: impl FnOnce() -> T + Send,
+) -> Result<T, ThreadPoolBuildError> {
+    /// It is made once, since a single thread is asked for often, in measurements and in workers of others.
+    static ONE: OnceLock<ThreadPool> = OnceLock::new();
+    let make = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
+    Ok(match (threads, ONE.get()) {
+        (None, _) => work(),
+        (Some(1), Some(pool)) => pool.install(work),
+        (Some(1), None) => {
+            let pool = make(1)?;
+            ONE.get_or_init(|| pool).install(work)
+        }
+        (Some(count), _) => make(count)?.install(work),
+    })
+}

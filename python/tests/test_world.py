@@ -1,0 +1,124 @@
+"""Worlds: many objects at once, events, queries, stale handles."""
+
+import impinge
+import numpy as np
+import pytest
+
+
+def lifted(heights, dim=3, dtype="float64"):
+    poses = np.tile(np.eye(dim + 1, dtype=dtype), (len(heights), 1, 1))
+    poses[:, 1, dim] = heights
+    return poses
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_events_come_and_go(dim, dtype):
+    world = impinge.World(dim=dim, dtype=dtype)
+    floor = world.add(impinge.Cuboid([10] + [1] * (dim - 1), dtype=dtype), None)
+    ball = impinge.Ball(0.5, dim=dim, dtype=dtype)
+    balls = world.add(ball, lifted([5, 1.25], dim, dtype))
+    assert len(world) == 3 and world.handles().tolist() == [*floor, *balls]
+    world.update()
+    assert world.contact_events().tolist() == [(1, floor[0], balls[1])]
+    contacts = world.contacts()
+    assert contacts["depth"].tolist() == [0.25] and contacts["normal"][0].tolist() == [0, 1, 0][:dim]
+    assert contacts.dtype["depth"] == dtype and contacts["point1"].shape == (1, dim)
+    world.set_poses(balls, lifted([1.5, 9], dim, dtype))
+    world.update()
+    assert sorted(world.contact_events().tolist()) == [(0, floor[0], balls[1]), (1, floor[0], balls[0])]
+    world.remove(balls)
+    world.update()
+    assert world.contact_events()["kind"].tolist() == [0] and len(world) == 1
+
+
+def test_poses_come_back():
+    world = impinge.World()
+    rng = np.random.default_rng(1)
+    poses = impinge.Poses(rng.normal(size=(5, 3)), rng.normal(size=(5, 4)), order="xyzw").matrices
+    handles = world.add(impinge.Ball(1), poses)
+    np.testing.assert_allclose(world.poses(handles[::-1]), poses[::-1], atol=1e-14)
+    world.set_poses(handles[1:2], poses[3])
+    np.testing.assert_allclose(world.poses()[1], poses[3], atol=1e-14)
+
+
+def test_proximity_and_groups():
+    world = impinge.World()
+    ball = impinge.Ball(1)
+    sensor = world.add(ball, None, margin=0.5, whitelist=[1])
+    near = world.add(ball, lifted([2.25]), membership=[1], blacklist=[2])
+    world.add(ball, lifted([2.25]), membership=[2])
+    world.update()
+    assert world.proximity_events().tolist() == [(impinge.Proximity.WITHIN_MARGIN, sensor[0], near[0])]
+    assert len(world.contacts()) == 0
+
+
+def test_stale_handles_are_named_and_change_nothing():
+    world = impinge.World()
+    first = world.add(impinge.Ball(1), lifted([0, 5]))
+    world.remove(first[:1])
+    again = world.add(impinge.Ball(1), lifted([9]))
+    assert again[0] != first[0] and again[0] & 0xFFFFFFFF == first[0] & 0xFFFFFFFF, "the index is used again"
+    for call in (
+        lambda: world.remove(first),
+        lambda: world.set_poses(first[::-1], lifted([1, 1])),
+        lambda: world.poses(first),
+        lambda: world.remove([12345]),
+    ):
+        with pytest.raises(ValueError, match=r"handles\[[01]\] is \d+"):
+            call()
+    with pytest.raises(ValueError, match="twice"):
+        world.remove([again[0], again[0]])
+    with pytest.raises(ValueError):
+        world.set_poses(again, lifted([1, 1]))
+    assert len(world) == 2 and world.poses()[:, 1, 3].tolist() == [9, 5]
+
+
+def test_refused_objects_leave_nothing():
+    world = impinge.World()
+    poses = lifted([0, 1, 2])
+    poses[2, 0, 3] = np.inf
+    with pytest.raises(ValueError, match=r"poses\[2\]"):
+        world.add(impinge.Ball(1), poses)
+    with pytest.raises(ValueError):
+        world.add(impinge.Ball(1), None, prediction=-1)
+    with pytest.raises(ValueError):
+        world.add(impinge.Ball(1), None, membership=[99])
+    with pytest.raises(TypeError):
+        world.add(impinge.Ball(1, dim=2), None)
+    assert len(world) == 0
+    with pytest.raises(ValueError, match="margin"):
+        impinge.World(-1)
+
+
+def test_queries():
+    world = impinge.World()
+    balls = world.add(impinge.Ball(1), lifted([0, 4, 8]))
+    world.update()
+    hits = world.cast_rays([[0, -5, 0], [0, 20, 0], [9, 0, 0]], [[0, 2, 0], [0, -1, 0], [0, 1, 0]])
+    assert hits.time.tolist() == [2, 11, np.inf]
+    assert hits.handle.tolist() == [balls[0], balls[2], impinge.NO_OBJECT]
+    assert hits.normal[0].tolist() == [0, -1, 0] and np.isnan(hits.normal[2]).all()
+    near = world.nearest(impinge.Ball(1), lifted([5, 100]), count=2, max_distance=20)
+    assert near.starts.tolist() == [0, 2, 2]
+    assert near.handle.tolist() == [balls[1], balls[2]] and near.distance.tolist() == [0, 1]
+    inside = world.containing([[0, 0.5, 0], [0, 2, 0], [0, 4, 0]])
+    assert inside.starts.tolist() == [0, 1, 1, 2] and inside.handle.tolist() == [balls[0], balls[1]]
+    cast = world.cast_shape(impinge.Ball(1), lifted([-5]), [0, 3, 0])
+    assert cast.time.tolist() == [1] and cast.handle.tolist() == [balls[0]]
+    with pytest.raises(ValueError, match="velocities"):
+        world.cast_shape(impinge.Ball(1), lifted([-5, -6, -7]), np.zeros((2, 3)))
+
+
+def test_contacts_are_those_of_batches():
+    """A world of a hundred boxes has the depths that pairs have."""
+    rng = np.random.default_rng(3)
+    poses = impinge.Poses(rng.uniform(-3, 3, (100, 3)), rng.normal(size=(100, 4)), order="xyzw").matrices
+    box = impinge.Cuboid([0.5, 0.4, 0.3])
+    world = impinge.World()
+    handles = world.add(box, poses)
+    world.update()
+    started = world.contact_events()
+    pairs = impinge.pairs_within(box, world.poses())
+    assert len(pairs) > 50
+    assert [[row["first"], row["second"]] for row in started] == handles[pairs].tolist()
