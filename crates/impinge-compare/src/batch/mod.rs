@@ -6,8 +6,8 @@
 
 mod question;
 
-use impinge::dim3::batch::{OnePose, PairBatch, PointBatch, RayColumns, Shapes, Side, pairs_within_one};
-use impinge::dim3::math::{Isometry, Point, Rotation, Vector};
+use impinge::dim3::batch::{Control, OnePose, PairBatch, Shapes, Side, pairs_within_one};
+use impinge::dim3::math::{Isometry, Rotation, Vector};
 use impinge::dim3::procedural;
 use impinge::dim3::shape::{Ball, Capsule, ConvexHull, Cuboid, Cylinder, ShapeHandle, TriMesh};
 
@@ -47,7 +47,7 @@ fn batches(count: usize) -> Vec<(String, Batch)> {
         ("box", ShapeHandle::new(Cuboid::new(Vector::new(0.5, 0.4, 0.3))), count),
         ("cylinder", ShapeHandle::new(Cylinder::new(0.5, 0.4)), count),
         ("hull", ShapeHandle::new(round_hull(12)), count),
-        ("mesh", ShapeHandle::new(surface(64)), count / 10),
+        ("mesh", ShapeHandle::new(surface(24)), count / 100),
     ];
     let mut batches = Vec::new();
     for (index, (name1, shape1, count1)) in shapes.iter().enumerate() {
@@ -56,7 +56,8 @@ fn batches(count: usize) -> Vec<(String, Batch)> {
             let (name2, shape2, count2) = &shapes[other];
             let is_new = batches.iter().all(|(name, _)| name != &format!("{name1}/{name2}"));
             if is_new {
-                let (shapes, poses) = ([shape1.clone(), shape2.clone()], places(*count1.min(count2)));
+                let (shapes, poses) =
+                    ([shape1.clone(), shape2.clone()], places(*count1.min(count2)));
                 batches.push((format!("{name1}/{name2}"), Batch { shapes, poses }));
             }
         }
@@ -83,7 +84,8 @@ fn places(count: usize) -> Vec<Isometry<f64>> {
         (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     };
     let mut vector = || Vector::new(next(), next(), next());
-    let mut place = |_| Isometry::from_parts((vector() * 1.25).into(), Rotation::new(vector() * 3.0));
+    let mut place =
+        |_| Isometry::from_parts((vector() * 1.25).into(), Rotation::new(vector() * 3.0));
     (0..count).map(&mut place).collect()
 }
 
@@ -127,11 +129,17 @@ fn near_pairs(arguments: &Arguments, table: &mut Table) {
     let side = Side::try_new(Shapes::One(&*shape), &poses).expect("one box");
     let mut found = 0;
     let mut find = || {
-        let pairs = pairs_within_one(&side, 0.1, &impinge::batch::Control::new());
+        let pairs = pairs_within_one(&side, 0.1, &Control::new());
         found = pairs.expect("a good distance").len();
     };
     let times = in_turn(arguments.steps.min(20) as usize, poses.len(), &mut [&mut find]);
     let contender = "batch".to_owned();
-    let row = |times| Row { case: case.to_owned(), contender: contender.clone(), answers: found, differ: 0, times };
+    let row = |times| Row {
+        case: case.to_owned(),
+        contender: contender.clone(),
+        answers: found,
+        differ: 0,
+        times,
+    };
     table.add(times.into_iter().map(row).collect());
 }

@@ -1,10 +1,9 @@
 //! What is asked of a batch, in one call and pair by pair. Each fills a column with a number for each pair.
 
 use impinge::dim3::batch::{
-    ClosestColumns, ContactColumns, Control, HitColumns, ImpactColumns, ManifoldRows, PairBatch,
-    PointBatch, RayColumns,
+    ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, PairBatch,
 };
-use impinge::dim3::math::{Isometry, Point, Vector};
+use impinge::dim3::math::{Isometry, Vector};
 use impinge::dim3::narrow_phase::{
     ContactManifoldGenerator, DefaultContactDispatcher, IdAllocator, PairManifoldGenerator,
 };
@@ -69,7 +68,8 @@ fn impacts(pairs: &PairBatch<'_, f64>, out: &mut Vec<f64>) {
 fn manifolds(pairs: &PairBatch<'_, f64>, out: &mut Vec<f64>) {
     let (prediction, mut rows) = (ContactPrediction::new(LIMIT, 0.0, 0.0), ManifoldRows::new());
     pairs.manifolds(&prediction, None, &Control::new(), &mut rows).expect("not cancelled");
-    let last = |pair| rows.points_of(pair).next_back().map_or(f64::INFINITY, |slot| rows.depth[slot]);
+    let last =
+        |pair| rows.points_of(pair).next_back().map_or(f64::INFINITY, |slot| rows.depth[slot]);
     out.clear();
     out.extend((0..rows.num_pairs()).map(last));
 }

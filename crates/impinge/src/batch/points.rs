@@ -142,7 +142,7 @@ pub(super) fn project<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     batch.each(control, out, |question, out, slot| {
         let found = question.map(|q| located_at(q.shape, &q.pose, &q.point, solid));
-        out.put(slot, found);
+        out.put(slot, found.as_ref());
     })
 }
 
