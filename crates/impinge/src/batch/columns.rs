@@ -16,13 +16,13 @@ pub const NO_FEATURE: FeatureId = FeatureId::Face(u32::MAX);
 const NO_PART: u32 = u32::MAX;
 
 /// Slots for the answers of a batch.
-pub(super) trait Columns: Cut {
+pub(super) trait AnswerColumns: Cut {
     /// Each column has a slot for each of `len` elements, or none where that is allowed.
     fn check(&self, len: usize) -> Result<(), BatchError>;
 }
 
 /// A column by itself is wanted.
-impl<T: Send> Columns for &mut [T] {
+impl<T: Send> AnswerColumns for &mut [T] {
     fn check(&self, len: usize) -> Result<(), BatchError> {
         as_long_as(len, "out", self)
     }
@@ -49,7 +49,7 @@ macro_rules! columns {
             }
         }
 
-        impl<$($generics)+> Columns for $name<'_, $($parameter),+> {
+        impl<$($generics)+> AnswerColumns for $name<'_, $($parameter),+> {
             fn check(&self, len: usize) -> Result<(), BatchError> {
                 $(if !self.$field.is_empty() {
                     as_long_as(len, stringify!($field), self.$field)?;

@@ -3,7 +3,7 @@
 use core::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use super::columns::{Columns, as_long_as};
+use super::columns::{AnswerColumns, as_long_as};
 use super::control::Progress;
 use super::side::{Element, PreparedSide, common_length, index_in, pair_at};
 use super::{
@@ -205,7 +205,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     }
 
     /// Calls with the elements of each pair and the slot of the answer in the columns of a chunk.
-    fn each<C: Columns>(
+    fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
         out: C,

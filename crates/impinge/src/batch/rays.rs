@@ -1,6 +1,6 @@
 //! Rays against placed shapes.
 
-use super::columns::Columns;
+use super::columns::AnswerColumns;
 use super::control::Progress;
 use super::side::{PreparedSide, common_length, index_in};
 use super::{BatchError, Control, HitColumns, Side};
