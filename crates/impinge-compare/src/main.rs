@@ -25,6 +25,7 @@
 
 mod accuracy;
 mod arguments;
+mod batch;
 mod broad;
 mod build;
 mod measure;
@@ -51,6 +52,7 @@ const SUITES: &[Suite] = &[
     ("world", world::run),
     ("pairs", pairs::run),
     ("queries", queries::run),
+    ("batch", batch::run),
     ("build", build::run),
     ("scale", scale::run),
 ];

@@ -11,9 +11,10 @@
 //! 7. [`groups`]: which pairs a world looks at.
 //! 8. [`events`]: what began and ended.
 //! 9. [`queries`]: rays, casts, points and distances, with or without a world.
-//! 10. `drawing`: seeing what the library sees, with the feature `debug_render`.
-//! 11. [`performance`]: what a step costs, and what makes it cheaper.
-//! 12. [`guarantees`]: what you can rely on, to which precision.
+//! 10. [`batches`]: one question about many placed shapes.
+//! 11. `drawing`: seeing what the library sees, with the feature `debug_render`.
+//! 12. [`performance`]: what a step costs, and what makes it cheaper.
+//! 13. [`guarantees`]: what you can rely on, to which precision.
 //!
 //! [`coming_from`] translates programs that use ncollide, parry, rapier or Box2D.
 //!
@@ -33,6 +34,7 @@ macro_rules! in_the_book {
 /// and a line of text stands in for them.
 macro_rules! chapter {
     ($name:ident, $file:literal $(, $picture:literal)*) => {
+        #[doc = "[batches]: self::batches"]
         #[doc = "[composites]: self::composites"]
         #[doc = "[composites#shapes-that-touch-themselves]: self::composites#shapes-that-touch-themselves"]
         #[doc = "[composites#surfaces-have-no-inner-edges]: self::composites#surfaces-have-no-inner-edges"]
@@ -67,6 +69,7 @@ chapter!(contacts, "contacts.md", "contacts2");
 chapter!(groups, "groups.md", "groups");
 chapter!(events, "events.md", "events");
 chapter!(queries, "queries.md", "rays", "shape-cast", "starts", "nearest");
+chapter!(batches, "batches.md");
 #[cfg(feature = "debug_render")]
 chapter!(drawing, "drawing.md");
 chapter!(performance, "performance.md", "tree");

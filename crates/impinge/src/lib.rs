@@ -31,6 +31,7 @@
 //!   dimension `D`; write code against those only where it shall serve both.
 //! * [`world::CollisionWorld`] is all that most programs use. Its parts work alone too:
 //!   [`broad_phase`] on boxes, [`narrow_phase`] on one pair, [`query`] on two placed shapes.
+//! * [`batch`] asks one question about very many placed shapes in one call, with the answers in arrays.
 //! * [`shape`] has the solids, and the meshes, height fields and compounds made of them. Positions are
 //!   isometries; `dim2::math` and `dim3::math` have them, vectors and points under one name in both, and
 //!   `na` is all of nalgebra, whose types they are.
@@ -53,7 +54,7 @@
 //! # Features
 //!
 //! * `f64` (default): the library compiled for `f64` too.
-//! * `parallel`: an update on several threads, with the same bits.
+//! * `parallel`: updates and batches on several threads, with the same bits.
 //! * `debug_render`: drawing worlds, shapes and queries with a back end of yours.
 //! * `serde`: `Serialize` and `Deserialize` for plain values.
 //! * `mint`: conversions to and from other vector libraries, through nalgebra.

@@ -16,13 +16,13 @@ pub const NO_FEATURE: FeatureId = FeatureId::Face(u32::MAX);
 const NO_PART: u32 = u32::MAX;
 
 /// Slots for the answers of a batch.
-pub(super) trait Columns: Cut {
+pub(super) trait AnswerColumns: Cut {
     /// Each column has a slot for each of `len` elements, or none where that is allowed.
     fn check(&self, len: usize) -> Result<(), BatchError>;
 }
 
 /// A column by itself is wanted.
-impl<T: Send> Columns for &mut [T] {
+impl<T: Send> AnswerColumns for &mut [T] {
     fn check(&self, len: usize) -> Result<(), BatchError> {
         as_long_as(len, "out", self)
     }
@@ -49,7 +49,7 @@ macro_rules! columns {
             }
         }
 
-        impl<$($generics)+> Columns for $name<'_, $($parameter),+> {
+        impl<$($generics)+> AnswerColumns for $name<'_, $($parameter),+> {
             fn check(&self, len: usize) -> Result<(), BatchError> {
                 $(if !self.$field.is_empty() {
                     as_long_as(len, stringify!($field), self.$field)?;
@@ -85,7 +85,7 @@ columns!(ClosestColumns<N, D> [N: Real, const D: usize]: distance, point1, point
 
 impl<N: Real, const D: usize> ClosestColumns<'_, N, D> {
     #[inline]
-    pub(super) fn put(&mut self, slot: usize, found: Option<Separation<N, D>>) {
+    pub(super) fn put(&mut self, slot: usize, found: Option<&Separation<N, D>>) {
         let apart = found.filter(|found| found.distance > N::ZERO);
         let distance = apart.map_or(N::ZERO, |found| found.distance);
         put(self.distance, slot, if found.is_some() { distance } else { N::INFINITY });
@@ -130,8 +130,7 @@ columns!(
 
 impl<N: Real, const D: usize> WitnessColumns<'_, N, D> {
     #[inline]
-    pub(super) fn put(&mut self, slot: usize, found: Option<Witness<N, D>>) {
-        let found = found.as_ref();
+    pub(super) fn put(&mut self, slot: usize, found: Option<&Witness<N, D>>) {
         put(self.distance, slot, found.map_or(N::INFINITY, |found| found.distance));
         put(self.point1, slot, array(found.map(|found| found.point1)));
         put(self.point2, slot, array(found.map(|found| found.point2)));
@@ -169,8 +168,7 @@ columns!(ContactColumns<N, D> [N: Real, const D: usize]: depth, normal, point1, 
 
 impl<N: Real, const D: usize> ContactColumns<'_, N, D> {
     #[inline]
-    pub(super) fn put(&mut self, slot: usize, found: Option<Contact<N, D>>) {
-        let found = found.as_ref();
+    pub(super) fn put(&mut self, slot: usize, found: Option<&Contact<N, D>>) {
         put(self.depth, slot, found.map_or(-N::INFINITY, |found| found.depth));
         put(self.normal, slot, array(found.map(|found| Point::from(*found.normal))));
         put(self.point1, slot, array(found.map(|found| found.world1)));
@@ -212,8 +210,7 @@ columns!(
 
 impl<N: Real, const D: usize> ImpactColumns<'_, N, D> {
     #[inline]
-    pub(super) fn put(&mut self, slot: usize, found: Option<Impact<N, D>>) {
-        let found = found.as_ref();
+    pub(super) fn put(&mut self, slot: usize, found: Option<&Impact<N, D>>) {
         put(self.time, slot, found.map_or(N::INFINITY, |found| found.toi));
         put(self.normal, slot, array(found.map(|found| Point::from(*found.normal))));
         put(self.point1, slot, array(found.map(|found| found.world1)));
@@ -252,9 +249,8 @@ impl<N: Real, const D: usize> ProjectionColumns<'_, N, D> {
     pub(super) fn put(
         &mut self,
         slot: usize,
-        found: Option<(PointProjection<N, D>, PointLocation<N>)>,
+        found: Option<&(PointProjection<N, D>, PointLocation<N>)>,
     ) {
-        let found = found.as_ref();
         put(self.point, slot, array(found.map(|(nearest, _)| nearest.point)));
         put(self.is_inside, slot, found.is_some_and(|(nearest, _)| nearest.is_inside));
         put(self.part, slot, found.map_or(NO_PART, |(_, location)| location.part));
@@ -288,8 +284,7 @@ columns!(HitColumns<N, D> [N: Real, const D: usize]: time, normal, part, feature
 
 impl<N: Real, const D: usize> HitColumns<'_, N, D> {
     #[inline]
-    pub(super) fn put(&mut self, slot: usize, found: Option<RayIntersection<N, D>>) {
-        let found = found.as_ref();
+    pub(super) fn put(&mut self, slot: usize, found: Option<&RayIntersection<N, D>>) {
         put(self.time, slot, found.map_or(N::INFINITY, |found| found.toi));
         put(self.normal, slot, array(found.map(|found| Point::from(found.normal))));
         put(self.part, slot, found.map_or(NO_PART, |found| found.part));

@@ -7,7 +7,7 @@
 use core::ops::Range;
 
 use super::control::Progress;
-use super::side::PreparedSide;
+use super::side::{PreparedSide, pair_at};
 use super::{BatchError, Control, ManifoldRows, PairBatch};
 use crate::collide::pair::Ordered;
 use crate::collide::parts::Between;
@@ -44,7 +44,7 @@ fn chunk<N: Space<D>, const D: usize>(
     rows: &mut ManifoldRows<N, D>,
 ) {
     let near = |index: usize| {
-        let [one, other] = sides.each_ref().map(|side| side.element(index));
+        let [one, other] = pair_at(sides, index);
         Placed::within(&one, &other, request.prediction)
     };
     let mut pairs: Vec<Option<PairManifolds<'_, N, D>>> =
@@ -84,7 +84,7 @@ fn update_all<N: Space<D>, const D: usize>(
 }
 
 fn kinds_of<N: Real, const D: usize>(solids: &[Solid<N, D>; 2]) -> [ShapeKind; 2] {
-    solids.each_ref().map(|solid| Geometry(solid.kind()).kind())
+    [Geometry(solids[0].kind()).kind(), Geometry(solids[1].kind()).kind()]
 }
 
 /// A pair that is not certainly too far apart, and its contacts.
@@ -105,8 +105,8 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
     fn new([one, other]: [Placed<'a, N, D>; 2]) -> Self {
         let is_swapped = Ordered::new(&one, &other).swapped;
         let placed = if is_swapped { [other, one] } else { [one, other] };
-        let [first, second] = placed.map(|placed| Solid::of(placed.shape));
-        let solids = first.zip(second).map(<[_; 2]>::from);
+        let solids = Solid::of(placed[0].shape).zip(Solid::of(placed[1].shape));
+        let solids = solids.map(<[_; 2]>::from);
         Self { placed, is_swapped, solids, raw: RawManifold::default(), composite: None }
     }
 
@@ -186,8 +186,8 @@ impl<N: Space<D>, const D: usize> KeptPairs<N, D> for SolidGroup<'_, '_, N, D> {
         let request = self.request;
         let PairManifolds { placed, solids, raw, .. } = self.pair(index);
         let solids = solids.as_ref().expect("all pairs of a group have copies of their solids");
-        let poses = placed.each_ref().map(|placed| &placed.pose);
-        (PairQuestion { poses, solids: solids.each_ref(), request }, raw)
+        let (poses, solids) = ([&placed[0].pose, &placed[1].pose], [&solids[0], &solids[1]]);
+        (PairQuestion { poses, solids, request }, raw)
     }
 
     #[inline(always)]

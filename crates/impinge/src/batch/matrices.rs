@@ -7,7 +7,7 @@ use crate::math::{Matrix, Pose, Real, Vector, max};
 const TOLERANCE: f64 = 1.0 / 65536.0;
 
 /// Poses as homogeneous matrices, read where they lie: (D+1) × (D+1) numbers each, row by row, one matrix after the
-/// other, as the C order of NumPy has an array of the shape (n, D+1, D+1).
+/// other: an array of the shape (n, D+1, D+1) in C order.
 ///
 /// ```text
 ///   | r00 r01 r02 t0 |

@@ -3,9 +3,9 @@
 use core::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use super::columns::{Columns, as_long_as};
+use super::columns::{AnswerColumns, as_long_as};
 use super::control::Progress;
-use super::side::{Element, PreparedSide, common_length, index_in};
+use super::side::{Element, PreparedSide, common_length, index_in, pair_at};
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, Side,
     WitnessColumns,
@@ -205,7 +205,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     }
 
     /// Calls with the elements of each pair and the slot of the answer in the columns of a chunk.
-    fn each<C: Columns>(
+    fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
         out: C,
@@ -214,8 +214,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         out.check(self.len)?;
         self.each_chunk(control, out, |sides, range, columns| {
             for (slot, index) in range.enumerate() {
-                let pair = sides.each_ref().map(|side| side.element(index));
-                answer(pair, columns, slot);
+                answer(pair_at(sides, index), columns, slot);
             }
         })
     }
@@ -249,7 +248,7 @@ pub(super) fn closest_points<N: Space<D>, const D: usize>(
     out: ClosestColumns<'_, N, D>,
 ) -> Result<(), BatchError> {
     batch.each(control, out, |[one, other], out, slot| {
-        out.put(slot, separation_between(&one, &other, max_distance));
+        out.put(slot, separation_between(&one, &other, max_distance).as_ref());
     })
 }
 
@@ -261,7 +260,7 @@ pub(super) fn witnesses<N: Space<D>, const D: usize>(
     out: WitnessColumns<'_, N, D>,
 ) -> Result<(), BatchError> {
     batch.each(control, out, |[one, other], out, slot| {
-        out.put(slot, witness_between(&one, &other, max_distance));
+        out.put(slot, witness_between(&one, &other, max_distance).as_ref());
     })
 }
 
@@ -285,7 +284,7 @@ pub(super) fn contacts<N: Space<D>, const D: usize>(
     out: ContactColumns<'_, N, D>,
 ) -> Result<(), BatchError> {
     batch.each(control, out, |[one, other], out, slot| {
-        out.put(slot, contact_between(&one, &other, prediction));
+        out.put(slot, contact_between(&one, &other, prediction).as_ref());
     })
 }
 
@@ -303,20 +302,24 @@ pub(super) fn impacts<N: Space<D>, const D: usize>(
             as_long_as(batch.len, argument, column)?;
         }
     }
-    let velocity = |side: usize, index: usize| {
-        let column = velocities[side];
-        let own = column.get(index_in(column.len(), index));
-        own.map_or_else(Vector::<N, D>::zeros, |own| Vector::<N, D>::from(*own))
-    };
     batch.each_chunk(control, out, |sides, range, out| {
         for (slot, index) in range.enumerate() {
-            let [one, other] = [0, 1].map(|side| Moving {
-                placed: sides[side].element(index).placed(),
-                velocity: velocity(side, index),
-            });
-            out.put(slot, impact_of_pair(&one, &other, options));
+            let [one, other] = pair_at(sides, index);
+            let one = Moving { placed: one.placed(), velocity: velocity_at(velocities[0], index) };
+            let velocity = velocity_at(velocities[1], index);
+            let other = Moving { placed: other.placed(), velocity };
+            out.put(slot, impact_of_pair(&one, &other, options).as_ref());
         }
     })
+}
+
+/// The velocity of an element: its own, that of all, or none.
+#[inline]
+fn velocity_at<N: Real, const D: usize>(column: &[[N; D]], index: usize) -> Vector<N, D> {
+    match column.get(index_in(column.len(), index)) {
+        Some(velocity) => Vector::<N, D>::from(*velocity),
+        None => Vector::<N, D>::zeros(),
+    }
 }
 
 /// See [`PairBatch::nearest`].
@@ -354,7 +357,7 @@ fn nearest_of<N: Space<D>, const D: usize>(
             break;
         }
         let limit = best.map_or(limit, |(_, distance)| distance);
-        let [one, other] = sides.each_ref().map(|side| side.element(index));
+        let [one, other] = pair_at(sides, index);
         let found = distance_within(&one, &other, limit).map(|distance| (index, distance));
         best = nearer(best, found);
     }

@@ -1,6 +1,6 @@
 //! Points against placed shapes.
 
-use super::columns::Columns;
+use super::columns::AnswerColumns;
 use super::control::Progress;
 use super::side::{PreparedSide, common_length, index_in};
 use super::{BatchError, Control, ProjectionColumns, Side};
@@ -95,7 +95,7 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
 
     /// Calls with each question and the slot of its answer in the columns of a chunk; without a question where the
     /// point or the pose is not finite.
-    fn each<C: Columns>(
+    fn each<C: AnswerColumns>(
         &self,
         control: &Control<'_>,
         out: C,
@@ -142,7 +142,7 @@ pub(super) fn project<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     batch.each(control, out, |question, out, slot| {
         let found = question.map(|q| located_at(q.shape, &q.pose, &q.point, solid));
-        out.put(slot, found);
+        out.put(slot, found.as_ref());
     })
 }
 

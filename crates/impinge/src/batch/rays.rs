@@ -1,6 +1,6 @@
 //! Rays against placed shapes.
 
-use super::columns::Columns;
+use super::columns::AnswerColumns;
 use super::control::Progress;
 use super::side::{PreparedSide, common_length, index_in};
 use super::{BatchError, Control, HitColumns, Side};
@@ -107,7 +107,8 @@ pub(super) fn cast<N: Space<D>, const D: usize>(
     Progress::new(control).run(rays.len, out, |range, mut out| {
         for (slot, index) in range.enumerate() {
             let (shape, pose, ray) = (side.shape(index), side.pose(index), rays.ray(index));
-            out.put(slot, cast_at(shape, &pose, &ray, rays.max_time, rays.solid));
+            let hit = cast_at(shape, &pose, &ray, rays.max_time, rays.solid);
+            out.put(slot, hit.as_ref());
         }
     })
 }

@@ -204,6 +204,15 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
     }
 }
 
+/// The elements of two sides that are a pair. Written out: a closure over both is not always inlined.
+#[inline]
+pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
+    sides: &'s [PreparedSide<'a, N, D>; 2],
+    index: usize,
+) -> [Element<'s, 'a, N, D>; 2] {
+    [sides[0].element(index), sides[1].element(index)]
+}
+
 /// An element of a side.
 pub(super) struct Element<'s, 'a, N: Real, const D: usize> {
     side: &'s PreparedSide<'a, N, D>,

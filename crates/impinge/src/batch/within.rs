@@ -152,19 +152,20 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
     ) -> Result<Vec<[u32; 2]>, BatchError> {
         let (numbers, tree) = other.tree()?;
         let margin = distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON;
+        let near = |walker: usize, index: usize| {
+            let pair = named(number_of(walker), numbers[index])?;
+            let (one, found) =
+                (self.side.element(walker), other.side.element(numbers[index] as usize));
+            let is_near = proximity_between(&one, &found, distance) != Proximity::Disjoint;
+            is_near.then_some(pair)
+        };
+        let search = |walker: usize, pairs: &mut Vec<[u32; 2]>| {
+            let Some(aabb) = &self.boxes[walker] else { return };
+            let around = aabb.loosened(margin);
+            tree.visit_overlapping(&around, |index| pairs.extend(near(walker, index)));
+        };
         let work = |range: Range<usize>, pairs: &mut Vec<[u32; 2]>| {
-            for walker in range {
-                let Some(aabb) = &self.boxes[walker] else { continue };
-                tree.visit_overlapping(&aabb.loosened(margin), |index| {
-                    let number = numbers[index];
-                    let Some(pair) = named(number_of(walker), number) else { return };
-                    let (one, found) =
-                        (self.side.element(walker), other.side.element(number as usize));
-                    if proximity_between(&one, &found, distance) != Proximity::Disjoint {
-                        pairs.push(pair);
-                    }
-                });
-            }
+            range.for_each(|walker| search(walker, pairs));
         };
         let mut all = Vec::new();
         let progress = Progress::new(control);

@@ -38,7 +38,7 @@ fn facts<N: Space<D>, const D: usize>(batch: &PairBatch<'_, N, D>) -> Vec<u64> {
     batch.witnesses(N::TWO, &Control::new(), out).expect("good");
     let numbers = distance.into_iter().chain(away);
     let all = numbers.chain(point1.into_iter().flatten()).chain(normal.into_iter().flatten());
-    all.map(|x| x.bits()).collect()
+    all.map(Real::bits).collect()
 }
 
 fn check<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(

@@ -2,7 +2,7 @@
 
 use impinge::batch::{BatchError, Control, OnePose, Shapes, Side, pairs_within, pairs_within_one};
 use impinge::math::{AbstractRotation, Isometry, Isometry2, Pose, Space, Unit, Vector};
-use impinge::query::{Proximity, proximity};
+use impinge::query::{Proximity, distance, proximity};
 use impinge::shape::{Ball, Cuboid, Plane, ShapeHandle};
 
 use super::scene::{Scene, on_threads, scene2, scene3};
@@ -173,4 +173,34 @@ fn distances_that_are_none_are_refused() {
     assert_eq!(error.to_string(), "the distance is -0.5, where zero or more is needed", "so");
     let error = pairs_within_one(&side, f64::NAN, &Control::new()).expect_err("no distance");
     assert!(matches!(error, BatchError::Distance { value } if value.is_nan()), "{error}");
+}
+
+/// Every two shapes side by side along an axis, where the gap of their boxes is their distance up to rounding: the tree
+/// must propose them at exactly the distance that the single call says, whichever way that was rounded.
+fn at_their_own_distance<N: Space<D>, R: AbstractRotation<N, D> + Copy + Sync, const D: usize>(
+    scene: &Scene<N, R, D>,
+) {
+    let mut apart = 0;
+    for index in 0..scene.len() {
+        let (shape1, shape2) = (scene.shape(0, index), scene.shape(1, index));
+        let (pose1, mut pose2) = (scene.poses[0][index], scene.poses[1][index]);
+        pose2.translation.vector = pose1.translation.vector;
+        pose2.translation.vector[index % D] += N::lit(3.1 + 0.01 * (index % 97) as f64);
+        let found = distance(&pose1, &**shape1, &pose2, &**shape2);
+        let (one, other) = (OnePose(pose1), OnePose(pose2));
+        let one = Side::try_new(Shapes::One(&**shape1), &one).expect("one");
+        let other = Side::try_new(Shapes::One(&**shape2), &other).expect("one");
+        let pairs = pairs_within(&one, &other, found, &Control::new());
+        assert_eq!(pairs, Ok(vec![[0, 0]]), "pair {index} at {found}");
+        apart += usize::from(found > N::ZERO);
+    }
+    assert!(apart * 3 > scene.len(), "{apart} of {} are apart", scene.len());
+}
+
+#[test]
+fn the_tree_proposes_what_is_at_exactly_the_distance() {
+    at_their_own_distance(&scene2::<f32>(0.0));
+    at_their_own_distance(&scene2::<f32>(1e4));
+    at_their_own_distance(&scene3::<f32>(0.0));
+    at_their_own_distance(&scene3::<f64>(1e6));
 }

@@ -5,7 +5,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::support::shape_table::{Shapes, plane, space};
-use impinge::math::{AbstractRotation, Isometry, Isometry2, Isometry3, Point, Real, Space, Vector};
+use impinge::math::{AbstractRotation, Isometry, Point, Real, Space, Vector};
 use impinge::query::{
     ClosestPoints, ConstantVelocities, ImpactOptions, Moving, PointQuery, Proximity, Ray, RayCast,
     RigidMotion, closest_points, contact, distance, impact, nonlinear_time_of_impact, proximity,
