@@ -108,7 +108,10 @@ mod tests {
         for count in [0, 1, CHUNK - 1, CHUNK, CHUNK + 1, 5 * CHUNK, 7 * CHUNK + 3] {
             let mut found = vec![0; count];
             let work = |range: Range<usize>, slots: &mut [usize]| {
-                assert!(range.start % CHUNK == 0 && range.len() <= CHUNK, "a chunk: {range:?}");
+                assert!(
+                    range.start.is_multiple_of(CHUNK) && range.len() <= CHUNK,
+                    "a chunk: {range:?}"
+                );
                 assert_eq!(slots.len(), range.len(), "a slot for each");
                 for (slot, index) in slots.iter_mut().zip(range) {
                     *slot = index + 1;

@@ -48,7 +48,7 @@ impl<'a, N: Real, const D: usize> Matrices<'a, N, D> {
     /// matrix that is no pose.
     pub fn try_new(numbers: &'a [N]) -> Result<Self, BatchError> {
         let (given, width) = (numbers.len(), Self::WIDTH);
-        if given % width != 0 {
+        if !given.is_multiple_of(width) {
             return Err(BatchError::PartialRow { argument: "matrices", given, width });
         }
         for (index, matrix) in numbers.chunks_exact(width).enumerate() {
