@@ -1,0 +1,33 @@
+"""Each example and each block of the texts runs; the examples check their results."""
+
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+# In the repository the guide is beside the package; where the wheel is tested it lies beside the tests.
+TEXTS = [
+    path for path in (ROOT / "README.md", ROOT / "python.md", ROOT.parent / "guide" / "python.md") if path.exists()
+]
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
+def test_examples(path, capsys):
+    for package in re.findall(r"^(?:from|import) (trimesh|impinge\.urdf)", path.read_text(), re.MULTILINE):
+        pytest.importorskip("yourdfpy" if package == "impinge.urdf" else package)
+    runpy.run_path(str(path), run_name="__main__")
+    assert capsys.readouterr().out.strip(), "it says what it found"
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: path.stem)
+def test_texts(path):
+    """The blocks of a page are one program."""
+    blocks = re.findall(r"^```python\n(.*?)^```", path.read_text(), re.MULTILINE | re.DOTALL)
+    assert blocks
+    exec(compile("\n".join(blocks), str(path), "exec"), {"__name__": "__main__"})
+
+
+def test_there_are_texts_and_examples():
+    assert len(TEXTS) == 2 and len(list((ROOT / "examples").glob("*.py"))) >= 10
