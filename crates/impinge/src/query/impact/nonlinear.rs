@@ -130,7 +130,7 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
 }
 
 /// Of two bodies that are the same at time zero, the second comes first, by where they are when they
-/// differ: at the longest time or, if there is none, at one of the times 1, 2¹⁶, 2³², ….
+/// differ: at the longest time or, where that tells nothing, at one of the times 1, 2¹⁶, 2³², ….
 fn two_leads<N: Space<D>, const D: usize>(
     one: &MovingBody<'_, N, D>,
     two: &MovingBody<'_, N, D>,
@@ -138,11 +138,12 @@ fn two_leads<N: Space<D>, const D: usize>(
 ) -> bool {
     let world = Vector::<N, D>::zeros();
     let later = |time| [one, two].map(|body| body.placed(&world, time));
-    let first = if options.max_time.is_finite_number() { options.max_time } else { N::ONE };
-    let next = |time: &N| (first != options.max_time).then(|| *time * N::lit(65536.0));
     // 64 times at most, when the numbers end.
-    let times = iter::successors(Some(first), next).take_while(|time| time.is_finite_number());
-    let mut orders = times.map(later).map(|[later1, later2]| order(&later1, &later2));
+    let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
+    let times = times.take_while(|time| time.is_finite_number());
+    let longest = Some(options.max_time).filter(|time| time.is_finite_number());
+    let places = longest.into_iter().chain(times).map(later);
+    let mut orders = places.map(|[later1, later2]| order(&later1, &later2));
     orders.find(|order| order.is_ne()).is_some_and(Ordering::is_gt)
 }
 

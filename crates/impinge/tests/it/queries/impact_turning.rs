@@ -567,3 +567,26 @@ fn what_grazes_within_a_millionth_touches() {
         assert!(left > 0.0 && left < 16.0 / 1_048_576.0, "{left} at {found}, of {gap}");
     }
 }
+
+/// Equal bodies at one pose: only their motions tell them apart, and not until the longest time.
+#[test]
+fn equal_bodies_that_part_after_the_longest_time_have_one_order() {
+    let triangle = impinge::dim2::shape::Triangle::new(
+        Point::<f64, 2>::new(0.0, 0.0),
+        Point::<f64, 2>::new(1.0, 0.0),
+        Point::<f64, 2>::new(0.25, 0.75),
+    );
+    let cube = Cuboid::new(V3::new(0.5, 0.25, 0.125));
+    for time in [0.0, 1e-300, 1.0] {
+        let motions =
+            [1.0, -1.0].map(|turn| Turning2::<f64>::new(at(3.0, 4.0), V2::new(turn, 2.0), turn));
+        both((&motions[0], &triangle), (&motions[1], &triangle), &until(time))
+            .expect("they overlap");
+
+        let motions = [1.0, -1.0].map(|turn| {
+            let place = Isometry3::translation(3.0, 4.0, 5.0);
+            Turning3::<f64>::new(place, V3::new(turn, 2.0, 0.0), V3::new(0.0, 0.0, turn))
+        });
+        both((&motions[0], &cube), (&motions[1], &cube), &until(time)).expect("they overlap");
+    }
+}
