@@ -13,6 +13,7 @@ use impinge::query::{
 };
 use impinge::shape::{
     Ball, Capsule, Compound, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape, ShapeHandle,
+    Triangle,
 };
 use query_support::corpus::{placed2, regression};
 
@@ -571,7 +572,7 @@ fn what_grazes_within_a_millionth_touches() {
 /// Equal bodies at one pose: only their motions tell them apart, and not until the longest time.
 #[test]
 fn equal_bodies_that_part_after_the_longest_time_have_one_order() {
-    let triangle = impinge::dim2::shape::Triangle::new(
+    let triangle = Triangle::new(
         Point::<f64, 2>::new(0.0, 0.0),
         Point::<f64, 2>::new(1.0, 0.0),
         Point::<f64, 2>::new(0.25, 0.75),
