@@ -75,12 +75,12 @@ def test_progress_counts_all_elements():
     assert bar.total == 5000
 
 
-def slow_batch(progress=None):
-    """Some seconds of work: a hull in a surface."""
+def slow_batch(progress=None, count=4000):
+    """Some hundredths of a second for each pose: a hull in a surface."""
     grid = np.random.default_rng(1).uniform(0, 1, (60, 60))
     field = impinge.HeightField(grid, [10, 1, 10])
-    poses = np.tile(np.eye(4), (4000, 1, 1))
-    poses[:, 1, 3] = np.linspace(0.1, 0.2, 4000)
+    poses = np.tile(np.eye(4), (count, 1, 1))
+    poses[:, 1, 3] = np.linspace(0.1, 0.2, count)
     return impinge.contact_manifolds(
         field, None, impinge.ConvexHull(np.random.default_rng(2).normal(size=(300, 3)) * 3), poses, progress=progress
     )
@@ -110,7 +110,7 @@ def test_the_interpreter_is_released():
     count, is_done = 0, threading.Event()
 
     def work():
-        slow_batch()
+        slow_batch(count=100)
         is_done.set()
 
     thread = threading.Thread(target=work)

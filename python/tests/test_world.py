@@ -45,7 +45,7 @@ def test_poses_come_back():
 def test_proximity_and_groups():
     world = impinge.World()
     ball = impinge.Ball(1)
-    sensor = world.add(ball, None, margin=0.5, whitelist=[1])
+    sensor = world.add(ball, None, margin=0.5, membership=[3], whitelist=[1])
     near = world.add(ball, lifted([2.25]), membership=[1], blacklist=[2])
     world.add(ball, lifted([2.25]), membership=[2])
     world.update()

@@ -119,7 +119,7 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
 }
 
-/// The active points of both cores; `None` if all are corners.
+/// The active points of both cores; `None` if all are corners, or if so large that their extents are no numbers.
 fn active<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
@@ -138,7 +138,7 @@ fn active<N: Simplicial<D>, const D: usize>(
         return None;
     }
     keep_extreme(&mut sides, &best.normal);
-    Some(sides.map(ActiveSet::new))
+    sides.iter().all(|side| !side.is_empty()).then(|| sides.map(ActiveSet::new))
 }
 
 /// Drops the points that are not extreme, even if the normal is off by the root of the noise, and of
