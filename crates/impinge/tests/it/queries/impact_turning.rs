@@ -581,13 +581,12 @@ fn equal_bodies_that_part_after_the_longest_time_have_one_order() {
     for time in [0.0, 1e-300, 1.0] {
         let motions =
             [1.0, -1.0].map(|turn| Turning2::<f64>::new(at(3.0, 4.0), V2::new(turn, 2.0), turn));
-        both((&motions[0], &triangle), (&motions[1], &triangle), &until(time))
-            .expect("they overlap");
+        both((&motions[0], &triangle), (&motions[1], &triangle), &until(time));
 
         let motions = [1.0, -1.0].map(|turn| {
             let place = Isometry3::translation(3.0, 4.0, 5.0);
             Turning3::<f64>::new(place, V3::new(turn, 2.0, 0.0), V3::new(0.0, 0.0, turn))
         });
-        both((&motions[0], &cube), (&motions[1], &cube), &until(time)).expect("they overlap");
+        both((&motions[0], &cube), (&motions[1], &cube), &until(time));
     }
 }
