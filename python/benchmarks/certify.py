@@ -2,7 +2,7 @@
 
 The signed distance of two convex solids is the greatest gap over all unit directions: the distance if they are apart,
 minus the depth if they overlap. The gap along any direction, by support functions, is a lower bound; that of two points
-which lie in the solids an upper one. What lies between is searched: directions spread over the sphere, the best refined.
+which lie in the solids an upper one. Between them is searched: directions spread over the sphere, the best refined.
 """
 
 from __future__ import annotations
@@ -13,6 +13,8 @@ from solids import Array, Solid
 
 # Rows that are searched at once, to bound memory.
 CHUNK = 200
+# Directions tried around each of the best at once.
+TRIES = 20
 
 
 def gaps(one: Solid, poses1: Array, two: Solid, poses2: Array, directions: Array) -> Array:
@@ -43,42 +45,47 @@ def upper_bound(one: Solid, poses1: Array, two: Solid, poses2: Array, points: tu
     return np.asarray(total)
 
 
-def certified(one: Solid, poses1: Array, two: Solid, poses2: Array, normals: Array) -> Array:
-    """The greatest gaps (n,) found: along given directions (n, m, 3), spread ones, and refined ones."""
+def greatest_gaps(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
+    """The greatest gaps (n,) found by a search that knows no answer of any library."""
     found = [
-        _search(one, poses1[rows], two, poses2[rows], normals[rows])
+        _search(one, poses1[rows], two, poses2[rows])
         for rows in (slice(begin, begin + CHUNK) for begin in range(0, len(poses1), CHUNK))
     ]
     return np.concatenate(found) if found else np.zeros(0)
 
 
-def _search(one: Solid, poses1: Array, two: Solid, poses2: Array, normals: Array) -> Array:
-    if one.is_half_space or two.is_half_space:
-        return gaps(one, poses1, two, poses2, normals)[:, 0]
+def _search(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
     spread = np.concatenate([_spiral(1500), _axes()])
-    starts = np.concatenate([_unit(normals), np.broadcast_to(spread, (len(poses1), *spread.shape))], axis=1)
+    starts = np.broadcast_to(spread, (len(poses1), *spread.shape))
     values = gaps(one, poses1, two, poses2, starts)
+    if one.is_half_space or two.is_half_space:
+        return values[:, 0]
     best = np.argsort(-values, axis=1)[:, :8]
-    rows = np.arange(len(best))[:, None]
-    # The given directions are refined too: they may be good without being the best at first.
-    directions = np.concatenate([starts[rows, best], _unit(normals)], axis=1)
-    values = gaps(one, poses1, two, poses2, directions)
+    directions = spread[best]
+    values = np.take_along_axis(values, best, 1)
     rng = np.random.default_rng(1)
-    step = 0.06
-    for _ in range(70):
-        tried = directions[:, :, None] + step * rng.normal(size=(*directions.shape[:2], 12, 3))
-        tried = _unit(tried)
+    # Each direction's own step and last move: longer after a better try, shorter after none.
+    step, move = np.full(values.shape, 0.06), np.zeros(directions.shape)
+    for _ in range(150):
+        noise = rng.normal(size=(*directions.shape[:2], TRIES, 3))
+        # Half of the tries go along the last move: kinks of the gap are narrow ridges.
+        along = rng.normal(size=(*values.shape, TRIES, 1)) * (np.arange(TRIES) % 2)[:, None] * 2
+        thin = np.where(np.arange(TRIES) % 2, 0.1, 1.0)[:, None]
+        tried = unit(directions[:, :, None] + step[..., None, None] * noise * thin + along * move[:, :, None])
         reached = gaps(one, poses1, two, poses2, tried.reshape(len(best), -1, 3)).reshape(tried.shape[:3])
         at = reached.argmax(axis=2)[..., None]
-        is_better = np.take_along_axis(reached, at, 2)[..., 0] > values
+        found = np.take_along_axis(reached, at, 2)[..., 0]
         chosen = np.take_along_axis(tried, at[..., None], 2)[:, :, 0]
+        is_better = found > values
+        move = np.where(is_better[..., None], chosen - directions, 0.7 * move)
         directions = np.where(is_better[..., None], chosen, directions)
-        values = np.where(is_better, np.take_along_axis(reached, at, 2)[..., 0], values)
-        step *= 0.8
+        values = np.where(is_better, found, values)
+        step *= np.where(is_better, 2.0, 0.75)
     return np.asarray(values.max(axis=1))
 
 
-def _unit(vectors: Array) -> Array:
+def unit(vectors: Array) -> Array:
+    """Unit vectors; up for those that are zero or no numbers."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
     up = np.array([0.0, 1, 0])
     return np.where(length > 0, np.nan_to_num(vectors) / np.where(length > 0, length, 1), up)
@@ -95,4 +102,4 @@ def _spiral(count: int) -> Array:
 def _axes() -> Array:
     """The axes and the diagonals, where aligned solids have their answers."""
     grid = np.stack(np.meshgrid(*[[-1.0, 0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    return _unit(grid[np.any(grid != 0, axis=1)])
+    return unit(grid[np.any(grid != 0, axis=1)])

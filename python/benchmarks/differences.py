@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from certify import certified, gaps, upper_bound
-from guarded_fcl import Fcl
+from certify import gaps, greatest_gaps, unit, upper_bound
+from guarded_fcl import MOST_FAILURES, Fcl
 from rivals import COMPARED, Answers, Coal, Impinge
 from solids import Array, Solid
 from timing import markdown, write_csv
@@ -20,12 +20,14 @@ TOLERANCE = 1e-6
 KEPT = 5
 
 ABOUT = """\
-{line}. `python pairs.py`: {count} poses of each family (apart, near or overlapping, aligned on a grid) and pair, f64. A
-difference is one above {tolerance:g} of the sum of the radii; `distance` is zero where they touch, `signed` the witness's
-distance, `depth` the contact's. Who is right is found without any library: the greatest gap of support functions over the
-directions of all sides, 1500 spread ones and refinements is a lower bound of the signed distance, the distance of the
-returned points plus how far they lie outside an upper one where solids are apart. An answer is right within the tolerance of
-the bounds; for overlaps the lower bound is the truth, up to a search that found nothing shallower.
+{line}. `python pairs.py`: {count} poses of each family (apart, near or overlapping, aligned on a grid) and pair,
+f64. A difference is one above {tolerance:g} of the sum of the radii; `distance` is zero where they touch, `signed`
+the witness's distance, `depth` the contact's. Who is right is found without any library. The greatest gap of
+support functions over directions is a lower bound of the signed distance: the directions are 1500 spread ones, the
+best of them refined, and the normals of all sides. The distance of the returned points plus how far they lie
+outside is an upper bound where solids are apart. An answer is right within the tolerance of the bounds. For
+overlaps the lower bound is the truth, up to a search that found nothing shallower; without the normals of any side
+the search stays at most {short:.1g} of the size below them.
 """
 HEADER = ("pair", "poses", "row", "answer", "rival", "impinge", "theirs", "lower bound", "upper bound", "right")
 
@@ -51,6 +53,8 @@ class Judge:
         self.rows: list[list[object]] = []
         # How often the own normal does not show the own signed distance, and by how much at most.
         self.unproven: dict[tuple[str, str], tuple[int, int, float]] = {}
+        # How far the search stays below the gaps along the answers' normals, as a part of the size.
+        self.short = 0.0
         # Where FCL did not return.
         self.failed: list[list[object]] = []
 
@@ -76,7 +80,8 @@ class Judge:
             for answer in COMPARED
         }
         rows = np.flatnonzero(np.any(list(differing.values()), axis=0))
-        lower, upper = _bounds((one, two), placed, rows, sides)
+        lower, upper, short = _bounds((one, two), placed, rows, sides)
+        self.short = max(self.short, short)
         for (name, answer), is_differing in differing.items():
             chosen = is_differing[rows]
             bounds = rows[chosen], lower[chosen], upper[chosen]
@@ -147,7 +152,7 @@ class Judge:
     def _text(self, line: str, count: int) -> list[str]:
         return [
             "# Pairs of convex solids: differences of answers\n",
-            ABOUT.format(line=line, count=count, tolerance=TOLERANCE),
+            ABOUT.format(line=line, count=count, tolerance=TOLERANCE, short=self.short),
             "## All pairs together\n",
             self._totals(),
             "## Every pair with a difference\n",
@@ -157,8 +162,8 @@ class Judge:
             f"(within {TOLERANCE:g} of the size; FCL returns no normal, so the direction of its points within 1e-4).\n",
             self._normals(),
             "## Where FCL did not return\n",
-            "Poses for which its signed distance ran on for seconds or ended the process; after "
-            "three of a pair and family it is not asked for that any more.\n",
+            "Poses for which its signed distance ran on for a second or ended the process; after "
+            f"{MOST_FAILURES} of a pair and family it is not asked for that any more.\n",
             markdown(["pair", "poses", "times", "rows"], self.failed),
         ]
 
@@ -231,19 +236,21 @@ def _size_of_difference(one: Array, two: Array) -> Array:
 
 def _bounds(
     pair: tuple[Solid, Solid], placed: tuple[Array, Array], rows: Array, sides: dict[str, Answers]
-) -> tuple[Array, Array]:
-    """Bounds (n,) of the true signed distances of rows."""
+) -> tuple[Array, Array, float]:
+    """Bounds (n,) of the true signed distances of rows, and how far the search alone stays below the lower ones."""
     one, two = pair
     poses1, poses2 = (poses[rows] for poses in placed)
     normals = np.stack([answers.normal[rows] for answers in sides.values()], axis=1)
-    lower = certified(one, poses1, two, poses2, normals)
+    alone = greatest_gaps(one, poses1, two, poses2)
+    lower = np.maximum(alone, gaps(one, poses1, two, poses2, unit(normals)).max(axis=1))
+    short = float(((lower - alone) / (one.radius + two.radius)).max(initial=0))
     apart = np.full(len(rows), np.inf)
     for answers in sides.values():
         points = answers.point1[rows], answers.point2[rows]
         found = upper_bound(one, poses1, two, poses2, points)
         apart = np.where(np.isfinite(found), np.minimum(apart, found), apart)
     # Points in both solids bound only how far they are apart. Of overlaps the search is the measure.
-    return lower, np.where(lower > 0, np.maximum(apart, lower), lower)
+    return lower, np.where(lower > 0, np.maximum(apart, lower), lower), short
 
 
 def _errors(values: Array, answer: str, lower: Array, upper: Array) -> Array:

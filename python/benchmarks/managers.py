@@ -14,12 +14,11 @@ from scipy.spatial.transform import Rotation
 from placements import aligned_poses, matrices
 from timing import Side, interleaved, markdown
 
-
 ABOUT = """\
-{line}. `python pairs.py`: one mesh in each of two managers, one of them moved through {count} poses (half random, half
-aligned) by `set_transform`, then `in_collision_other` or `min_distance_other`; microseconds of processor time, median of
-{rounds} rounds, impinge on all threads. Distances are compared where both are positive (above 1e-6 differs); poses within
-1e-6 of touching count for neither.
+{line}. `python pairs.py`: one mesh in each of two managers, one of them moved through {count} poses (half random,
+half aligned) by `set_transform`, then `in_collision_other` or `min_distance_other`; microseconds of processor time,
+median of {rounds} rounds, impinge on all threads. Distances are compared where both are positive (above 1e-6
+differs); poses within 1e-6 of touching count for neither.
 """
 
 

@@ -2,7 +2,7 @@
 
     python pairs.py [--quick] [--out FOLDER]
 
-Writes differences.md and differences.csv (what differs, and who is right), pairs.md and pairs.csv (times), and managers.md
+Writes differences.md and differences.csv (what differs, who is right), pairs.md and pairs.csv (times), and managers.md
 (trimesh's collision manager). Needs impinge, coal, python-fcl, trimesh and scipy.
 """
 
@@ -45,19 +45,19 @@ HEADER = (
 
 
 ABOUT = """\
-{line}. `python pairs.py`: {poses} pairs of poses for each family, {rounds} rounds, medians of processor time in nanoseconds
-for one pair (loops in Python over the first {loops}), one thread, f64, all sides in turn in one process. `single`: impinge
-called for each pair. `Coal functor`: `ComputeDistance` or `ComputeCollision` with ready transforms, a ready request and a
-cleared result, nothing read; `plain`: `coal.distance` or `coal.collide` with a new result; `read`: with points and normals
-read. `batch`: one call of impinge for all. `distance` is without, `witness` with sign, points and normal. The triangle is a
-convex of three points for Coal and FCL.
+{line}. `python pairs.py`: {poses} pairs of poses for each family, {rounds} rounds, medians of processor time in
+nanoseconds for one pair (loops in Python over the first {loops}), one thread, f64, all sides in turn in one
+process. `single`: impinge called for each pair. `Coal functor`: `ComputeDistance` or `ComputeCollision` with ready
+transforms, a ready request and a cleared result, nothing read; `plain`: `coal.distance` or `coal.collide` with a
+new result; `read`: with points and normals read. `batch`: one call of impinge for all. `distance` is without,
+`witness` with sign, points and normal. The triangle is a convex of three points for Coal and FCL.
 """
 
 
 def main() -> None:
     parser = arguments(__doc__)
     parser.add_argument("--poses", type=int, default=10_000, help="of each family, for the times")
-    parser.add_argument("--answers", type=int, default=1_000, help="of each family, whose answers are compared")
+    parser.add_argument("--answers", type=int, default=500, help="of each family, whose answers are compared")
     parser.add_argument("--only", default="", help="only pairs whose name contains this")
     parser.add_argument("--skip-times", action="store_true", help="compare the answers alone")
     parser.add_argument("--skip-answers", action="store_true", help="take the times alone")

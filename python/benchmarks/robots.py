@@ -50,12 +50,13 @@ HEADER = (
 
 
 ABOUT = """\
-{line}. `python robots.py`: random configurations within the limits (at most half a turn either way), meshes as convex hulls,
-the bodies of two links that share no joint and do not touch at zero. Medians of {rounds} rounds, all sides in turn in one
-process. `us processor` is the time of all threads together for one configuration, `us wall` what passed: impinge uses all
-threads, the others one. Coal runs behind Pinocchio, whose frames are part of its time: `one call of C++` is
-`computeCollisionsInParallel` with one thread, `a call each` `computeCollisions` and `computeDistances` from Python. FCL has
-its transforms ready, without frames. All end a configuration at its first collision.
+{line}. `python robots.py`: random configurations within the limits (at most half a turn either way), meshes as
+convex hulls, the bodies of two links that share no joint and do not touch at zero. Medians of {rounds} rounds, all
+sides in turn in one process. `us processor` is the time of all threads together for one configuration, `us wall`
+what passed: impinge uses all threads, the others one. Coal runs behind Pinocchio, whose frames are part of its
+time: `one call of C++` is `computeCollisionsInParallel` with one thread, `a call each` `computeCollisions` and
+`computeDistances` from Python. FCL has its transforms ready, without frames. All end a configuration at its first
+collision.
 """
 
 

@@ -1,4 +1,4 @@
-"""Timing side by side: all sides in turn in one process, several rounds, medians; tables, and the line of the machine."""
+"""Timing side by side: all sides in turn in one process, several rounds, medians; tables and machine."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def _cell(cell: Any) -> str:
     if cell is None:
         return "–"
     if isinstance(cell, float):
-        return f"{cell:.3g}" if abs(cell) < 1000 else f"{cell:.0f}"
+        return f"{cell:.0f}" if 1000 <= abs(cell) < 1e6 else f"{cell:.3g}"
     return str(cell)
 
 
