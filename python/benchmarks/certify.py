@@ -55,7 +55,7 @@ def greatest_gaps(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array
 
 
 def _search(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
-    spread = np.concatenate([_spiral(1500), _axes()])
+    spread = np.concatenate([spiral(1500), _axes()])
     starts = np.broadcast_to(spread, (len(poses1), *spread.shape))
     values = gaps(one, poses1, two, poses2, starts)
     if one.is_half_space or two.is_half_space:
@@ -91,7 +91,7 @@ def unit(vectors: Array) -> Array:
     return np.where(length > 0, np.nan_to_num(vectors) / np.where(length > 0, length, 1), up)
 
 
-def _spiral(count: int) -> Array:
+def spiral(count: int) -> Array:
     """Directions spread evenly over the sphere."""
     height = 1 - (2 * np.arange(count) + 1) / count
     angle = np.arange(count) * np.pi * (3 - np.sqrt(5))

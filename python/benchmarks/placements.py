@@ -7,7 +7,7 @@ from itertools import permutations, product
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from certify import gaps
+from certify import gaps, spiral
 from solids import Array, Solid
 
 FAMILIES = ("apart", "near", "aligned")
@@ -24,11 +24,29 @@ def placements(family: str, one: Solid, two: Solid, count: int) -> tuple[Array, 
     directions = _directions(rng, one, two, poses1, poses2)
     # How far they are apart along the direction in which the second lies.
     size = one.radius + two.radius
-    wanted = size * rng.uniform(0.05, 2, count)
+    _move(size * rng.uniform(0.05, 2, count), directions, (one, poses1), (two, poses2))
     if family == "near":
         wanted = min(one.radius, two.radius) * rng.uniform(-0.6, 0.2, count)
-    poses2[:, :3, 3] += directions * (wanted - gaps(one, poses1, two, poses2, directions[:, None])[:, 0])[:, None]
+        _move(wanted, _widest(one, poses1, two, poses2), (one, poses1), (two, poses2))
     return poses1, poses2
+
+
+def _move(wanted: Array, directions: Array, fixed: tuple[Solid, Array], moved: tuple[Solid, Array]) -> None:
+    """Moves the second ones along directions (n, 3) until the gaps along these are as wanted."""
+    found = gaps(*fixed, *moved, directions[:, None])[:, 0]
+    moved[1][:, :3, 3] += directions * (wanted - found)[:, None]
+
+
+def _widest(one: Solid, poses1: Array, two: Solid, poses2: Array) -> Array:
+    """Of a hundred directions the one with the widest gap, for each pair."""
+    if one.is_half_space or two.is_half_space:
+        return poses1[:, :3, 1] if one.is_half_space else -poses2[:, :3, 1]
+    spread, found = spiral(100), []
+    for begin in range(0, len(poses1), 1000):
+        rows = slice(begin, begin + 1000)
+        tried = np.broadcast_to(spread, (len(poses1[rows]), *spread.shape))
+        found.append(spread[gaps(one, poses1[rows], two, poses2[rows], tried).argmax(axis=1)])
+    return np.concatenate(found)
 
 
 def _directions(rng: np.random.Generator, one: Solid, two: Solid, poses1: Array, poses2: Array) -> Array:

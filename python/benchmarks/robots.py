@@ -149,7 +149,7 @@ class Sides:
         colliding = int(self.robot.self_collides(self.configurations).sum())
         table = []
         for question, sides in questions.items():
-            cpu, wall = (interleaved(sides, rounds, wall=is_wall) for is_wall in (False, True))
+            found = interleaved(sides, rounds)
             for name, side in sides.items():
                 table.append(
                     [
@@ -161,9 +161,9 @@ class Sides:
                         question,
                         name,
                         side.elements,
-                        1e6 * cpu[name].median,
-                        1e6 * wall[name].median,
-                        cpu[name].median / cpu["impinge Robot"].median,
+                        1e6 * found[name].median,
+                        1e6 * found[name].wall,
+                        found[name].median / found["impinge Robot"].median,
                     ]
                 )
         return table

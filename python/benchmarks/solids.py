@@ -190,7 +190,7 @@ def _half_space() -> Solid:
     )
 
 
-def _of_points(points: Array) -> Callable[[Array], Array]:
+def of_points(points: Array) -> Callable[[Array], Array]:
     def support(n: Array) -> Array:
         return np.asarray(points[(n @ points.T).argmax(axis=-1)])
 
@@ -206,13 +206,19 @@ def _hull(name: str, points: Array) -> Solid:
 
     shapes = (coal_convex(points, faces), _fcl_convex(points, faces))
     size = float(np.linalg.norm(points, axis=1).max())
-    return Solid(name, impinge.ConvexHull(points), *shapes, np.eye(3), _of_points(points), excess, size)
+    return Solid(name, impinge.ConvexHull(points), *shapes, np.eye(3), of_points(points), excess, size)
 
 
 def _outward(points: Array, face: Any, plane: Array) -> list[int]:
     one, two, three = (int(corner) for corner in face)
     turn = np.cross(points[two] - points[one], points[three] - points[one])
     return [one, two, three] if turn @ plane[:3] > 0 else [one, three, two]
+
+
+def corners_alone(name: str, points: Array) -> Solid:
+    """The hull of points as certificates need it, without a shape of any library."""
+    size = float(np.linalg.norm(points, axis=1).max())
+    return Solid(name, None, None, None, np.eye(3), of_points(points), lambda p: np.zeros(p.shape[:-1]), size)
 
 
 def _flat(name: str, corners: Array) -> Solid:
@@ -228,7 +234,7 @@ def _flat(name: str, corners: Array) -> Solid:
     faces = [[0, 1, 2], [0, 2, 1]]
     shapes = (coal_convex(corners, faces), _fcl_convex(corners, faces))
     size = float(np.linalg.norm(corners, axis=1).max())
-    return Solid(name, impinge.Triangle(corners), *shapes, np.eye(3), _of_points(corners), excess, size)
+    return Solid(name, impinge.Triangle(corners), *shapes, np.eye(3), of_points(corners), excess, size)
 
 
 def coal_convex(points: Array, faces: list[list[int]]) -> Any:

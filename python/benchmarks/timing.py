@@ -20,11 +20,12 @@ DEFAULT_OUT = Path(__file__).resolve().parents[2] / "bench" / "python"
 
 @dataclass(frozen=True)
 class Timed:
-    """Seconds of processor time for each element: the median of the rounds, and the least and the greatest."""
+    """Seconds for each element: the median, the least and the greatest processor time of the rounds, and wall time."""
 
     median: float
     least: float
     greatest: float
+    wall: float
 
     @property
     def spread(self) -> float:
@@ -40,28 +41,33 @@ class Side:
     elements: int
 
 
-def interleaved(sides: Mapping[str, Side], rounds: int = 5, wall: bool = False) -> dict[str, Timed]:
+def interleaved(sides: Mapping[str, Side], rounds: int = 5) -> dict[str, Timed]:
     """Runs all sides in turn, once unmeasured and then `rounds` times, each round from another side on.
 
-    Processor time of the whole process, since others share the machine; wall time on request, for sides with threads.
+    Processor time is that of the whole process with all its threads: others may share the machine.
     """
-    clock = time.perf_counter if wall else time.process_time
     names = list(sides)
     for name in names:
         sides[name].run()
-    seconds: dict[str, list[float]] = {name: [] for name in names}
+    seconds: dict[str, list[tuple[float, float]]] = {name: [] for name in names}
     gc.collect()
     gc.disable()
     try:
         for number in range(rounds):
             first = number % len(names)
             for name in names[first:] + names[:first]:
-                begin = clock()
+                begin = time.process_time(), time.perf_counter()
                 sides[name].run()
-                seconds[name].append((clock() - begin) / sides[name].elements)
+                end = time.process_time(), time.perf_counter()
+                seconds[name].append((end[0] - begin[0], end[1] - begin[1]))
     finally:
         gc.enable()
-    return {name: Timed(statistics.median(of), min(of), max(of)) for name, of in seconds.items()}
+    return {name: _timed(seconds[name], sides[name].elements) for name in names}
+
+
+def _timed(seconds: list[tuple[float, float]], elements: int) -> Timed:
+    processor, wall = ([each / elements for each in clock] for clock in zip(*seconds, strict=True))
+    return Timed(statistics.median(processor), min(processor), max(processor), statistics.median(wall))
 
 
 def machine(packages: Sequence[str]) -> str:
