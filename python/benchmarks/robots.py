@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import sys
 import xml.etree.ElementTree as ElementTree
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,8 @@ import numpy as np
 import pinocchio
 from impinge.urdf import Robot
 
+from certify import greatest_gaps
+from solids import Solid, corners_alone
 from timing import Side, arguments, interleaved, machine, markdown, write_csv
 
 PACKAGES = ("impinge", "pin", "coal", "python-fcl", "example-robot-data", "numpy")
@@ -31,8 +34,8 @@ ROBOTS = {
     "Panda": "panda_description/urdf/panda.urdf",
     "Talos": "talos_data/robots/talos_reduced.urdf",
 }
-# Deeper or farther than this, in metres, a difference is none of rounding.
-TOLERANCE = 1e-6
+# Rows that differ which are judged, the first.
+MOST_JUDGED = 20
 
 HEADER = (
     "robot",
@@ -56,7 +59,8 @@ sides in turn in one process. `us processor` is the time of all threads together
 what passed: impinge uses all threads, the others one. Coal runs behind Pinocchio, whose frames are part of its
 time: `one call of C++` is `computeCollisionsInParallel` with one thread, `a call each` `computeCollisions` and
 `computeDistances` from Python. FCL has its transforms ready, without frames. All end a configuration at its first
-collision.
+collision. Of the configurations that differ the first {judged} are judged by support functions, unless a body is a
+cylinder.
 """
 
 
@@ -71,11 +75,12 @@ def main() -> None:
     rows: list[list[object]] = []
     answers: list[list[object]] = []
     for name in list(ROBOTS)[: 1 if options.quick else None]:
-        sides = Sides(name, options.configurations // (10 if name == "Talos" else 1))
+        # Talos has twelve hundred pairs.
+        sides = Sides(name, options.configurations // (50 if name == "Talos" else 1))
         answers += sides.differences()
         rows += sides.times(options.rounds)
+        write(options, line, answers, rows)
         print(f"{name}: done", file=sys.stderr, flush=True)
-    write(options, line, answers, rows)
 
 
 class Sides:
@@ -105,29 +110,37 @@ class Sides:
         table = []
         for rival, (found, count) in theirs.items():
             differing = np.flatnonzero(ours[:count] != found)
-            notes = [self._pairs_that_differ(row) for row in differing[:5]]
+            verdicts = [self._touches(row) for row in differing[:MOST_JUDGED]]
+            judged = len([verdict for verdict in verdicts if verdict is not None])
+            right = len([1 for at, verdict in enumerate(verdicts) if verdict == ours[differing[at]]])
+            notes = [self._note(row, ours[row], rival, found[row]) for row in differing[:3]]
+            counts = int(ours[:count].sum()), len(differing), right, judged - right
             largest = float(off.max()) if rival == "Coal" else None
-            table.append(
-                [self.name, rival, count, int(ours[:count].sum()), len(differing), largest, "; ".join(notes) or "none"]
-            )
+            table.append([self.name, rival, count, *counts, largest, "; ".join(notes) or "none"])
         return table
 
-    def _pairs_that_differ(self, row: int) -> str:
-        """The pairs of a configuration whose signed distance is least on either side."""
+    def _touches(self, row: int) -> bool | None:
+        """Whether a configuration has a pair without a gap, by support functions; none if a body is not of corners."""
+        poses = self.robot.poses(self.configurations[row])[:, None]
+        corners = self.pinocchio.corners
+        if any(solid is None for solid in corners):
+            return None
+        return any(
+            greatest_gaps(corners[one], poses[one], corners[two], poses[two])[0] < 0 for one, two in self.robot.pairs
+        )
+
+    def _note(self, row: int, ours: bool, rival: str, theirs: bool) -> str:
+        """The answers of a configuration, and its least signed distances, each configuration asked alone."""
         poses = self.robot.poses(self.configurations[row])
         bodies = self.robot.bodies
         signed = [
             float(impinge.witness(bodies[one].shape, poses[one], bodies[two].shape, poses[two]).distance)
             for one, two in self.robot.pairs
         ]
-        theirs = self.pinocchio.signed(self.rows[row])
-        off = np.array([(value > 0) != (other > 0) for value, other in zip(signed, theirs, strict=True)])
-        at = int(off.argmax()) if off.any() else int(np.argmin(signed))
-        one, two = self.robot.pairs[at]
-        kind = "rounding" if abs(signed[at]) < TOLERANCE else "of substance"
-        return (
-            f"{row}: {bodies[one].name}, {bodies[two].name}: impinge {signed[at]:.3g}, Coal {theirs[at]:.3g} ({kind})"
-        )
+        one, two = self.robot.pairs[int(np.argmin(signed))]
+        answers = f"impinge {'touches' if ours else 'free'}, {rival} {'touches' if theirs else 'free'}"
+        least = f"least signed distance {min(signed):.3g}, of Coal {min(self.pinocchio.signed(self.rows[row])):.3g}"
+        return f"{row}, {bodies[one].name}, {bodies[two].name}: {answers}, {least}"
 
     def times(self, rounds: int) -> list[list[object]]:
         """Microseconds for a configuration, by question and side: processor time, and wall time with all threads."""
@@ -186,6 +199,7 @@ class Pinocchio:
         assert len(self.geometry.collisionPairs) == len(robot.pairs)
         self.columns = _columns(path, self.model, robot)
         self.data, self.placed = self.model.createData(), self.geometry.createData()
+        self.corners = [_corners(self.geometry.geometryObjects[number].geometry) for number in numbers]
         self.pool = pinocchio.GeometryPool(self.model, self.geometry, 1)
 
     def rows(self, configurations: Any) -> Any:
@@ -225,6 +239,16 @@ def _hull(geometry: Any) -> Any:
         return geometry
     geometry.buildConvexHull(True, "Qt")
     return geometry.convex
+
+
+def _corners(shape: Any) -> Solid | None:
+    """What certificates ask of hulls and boxes."""
+    if isinstance(shape, coal.Box):
+        signs = np.array(list(product((-1.0, 1), repeat=3)))
+        return corners_alone("box", signs * shape.halfSide)
+    if isinstance(shape, coal.ConvexBase):
+        return corners_alone("hull", np.array([shape.point(number) for number in range(shape.num_points)]))
+    return None
 
 
 def _columns(path: Path, model: Any, robot: Robot) -> list[tuple[int, bool, int, float, float]]:
@@ -288,12 +312,14 @@ def write(options: argparse.Namespace, line: str, answers: list[list[object]], r
         "configurations",
         "colliding",
         "differ",
+        "impinge right",
+        "rival right",
         "largest difference of distance, m",
         "first rows that differ",
     ]
     text = [
         "# Self-collisions of robots\n",
-        ABOUT.format(line=line, rounds=options.rounds),
+        ABOUT.format(line=line, rounds=options.rounds, judged=MOST_JUDGED),
         "## Answers\n",
         markdown(compared, answers),
         "## Times\n",
