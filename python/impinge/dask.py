@@ -17,11 +17,12 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-import dask
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
 import pyarrow.dataset as ds  # type: ignore[import-untyped, unused-ignore]
 import pyarrow.parquet as pq  # type: ignore[import-untyped, unused-ignore]
+from dask.base import compute
+from dask.delayed import delayed
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import boxes, pairs_in_tile
@@ -51,7 +52,7 @@ def ask_scene(question: Question, scene: Scene, rows: Any, *, dtype: Any = "floa
     >>> ask_scene(near, scene, dask.array.from_array(poses, chunks=(2, 4, 4))).compute().tolist()
     [1.5, 1.0, 2.5]
     """
-    shared = dask.delayed(scene)
+    shared = delayed(scene)
     if isinstance(rows, (str, os.PathLike, list)):
         import dask.dataframe
 
@@ -95,7 +96,7 @@ def self_join(
     output.mkdir(parents=True)
     units = _row_groups(source, shapes.dim)
     rows = sum(unit.count_rows() for unit in units)
-    shared = dask.delayed(shapes)
+    shared = delayed(shapes)
 
     step = max(1, rows // max(1, sample))
     sampled = _run(_sample, [(unit, shared, step) for unit in units])
@@ -142,14 +143,15 @@ def _ask(block: Any, question: Question, scene: Scene) -> NDArray[Any]:
 
 
 def _ask_frame(frame: Any, question: Question, scene: Scene) -> Any:
-    import pandas as pd
+    import pandas as pd  # type: ignore[import-untyped, unused-ignore]
 
     return pd.Series(_ask(frame, question, scene), index=frame.index)
 
 
 def _run(task: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
     """A task for each tuple of arguments, in any order and place; the results in order."""
-    return dask.compute(*(dask.delayed(task, pure=False)(*given) for given in arguments))
+    results: tuple[Any, ...] = compute(*(delayed(task, pure=False)(*given) for given in arguments))  # type: ignore[no-untyped-call, unused-ignore]
+    return results
 
 
 def _row_groups(source: Any, dim: int) -> list[Any]:
