@@ -95,11 +95,11 @@ def self_join(
     scratch = output.with_name(output.name + ".scratch")
     output.mkdir(parents=True)
     units = _row_groups(source, shapes.dim)
-    rows = sum(unit.count_rows() for unit in units)
+    starts = np.cumsum([0, *(unit.count_rows() for unit in units)])
     shared = delayed(shapes)
 
-    step = max(1, rows // max(1, sample))
-    sampled = _run(_sample, [(unit, shared, step) for unit in units])
+    step = max(1, int(starts[-1]) // max(1, sample))
+    sampled = _run(_sample, [(unit, int(start), shared, step) for unit, start in zip(units, starts, strict=False)])
     picked = np.concatenate([found for _, found in sampled] or [np.empty((0, 2, shapes.dim), shapes.dtype)])
     tiles = cut_tiles(picked, number_of_tiles, clearance=clearance)
     firsts = _even_ranges([found for found, _ in sampled], len(units))
@@ -150,7 +150,8 @@ def _ask_frame(frame: Any, question: Question, scene: Scene) -> Any:
 
 def _run(task: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
     """A task for each tuple of arguments, in any order and place; the results in order."""
-    results: tuple[Any, ...] = compute(*(delayed(task, pure=False)(*given) for given in arguments))  # type: ignore[no-untyped-call, unused-ignore]
+    tasks = [delayed(task, pure=False)(*given) for given in arguments]
+    results: tuple[Any, ...] = compute(*tasks)  # type: ignore[no-untyped-call, unused-ignore]
     return results
 
 
@@ -177,17 +178,17 @@ def _read(table: Any, shapes: Scene) -> tuple[NDArray[np.uint64], Picked, NDArra
     return ids, Picked(shapes.shapes, table["shape"].to_numpy()), poses
 
 
-def _sample(unit: Any, shapes: Scene, step: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:
-    """The ids and boxes of one of so many rows."""
+def _sample(unit: Any, start: int, shapes: Scene, step: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:
+    """The ids and boxes of one of so many rows; `start` is the number of the first row."""
     table = unit.to_table(columns=["id", "shape", "pose"])
     # Not every step-th one: rows of a grid come in a rhythm.
-    ids, picked, poses = _read(table.take(np.flatnonzero(_noise(len(table)) % step == 0)), shapes)
+    ids, picked, poses = _read(table.take(np.flatnonzero(_noise(start, len(table)) % step == 0)), shapes)
     return ids, boxes(picked, poses, threads=1)
 
 
-def _noise(count: int) -> NDArray[np.uint64]:
-    """Numbers without a pattern that are the same everywhere: the finalizer of SplitMix64 (Steele, Lea and Flood 2014)."""
-    bits = np.arange(1, count + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+def _noise(start: int, count: int) -> NDArray[np.uint64]:
+    """Numbers without a pattern for so many rows, everywhere the same: SplitMix64 (Steele, Lea and Flood 2014)."""
+    bits = np.arange(start + 1, start + count + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
     return bits ^ (bits >> np.uint64(31))
