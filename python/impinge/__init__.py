@@ -10,6 +10,7 @@
 
 from impinge._native import (
     Shape,
+    boxes,
     cast_rays,
     closest_points,
     contact,
@@ -18,6 +19,7 @@ from impinge._native import (
     distance,
     impact,
     nearest,
+    pairs_in_tile,
     pairs_within,
     project_points,
     proximity,
@@ -57,6 +59,7 @@ from impinge._shapes import (
     Triangle,
     TriMesh,
 )
+from impinge._tiles import TileRows, Tiles, tiles
 from impinge._world import NO_OBJECT, NearRows, Rows, World, WorldHit
 
 __all__ = [name for name in dir() if not name.startswith("_")]

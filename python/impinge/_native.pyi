@@ -18,6 +18,7 @@ from impinge._results import (
     Witness,
 )
 from impinge._shapes import Picked
+from impinge._tiles import Tiles
 
 class Progress(Protocol):
     def update(self, count: int, /) -> Any: ...
@@ -156,6 +157,25 @@ def pairs_within(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> NDArray[np.uint32]: ...
+def boxes(
+    shapes: Shapes, poses: PosesLike, *, threads: int | None = None, progress: Progress | None = None
+) -> NDArray[Any]: ...
+def pairs_in_tile(
+    shapes: Shapes,
+    poses: PosesLike,
+    ids: ArrayLike,
+    tiles: Tiles,
+    tile: int,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> NDArray[np.uint64]: ...
+def tile_cuts(
+    boxes: NDArray[Any], number: int, clearance: float, dim: int, dtype: str
+) -> tuple[NDArray[np.uint32], NDArray[Any]]: ...
+def tile_bounds(tiles: Tiles) -> NDArray[Any]: ...
+def tiles_meeting(tiles: Tiles, boxes: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.uint32]]: ...
+def tile_owners(tiles: Tiles, points: ArrayLike) -> NDArray[np.uint32]: ...
 def project_points(
     shape: Shapes,
     poses: PosesLike,

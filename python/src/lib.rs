@@ -19,6 +19,7 @@ mod shapes;
 mod side;
 mod space;
 mod supervise;
+mod tiles;
 mod vectors;
 mod world;
 mod world_queries;
@@ -31,5 +32,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<shapes::Shape>()?;
     module.add_class::<world::World>()?;
     functions::add_to(module)?;
+    tiles::add_to(module)?;
     scene::add_to(module)
 }

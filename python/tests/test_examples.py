@@ -8,15 +8,16 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 # In the repository the guide is beside the package; where the wheel is tested it lies beside the tests.
-TEXTS = [
-    path for path in (ROOT / "README.md", ROOT / "python.md", ROOT.parent / "guide" / "python.md") if path.exists()
-]
+PAGES = ["python.md", "many-machines.md"]
+PLACES = [ROOT / "README.md", *(folder / page for page in PAGES for folder in (ROOT, ROOT.parent / "guide"))]
+TEXTS = [path for path in PLACES if path.exists()]
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
 def test_examples(path, capsys):
-    for package in re.findall(r"^(?:from|import) (trimesh|impinge\.urdf)", path.read_text(), re.MULTILINE):
-        pytest.importorskip("yourdfpy" if package == "impinge.urdf" else package)
+    needed = {"impinge.urdf": "yourdfpy", "impinge.dask": "distributed"}
+    for package in re.findall(r"^(?:from|import) (trimesh|impinge\.urdf|impinge\.dask)", path.read_text(), re.MULTILINE):
+        pytest.importorskip(needed.get(package, package))
     runpy.run_path(str(path), run_name="__main__")
     assert capsys.readouterr().out.strip(), "it says what it found"
 
@@ -30,4 +31,4 @@ def test_texts(path):
 
 
 def test_there_are_texts_and_examples():
-    assert len(TEXTS) == 2 and len(list((ROOT / "examples").glob("*.py"))) >= 10
+    assert len(TEXTS) == 3 and len(list((ROOT / "examples").glob("*.py"))) >= 12

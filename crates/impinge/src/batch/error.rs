@@ -57,6 +57,22 @@ pub enum BatchError {
         /// The distance.
         value: f64,
     },
+    /// There is no tile of this number, or no tile at all.
+    NoTile {
+        /// The number of the tile.
+        tile: u32,
+        /// How many tiles there are.
+        tiles: u32,
+    },
+    /// A cut between tiles is across no axis, not finite, or outside what it shall cut.
+    TileCut {
+        /// The number of the cut.
+        index: usize,
+        /// Its axis: 0 for x.
+        axis: u32,
+        /// Where it cuts the axis.
+        at: f64,
+    },
     /// There are more elements than 32 bits can number.
     TooMany {
         /// How many were given.
@@ -126,6 +142,13 @@ impl fmt::Display for BatchError {
             Self::Matrix { index, error } => write!(f, "matrix {index} is no pose: {error}"),
             Self::Distance { value } => {
                 write!(f, "the distance is {value}, where zero or more is needed")
+            }
+            Self::NoTile { tiles: 0, .. } => {
+                write!(f, "there are to be 0 tiles, where 1 or more are needed")
+            }
+            Self::NoTile { tile, tiles } => write!(f, "there is no tile {tile} of {tiles}"),
+            Self::TileCut { index, axis, at } => {
+                write!(f, "cut {index} at {at} on axis {axis} is outside what it cuts")
             }
             Self::TooMany { given } => {
                 write!(f, "{given} elements are more than 32 bits can number")

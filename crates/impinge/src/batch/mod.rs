@@ -18,7 +18,7 @@
 //! | [`distance`](crate::query::distance()) | [`PairBatch::distances`], [`PairBatch::nearest`] |
 //! | [`closest_points`](crate::query::closest_points()) | [`PairBatch::closest_points`] |
 //! | [`witness`](crate::query::witness()) | [`PairBatch::witnesses`] |
-//! | [`proximity`](crate::query::proximity()) | [`PairBatch::proximities`], [`pairs_within`], [`pairs_within_one`] |
+//! | [`proximity`](crate::query::proximity()) | [`PairBatch::proximities`], [`pairs_within`], [`pairs_within_one`], [`pairs_in_tile`] |
 //! | [`contact`](crate::query::contact()) | [`PairBatch::contacts`] |
 //! | [`impact`](crate::query::impact()) | [`PairBatch::impacts`] |
 //! | [`PairManifoldGenerator`](crate::narrow_phase::PairManifoldGenerator), new | [`PairBatch::manifolds`] |
@@ -48,6 +48,7 @@ mod rays;
 mod rows;
 mod side;
 mod tables;
+mod tiles;
 mod within;
 
 pub use columns::{
@@ -65,4 +66,5 @@ pub use rays::RayColumns;
 pub use rows::ManifoldRows;
 pub use side::{Shapes, Side};
 pub(crate) use tables::BatchTables;
-pub use within::{pairs_within, pairs_within_one};
+pub use tiles::{TileCut, TileRows, Tiles, pairs_in_tile, tiles};
+pub use within::{boxes, pairs_within, pairs_within_one};

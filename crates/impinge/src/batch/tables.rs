@@ -2,9 +2,10 @@
 
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, HitColumns, ImpactColumns, ManifoldRows,
-    PairBatch, PointBatch, ProjectionColumns, RayColumns, Side, WitnessColumns, manifolds, pairs,
-    points, rays, within,
+    PairBatch, PointBatch, ProjectionColumns, RayColumns, Side, Tiles, WitnessColumns, manifolds,
+    pairs, points, rays, within,
 };
+use crate::bounding_volume::Aabb;
 use crate::math::Space;
 use crate::narrow_phase::ContactPrediction;
 use crate::query::{ImpactOptions, Proximity};
@@ -20,6 +21,8 @@ pub(crate) struct BatchTables<N: Space<D>, const D: usize> {
     pub(super) manifolds: ManifoldsFn<N, D>,
     pub(super) nearest: NearestFn<N, D>,
     pub(super) pairs_within: PairsWithinFn<N, D>,
+    pub(super) boxes: BoxesFn<N, D>,
+    pub(super) pairs_in_tile: PairsInTileFn<N, D>,
     pub(super) project: ProjectAllFn<N, D>,
     pub(super) signed_distances: PointsFn<N, D, N>,
     pub(super) contains: PointsFn<N, D, bool>,
@@ -57,6 +60,10 @@ type PairsWithinFn<N, const D: usize> = fn(
     N,
     &Control<'_>,
 ) -> Result<Vec<[u32; 2]>, BatchError>;
+type BoxesFn<N, const D: usize> =
+    fn(&Side<'_, N, D>, &Control<'_>) -> Result<Vec<Option<Aabb<N, D>>>, BatchError>;
+type PairsInTileFn<N, const D: usize> =
+    fn(&Side<'_, N, D>, &Tiles<N, D>, u32, &Control<'_>) -> Result<Vec<[u32; 2]>, BatchError>;
 type ProjectAllFn<N, const D: usize> =
     fn(&PointBatch<'_, N, D>, bool, &Control<'_>, ProjectionColumns<'_, N, D>) -> Done;
 type PointsFn<N, const D: usize, T> = fn(&PointBatch<'_, N, D>, &Control<'_>, &mut [T]) -> Done;
@@ -75,6 +82,8 @@ impl<N: Space<D>, const D: usize> BatchTables<N, D> {
             manifolds: manifolds::manifolds,
             nearest: pairs::nearest,
             pairs_within: within::pairs_of,
+            boxes: within::boxes_of,
+            pairs_in_tile: within::pairs_of_tile,
             project: points::project,
             signed_distances: points::signed_distances,
             contains: points::contains,

@@ -18,7 +18,7 @@ use core::ops::Range;
 
 use super::control::Progress;
 use super::side::PreparedSide;
-use super::{BatchError, Control, Side};
+use super::{BatchError, Control, Side, Tiles};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::Placing;
 use crate::collide::parts::bounds::enclosing;
@@ -89,6 +89,34 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
     (N::tables().batch.pairs_within)(side, None, distance, control)
 }
 
+/// The box of each element of a side, grown by the rounding errors of its pairs: what [`tiles()`](super::tiles())
+/// and [`Tiles::meeting`] ask for.
+///
+/// `None` for what is nowhere: with a pose that is not finite, or a composite without parts. Half-spaces, and what else
+/// has no end, have infinite faces. The boxes follow from the shapes and poses alone.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, boxes};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, places) = (Ball::new(1.0_f64), [4.0, f64::NAN].map(|x| Isometry::translation(x, 0.0)));
+/// let found = boxes(&Side::try_new(Shapes::One(&ball), &places)?, &Control::new())?;
+/// let aabb = found[0].expect("it is somewhere");
+/// assert!(aabb.mins().x < 3.0 && (aabb.mins().x - 3.0).abs() < 1e-12);
+/// assert_eq!(found[1], None);
+/// # Ok::<(), BatchError>(())
+/// ```
+///
+/// # Errors
+/// [`BatchError::TooMany`] if 32 bits cannot number the elements, [`BatchError::Cancelled`].
+pub fn boxes<N: Space<D>, const D: usize>(
+    side: &Side<'_, N, D>,
+    control: &Control<'_>,
+) -> Result<Vec<Option<Aabb<N, D>>>, BatchError> {
+    (N::tables().batch.boxes)(side, control)
+}
+
 /// The elements of a side and their boxes.
 struct BoxedSide<'a, N: Real, const D: usize> {
     side: PreparedSide<'a, N, D>,
@@ -103,17 +131,14 @@ pub(super) fn pairs_of<N: Space<D>, const D: usize>(
     distance: N,
     control: &Control<'_>,
 ) -> Result<Vec<[u32; 2]>, BatchError> {
-    let is_usable = distance >= N::ZERO;
-    if !is_usable {
-        return Err(BatchError::Distance { value: distance.as_f64() });
-    }
-    let boxed1 = BoxedSide::new(side1)?;
+    is_distance(distance)?;
+    let boxed1 = BoxedSide::new(side1, &Control::new())?;
     let mut pairs = match side2 {
         None => boxed1.pairs_with(&boxed1, distance, control, |walker, found| {
             (walker < found).then_some([walker, found])
         }),
         Some(side2) => {
-            let boxed2 = BoxedSide::new(side2)?;
+            let boxed2 = BoxedSide::new(side2, &Control::new())?;
             if side1.len() < side2.len() {
                 boxed2.pairs_with(&boxed1, distance, control, |walker, found| Some([found, walker]))
             } else {
@@ -125,8 +150,53 @@ pub(super) fn pairs_of<N: Space<D>, const D: usize>(
     Ok(pairs)
 }
 
+/// See [`pairs_in_tile`](super::pairs_in_tile); pairs `[i, j]` with i < j, in any order.
+pub(super) fn pairs_of_tile<N: Space<D>, const D: usize>(
+    side: &Side<'_, N, D>,
+    tiles: &Tiles<N, D>,
+    tile: u32,
+    control: &Control<'_>,
+) -> Result<Vec<[u32; 2]>, BatchError> {
+    let boxed = BoxedSide::new(side, &Control::new())?;
+    let is_own = |walker: u32, found: u32| {
+        let boxes = [walker, found].map(|element| &boxed.boxes[element as usize]);
+        let [Some(box1), Some(box2)] = boxes else { return false };
+        tiles.owner_of_pair(box1, box2) == tile
+    };
+    boxed.pairs_with(&boxed, tiles.clearance(), control, |walker, found| {
+        (walker < found && is_own(walker, found)).then_some([walker, found])
+    })
+}
+
+/// See [`boxes()`].
+pub(super) fn boxes_of<N: Space<D>, const D: usize>(
+    side: &Side<'_, N, D>,
+    control: &Control<'_>,
+) -> Result<Vec<Option<Aabb<N, D>>>, BatchError> {
+    Ok(BoxedSide::new(side, control)?.boxes)
+}
+
+/// A distance up to which pairs are wanted is zero or more.
+pub(super) fn is_distance<N: Real>(value: N) -> Result<(), BatchError> {
+    let is_usable = value >= N::ZERO;
+    if is_usable { Ok(()) } else { Err(BatchError::Distance { value: value.as_f64() }) }
+}
+
+/// By how much a box is grown to find those within a distance.
+fn margin<N: Real>(distance: N) -> N {
+    distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON
+}
+
+/// By how much both of two boxes are grown to overlap if they are within a distance; twice this is not less than what one
+/// alone is grown by, also where the half of the smallest number is zero.
+pub(super) fn half_margin<N: Real>(distance: N) -> N {
+    let whole = margin(distance);
+    let half = whole * N::HALF;
+    if whole.is_finite_number() { max(half, whole - half) } else { whole }
+}
+
 impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
-    fn new(side: &Side<'a, N, D>) -> Result<Self, BatchError> {
+    fn new(side: &Side<'a, N, D>, control: &Control<'_>) -> Result<Self, BatchError> {
         let given = side.len();
         // The largest number is that of no element.
         if u32::try_from(given).is_err() {
@@ -138,7 +208,7 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
                 *place = grown_box(&side, element);
             }
         };
-        Progress::new(&Control::new()).run(given, &mut boxes[..], work)?;
+        Progress::new(control).run(given, &mut boxes[..], work)?;
         Ok(Self { side, boxes })
     }
 
@@ -151,7 +221,7 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         named: impl Fn(u32, u32) -> Option<[u32; 2]> + Sync,
     ) -> Result<Vec<[u32; 2]>, BatchError> {
         let (numbers, tree) = other.tree()?;
-        let margin = distance + distance * N::lit(ROUNDING_ERRORS) * N::EPSILON;
+        let margin = margin(distance);
         let near = |walker: usize, index: usize| {
             let pair = named(number_of(walker), numbers[index])?;
             let (one, found) =

@@ -59,8 +59,8 @@ pub mod debug_render {
 /// One question about many placed shapes, with the answers in columns.
 pub mod batch {
     pub use crate::batch::{
-        AsPose, BatchError, Control, MatrixError, NO_FEATURE, OnePose, PoseSource, pairs_within,
-        pairs_within_one,
+        AsPose, BatchError, Control, MatrixError, NO_FEATURE, OnePose, PoseSource, TileCut,
+        TileRows, boxes, pairs_in_tile, pairs_within, pairs_within_one, tiles,
     };
 
     /// The shapes of one side of a batch.
@@ -87,6 +87,8 @@ pub mod batch {
     pub type ProjectionColumns<'a, N> = crate::batch::ProjectionColumns<'a, N, 3>;
     /// Slots for hits of rays.
     pub type HitColumns<'a, N> = crate::batch::HitColumns<'a, N, 3>;
+    /// A division of space into tiles.
+    pub type Tiles<N> = crate::batch::Tiles<N, 3>;
     /// The contact points of many pairs.
     pub type ManifoldRows<N> = crate::batch::ManifoldRows<N, 3>;
 }

@@ -9,4 +9,5 @@ mod poses;
 mod rays;
 mod refused;
 mod scene;
+mod tiles;
 mod within;

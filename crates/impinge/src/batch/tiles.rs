@@ -1,0 +1,399 @@
+//! The pairs of more objects than one machine holds: space is cut into tiles, and each tile names its own pairs.
+//!
+//! ```text
+//!   cut 0 ──── below ──── cut 1 ── tile 0       ┌────┬────────┐
+//!     │                     └───── tile 1       │ 1  │   3    │    an object goes to every tile that its box,
+//!     └─ at or above ──── cut 2 ── tile 2       ├────┼────────┤    grown by half the clearance, meets
+//!                           └───── tile 3       │ 0  │   2    │
+//!                                               └────┴────────┘    a pair belongs to one of them
+//! ```
+//!
+//! The tiles are the leaves of a k-d tree (Bentley, "Multidimensional binary search trees used for associative
+//! searching", 1975) over the boxes of a sample, so that each has about as many objects, however uneven they lie.
+//! Two near objects meet where their grown boxes overlap. The lowest corner of this overlap is a point, and the pair
+//! belongs to the tile that holds it: the reference point of Dittrich and Seeger ("Data redundancy and duplicate
+//! detection in spatial join processing", 2000). Both boxes hold that point, so both objects are given to the tile.
+//!
+//! A subtree with n tiles has n - 1 cuts, of which its first ⌊n/2⌋ tiles take the next ⌊n/2⌋ - 1: the cuts in this
+//! order, and the clearance, are all that a [`Tiles`] is.
+
+use super::within::{half_margin, is_distance};
+use super::{BatchError, Control, Side};
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::math::order::order_of;
+use crate::math::{Point, Real, Space, max};
+
+/// A plane across an axis: what is less than `at` there is below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TileCut<N> {
+    /// The axis: 0 for x.
+    pub axis: u32,
+    /// Where it cuts the axis.
+    pub at: N,
+}
+
+/// A division of space into tiles, and the clearance up to which pairs are wanted.
+///
+/// [`tiles()`] makes it. It is a plain value: [`Tiles::cuts`] and [`Tiles::clearance`] are numbers from which
+/// [`Tiles::try_from_cuts`] makes an equal one, on another machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tiles<N: Real, const D: usize> {
+    clearance: N,
+    cuts: Vec<TileCut<N>>,
+}
+
+/// The tiles of many objects: those of object `i` are `tiles[starts[i]..starts[i + 1]]`, ascending.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TileRows {
+    /// Where the tiles of each object begin, and where those of the last end.
+    pub starts: Vec<usize>,
+    /// The numbers of tiles.
+    pub tiles: Vec<u32>,
+}
+
+/// Cuts space into `number` tiles with about as many of the objects in each.
+///
+/// `boxes` are those of the objects or of a sample of them, as [`boxes()`](super::boxes) has them; `None` does not
+/// count. The tiles follow from the arguments alone. They need not fit the objects that are later given to them: any
+/// tiles lead to the same pairs, others only to more work for some of them. There may be more tiles than objects,
+/// and no boxes at all; then some tiles are empty.
+///
+/// Cost: O(n log n log t) for n boxes and t tiles.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control, Shapes, Side, boxes, pairs_in_tile, tiles};
+/// use impinge::dim2::math::Isometry;
+/// use impinge::dim2::shape::Ball;
+///
+/// let (ball, ids) = (Ball::new(1.0_f64), [70, 71, 72, 73]);
+/// let places = [0.0, 2.5, 6.0, 8.5].map(|x| Isometry::translation(x, 0.0));
+/// let row = Side::try_new(Shapes::One(&ball), &places)?;
+/// let boxes = boxes(&row, &Control::new())?;
+/// let tiles = tiles(&boxes, 2, 1.0)?;
+/// let rows = tiles.meeting(&boxes);
+/// assert_eq!((rows.starts, rows.tiles), (vec![0, 1, 2, 3, 4], vec![0, 0, 1, 1]), "two in each");
+/// // Here each tile gets everything; what it has no part in only costs time.
+/// assert_eq!(pairs_in_tile(&row, &ids, &tiles, 0, &Control::new())?, [[70, 71]]);
+/// assert_eq!(pairs_in_tile(&row, &ids, &tiles, 1, &Control::new())?, [[72, 73]]);
+/// # Ok::<(), BatchError>(())
+/// ```
+///
+/// # Errors
+/// [`BatchError::NoTile`] if `number` is zero, [`BatchError::Distance`] if `clearance` is negative or NaN.
+pub fn tiles<N: Real, const D: usize>(
+    boxes: &[Option<Aabb<N, D>>],
+    number: u32,
+    clearance: N,
+) -> Result<Tiles<N, D>, BatchError> {
+    is_distance(clearance)?;
+    if number == 0 {
+        return Err(BatchError::NoTile { tile: 0, tiles: 0 });
+    }
+    let mut tiles = Tiles { clearance, cuts: Vec::with_capacity(number as usize - 1) };
+    let grown = boxes.iter().flatten().map(|aabb| tiles.grown(aabb));
+    let grown = grown.filter(Aabb::holds_finite_point).collect();
+    tiles.divide(grown, &Aabb::unbounded(), number);
+    Ok(tiles)
+}
+
+/// The pairs of a tile: those of its objects that touch, overlap, or are at most the clearance of the tiles apart, and
+/// that belong to the tile; as pairs of ids, the lower first, ascending.
+///
+/// `side` has the objects of which [`Tiles::meeting`] names the tile, in any order; objects beside them cost time and
+/// change nothing. `ids` has an id for each, no two equal. The lists of all tiles together hold every pair once: those
+/// that [`pairs_within_one`](super::pairs_within_one) finds among all objects, for any tiles.
+///
+/// Cost: that of `pairs_within_one` for the objects of the tile; pairs of other tiles are not looked at closely.
+///
+/// # Errors
+/// [`BatchError::Length`] if `ids` has not as many elements as the side, [`BatchError::NoTile`] if there is no tile of
+/// this number, [`BatchError::TooMany`] if 32 bits cannot number the elements, [`BatchError::Cancelled`].
+pub fn pairs_in_tile<N: Space<D>, const D: usize>(
+    side: &Side<'_, N, D>,
+    ids: &[u64],
+    tiles: &Tiles<N, D>,
+    tile: u32,
+    control: &Control<'_>,
+) -> Result<Vec<[u64; 2]>, BatchError> {
+    if ids.len() != side.len() {
+        return Err(BatchError::Length { argument: "ids", given: ids.len(), needed: side.len() });
+    }
+    if tile >= tiles.number() {
+        return Err(BatchError::NoTile { tile, tiles: tiles.number() });
+    }
+    let pairs = (N::tables().batch.pairs_in_tile)(side, tiles, tile, control)?;
+    let named = pairs.into_iter().map(|pair| {
+        let [one, other] = pair.map(|element| ids[element as usize]);
+        [one.min(other), one.max(other)]
+    });
+    let mut named: Vec<[u64; 2]> = named.collect();
+    named.sort_unstable();
+    Ok(named)
+}
+
+impl TileRows {
+    /// The tiles of an object.
+    ///
+    /// # Panics
+    /// If there is no such object.
+    #[must_use]
+    pub fn tiles_of(&self, object: usize) -> &[u32] {
+        &self.tiles[self.starts[object]..self.starts[object + 1]]
+    }
+}
+
+/// A subtree: its first cut, its first tile, and how many tiles it has.
+#[derive(Clone, Copy)]
+struct Subtree {
+    cut: usize,
+    tile: u32,
+    tiles: u32,
+}
+
+impl Subtree {
+    /// What lies below its first cut, and the rest.
+    const fn halves(self) -> [Self; 2] {
+        let below = self.tiles / 2;
+        let next = self.cut + below as usize;
+        [
+            Self { cut: self.cut + 1, tiles: below, ..self },
+            Self { cut: next, tile: self.tile + below, tiles: self.tiles - below },
+        ]
+    }
+}
+
+impl<N: Real, const D: usize> Tiles<N, D> {
+    /// The tiles with this clearance and these cuts, in the order of [`Tiles::cuts`]; one tile for no cuts.
+    ///
+    /// # Errors
+    /// [`BatchError::Distance`] if the clearance is negative or NaN, [`BatchError::TileCut`] for the first cut that is
+    /// across no axis, not finite, or outside what it shall cut, [`BatchError::TooMany`] if 32 bits cannot number the
+    /// tiles.
+    pub fn try_from_cuts(clearance: N, cuts: Vec<TileCut<N>>) -> Result<Self, BatchError> {
+        is_distance(clearance)?;
+        if u32::try_from(cuts.len() + 1).is_err() {
+            return Err(BatchError::TooMany { given: cuts.len() + 1 });
+        }
+        let is_cut = |cut: &TileCut<N>| (cut.axis as usize) < D && cut.at.is_finite_number();
+        let wrong = cuts.iter().position(|cut| !is_cut(cut));
+        let tiles = Self { clearance, cuts };
+        let wrong = wrong.or_else(|| tiles.first_outside(tiles.root(), &Aabb::unbounded()));
+        match wrong {
+            None => Ok(tiles),
+            Some(index) => {
+                let TileCut { axis, at } = tiles.cuts[index];
+                Err(BatchError::TileCut { index, axis, at: at.as_f64() })
+            }
+        }
+    }
+
+    /// How many tiles there are.
+    #[must_use]
+    pub fn number(&self) -> u32 {
+        self.root().tiles
+    }
+
+    /// Pairs count that are at most so far apart.
+    #[must_use]
+    pub const fn clearance(&self) -> N {
+        self.clearance
+    }
+
+    /// The cuts: one less than there are tiles, each before those of what it cuts, those below it first.
+    #[must_use]
+    pub fn cuts(&self) -> &[TileCut<N>] {
+        &self.cuts
+    }
+
+    /// The part of space that each tile is; infinite outwards. A point on a cut lies in the tile above it.
+    #[must_use]
+    pub fn bounds(&self) -> Vec<Aabb<N, D>> {
+        let mut all = Vec::with_capacity(self.cuts.len() + 1);
+        self.list_bounds(self.root(), &Aabb::unbounded(), &mut all);
+        all
+    }
+
+    /// The tile that a point lies in. What is not a number counts as above every cut.
+    #[must_use]
+    pub fn owner(&self, point: &Point<N, D>) -> u32 {
+        let mut subtree = self.root();
+        while subtree.tiles > 1 {
+            let cut = &self.cuts[subtree.cut];
+            let [below, above] = subtree.halves();
+            subtree = if point[cut.axis as usize] < cut.at { below } else { above };
+        }
+        subtree.tile
+    }
+
+    /// The tiles to which each object must be given: those that its box, grown by half the clearance, meets.
+    ///
+    /// `boxes` are those of [`boxes()`](super::boxes), of all objects or of any part of them. What has no box has no
+    /// tile. An unbounded box, or a huge one, may meet them all.
+    ///
+    /// Cost: O(log t + r) for t tiles and each of the boxes with r of them.
+    #[must_use]
+    pub fn meeting(&self, boxes: &[Option<Aabb<N, D>>]) -> TileRows {
+        let mut rows = TileRows { starts: vec![0], tiles: Vec::with_capacity(boxes.len()) };
+        for aabb in boxes {
+            if let Some(aabb) = aabb {
+                self.list_meeting(self.root(), &self.grown(aabb), &mut rows.tiles);
+            }
+            rows.starts.push(rows.tiles.len());
+        }
+        rows
+    }
+
+    /// The tile that a pair with these boxes belongs to.
+    pub(super) fn owner_of_pair(&self, box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> u32 {
+        let [low1, low2] = [box1, box2].map(|aabb| *self.grown(aabb).mins());
+        self.owner(&Point::from(low1.coords.zip_map(&low2.coords, max)))
+    }
+
+    /// Two of these overlap if their objects are near.
+    fn grown(&self, aabb: &Aabb<N, D>) -> Aabb<N, D> {
+        aabb.loosened(half_margin(self.clearance))
+    }
+
+    fn root(&self) -> Subtree {
+        let cuts = u32::try_from(self.cuts.len()).expect("32 bits can number the tiles");
+        Subtree { cut: 0, tile: 0, tiles: cuts + 1 }
+    }
+
+    /// Cuts a part of space with the boxes that meet it into tiles. The depth is the logarithm of their number.
+    fn divide(&mut self, boxes: Vec<Aabb<N, D>>, bounds: &Aabb<N, D>, tiles: u32) {
+        if tiles == 1 {
+            return;
+        }
+        let cut = best_cut(&boxes, bounds, tiles);
+        self.cuts.push(cut);
+        let [bounds_below, bounds_above] = halves(bounds, &cut);
+        let (axis, at) = (cut.axis as usize, cut.at);
+        let below = boxes.iter().filter(|aabb| aabb.mins()[axis] < at).copied().collect();
+        let above = boxes.iter().filter(|aabb| aabb.maxs()[axis] >= at).copied().collect();
+        drop(boxes);
+        self.divide(below, &bounds_below, tiles / 2);
+        self.divide(above, &bounds_above, tiles - tiles / 2);
+    }
+
+    fn list_meeting(&self, subtree: Subtree, grown: &Aabb<N, D>, found: &mut Vec<u32>) {
+        if subtree.tiles == 1 {
+            found.push(subtree.tile);
+            return;
+        }
+        let cut = &self.cuts[subtree.cut];
+        let [below, above] = subtree.halves();
+        if grown.mins()[cut.axis as usize] < cut.at {
+            self.list_meeting(below, grown, found);
+        }
+        if grown.maxs()[cut.axis as usize] >= cut.at {
+            self.list_meeting(above, grown, found);
+        }
+    }
+
+    fn list_bounds(&self, subtree: Subtree, bounds: &Aabb<N, D>, all: &mut Vec<Aabb<N, D>>) {
+        if subtree.tiles == 1 {
+            all.push(*bounds);
+            return;
+        }
+        let parts = halves(bounds, &self.cuts[subtree.cut]);
+        for (half, part) in subtree.halves().into_iter().zip(&parts) {
+            self.list_bounds(half, part, all);
+        }
+    }
+
+    /// The first cut that is outside the part of space that it cuts.
+    fn first_outside(&self, subtree: Subtree, bounds: &Aabb<N, D>) -> Option<usize> {
+        if subtree.tiles == 1 {
+            return None;
+        }
+        let cut = &self.cuts[subtree.cut];
+        let axis = cut.axis as usize;
+        if cut.at < bounds.mins()[axis] || cut.at > bounds.maxs()[axis] {
+            return Some(subtree.cut);
+        }
+        let ([below, above], [low, high]) = (subtree.halves(), halves(bounds, cut));
+        self.first_outside(below, &low).or_else(|| self.first_outside(above, &high))
+    }
+}
+
+/// What lies below a cut through a box, and the rest.
+fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aabb<N, D>; 2] {
+    let (mut below, mut above) = (*bounds.maxs(), *bounds.mins());
+    below[cut.axis as usize] = cut.at;
+    above[cut.axis as usize] = cut.at;
+    [Aabb::new(*bounds.mins(), below), Aabb::new(above, *bounds.maxs())]
+}
+
+/// What a cut leads to, the better the less: the number of objects in a tile of the fuller side, times a common number,
+/// and the number of objects on both sides.
+type Load = (u64, usize);
+
+/// The cut with the least load; anywhere inside where the bounds and all boxes have no lower end.
+fn best_cut<N: Real, const D: usize>(
+    boxes: &[Aabb<N, D>],
+    bounds: &Aabb<N, D>,
+    tiles: u32,
+) -> TileCut<N> {
+    let mut best: Option<(Load, TileCut<N>)> = None;
+    for axis in 0..D {
+        let faces = Faces::along(axis, boxes);
+        for at in faces.even_cuts([bounds.mins()[axis], bounds.maxs()[axis]], tiles) {
+            let load = faces.load(at, tiles);
+            if best.is_none_or(|(least, _)| load < least) {
+                let axis = u32::try_from(axis).expect("few dimensions");
+                best = Some((load, TileCut { axis, at }));
+            }
+        }
+    }
+    let high = bounds.maxs()[0];
+    let at = if high.is_finite_number() { high } else { N::ZERO };
+    best.map_or(TileCut { axis: 0, at }, |(_, cut)| cut)
+}
+
+/// The faces of boxes across an axis, ascending.
+struct Faces<N> {
+    lows: Vec<N>,
+    highs: Vec<N>,
+}
+
+impl<N: Real> Faces<N> {
+    fn along<const D: usize>(axis: usize, boxes: &[Aabb<N, D>]) -> Self {
+        let sorted = |mut faces: Vec<N>| {
+            faces.sort_unstable_by_key(|&face| order_of(face));
+            faces
+        };
+        let lows = boxes.iter().map(|aabb| aabb.mins()[axis]);
+        let highs = boxes.iter().map(|aabb| aabb.maxs()[axis]);
+        Self { lows: sorted(lows.collect()), highs: sorted(highs.collect()) }
+    }
+
+    /// The lower faces between which the loads of both sides are even, the first, and the lower bound: nothing
+    /// that lies above it is then below the cut, which is best where boxes all overlap.
+    fn even_cuts(&self, [low, high]: [N; 2], tiles: u32) -> impl Iterator<Item = N> {
+        let begin = self.lows.partition_point(|&face| face <= low);
+        let inside = &self.lows[begin..];
+        let [below, above] = [u64::from(tiles / 2), u64::from(tiles - tiles / 2)];
+        let is_light = |face: &N| {
+            let [few, many] = self.counts(*face);
+            (few as u64) * above < (many as u64) * below
+        };
+        let even = inside.partition_point(is_light);
+        let cuts = [Some(&low), inside.first(), inside.get(even.wrapping_sub(1)), inside.get(even)];
+        let cuts =
+            cuts.map(|face| face.copied().filter(|face| face.is_finite_number() && *face <= high));
+        cuts.into_iter().flatten()
+    }
+
+    /// How many boxes meet what is below a cut, and the rest.
+    fn counts(&self, at: N) -> [usize; 2] {
+        let before = |faces: &[N]| faces.partition_point(|&face| face < at);
+        [before(&self.lows), self.highs.len() - before(&self.highs)]
+    }
+
+    fn load(&self, at: N, tiles: u32) -> Load {
+        let [below, above] = self.counts(at);
+        let below_each = (below as u64) * u64::from(tiles - tiles / 2);
+        let above_each = (above as u64) * u64::from(tiles / 2);
+        (below_each.max(above_each), below + above)
+    }
+}

@@ -1,0 +1,123 @@
+"""Tiles: space in parts with about as many objects in each, so that many processes share the pairs of a large scene."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from impinge import _native
+
+
+class TileRows(NamedTuple):
+    """Lists of tiles: those of object i are `starts[i]` to `starts[i + 1]`."""
+
+    starts: NDArray[np.int64]
+    tile: NDArray[np.uint32]
+
+
+class Tiles:
+    """A division of space into tiles, and the clearance up to which pairs are wanted: `tiles` makes it.
+
+    It is made of plain numbers, from which an equal one is made elsewhere; it pickles. axes: (t - 1,) uint32, the axis that
+    each cut is across. cuts: (t - 1,), where. Each comes before the cuts of what it cuts, those below it first.
+
+    >>> import impinge
+    >>> tiles = impinge.Tiles([0, 1], [2.5, 0.0], dim=2)
+    >>> len(tiles), tiles.owner([[0, 7], [3, -1], [3, 0]]).tolist()
+    (3, [0, 1, 2])
+    """
+
+    def __init__(
+        self, axes: ArrayLike, cuts: ArrayLike, *, clearance: float = 0.0, dim: int = 3, dtype: str = "float64"
+    ) -> None:
+        self.axes: NDArray[np.uint32] = _column(axes, np.uint32, "axes")
+        self.cuts: NDArray[Any] = _column(cuts, dtype, "cuts")
+        self.clearance, self.dim, self.dtype = float(clearance), dim, dtype
+        # The library refuses what are no tiles.
+        self._bounds = _native.tile_bounds(self)
+
+    def __len__(self) -> int:
+        return len(self._bounds)
+
+    @property
+    def bounds(self) -> NDArray[Any]:
+        """The lower and the upper corner of each tile, infinite outwards: (t, 2, D)."""
+        return self._bounds.copy()
+
+    def meeting(self, boxes: ArrayLike) -> TileRows:
+        """The tiles to which each object must be given: those that its box, grown by half the clearance, meets.
+
+        boxes: (n, 2, D) of `impinge.boxes`. What has a box of NaN has no tile; a huge object may be in all of them.
+
+        >>> import impinge
+        >>> impinge.Tiles([0], [2.5]).meeting(impinge.boxes(impinge.Ball(1), impinge.Poses([[0, 0, 0], [2, 0, 0]])))
+        TileRows(starts=array([0, 1, 3]), tile=array([0, 0, 1], dtype=uint32))
+        """
+        return TileRows(*_native.tiles_meeting(self, _boxes(boxes, self.dim, self.dtype)))
+
+    def owner(self, points: ArrayLike) -> NDArray[np.uint32]:
+        """The tile that each point (n, D) lies in; on a cut it is the one above."""
+        return _native.tile_owners(self, points)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Tiles):
+            return NotImplemented
+        mine, theirs = (
+            (tiles.dim, tiles.dtype, tiles.clearance, tiles.axes.tolist(), tiles.cuts.tolist())
+            for tiles in (self, other)
+        )
+        return mine == theirs
+
+    def __hash__(self) -> int:
+        return hash((self.dim, self.dtype, self.clearance, self.cuts.tobytes()))
+
+    def __repr__(self) -> str:
+        return f"<impinge.Tiles of {len(self)} tiles, {self.dim}D {self.dtype}>"
+
+
+def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
+    """Cuts space into so many tiles with about as many objects in each.
+
+    boxes: (n, 2, D) of `impinge.boxes`, of all objects or of a sample of some hundred for each tile; of float32 for shapes of
+    float32. clearance: pairs are wanted that are at most so far apart. The tiles follow from the arguments alone, and the
+    pairs do not depend on them: a poor sample costs time only. ValueError names a row that is no box.
+
+    >>> import impinge, numpy as np
+    >>> poses = impinge.Poses(np.random.default_rng(1).normal(size=(1000, 3)) ** 3)
+    >>> found = impinge.tiles(impinge.boxes(impinge.Ball(0.01), poses), 8)
+    >>> counts = np.bincount(found.meeting(impinge.boxes(impinge.Ball(0.01), poses)).tile)
+    >>> len(found), bool(counts.max() < 2 * counts.mean())
+    (8, True)
+    """
+    array = np.asarray(boxes)
+    dtype = "float32" if array.dtype == np.float32 else "float64"
+    dim = array.shape[-1] if array.ndim == 3 and array.shape[-1] in (2, 3) else 3
+    axes, cuts = _native.tile_cuts(_boxes(array, dim, dtype), number, clearance, dim, dtype)
+    return Tiles(axes, cuts, clearance=clearance, dim=dim, dtype=dtype)
+
+
+def _boxes(given: ArrayLike, dim: int, dtype: str) -> NDArray[Any]:
+    array = np.ascontiguousarray(given, dtype=dtype)
+    if array.ndim != 3 or array.shape[1:] != (2, dim):
+        raise ValueError(f"boxes has the shape {array.shape}, where (n, 2, {dim}) is needed in {dim}D")
+    return array
+
+
+def _column(given: ArrayLike, dtype: Any, name: str) -> NDArray[Any]:
+    array = np.ascontiguousarray(given, dtype=dtype)
+    if array.ndim != 1:
+        raise ValueError(f"{name} has the shape {array.shape}, where (n,) is needed")
+    return array
+
+
+def ids(given: ArrayLike) -> NDArray[np.uint64]:
+    """An argument with numbers of objects, as an array (n,)."""
+    array = np.asarray(given)
+    if array.size and not np.issubdtype(array.dtype, np.integer):
+        raise ValueError(f"ids is {array.dtype}, where integers are needed")
+    if array.size and array.min() < 0:
+        row = int(np.argmax(array < 0))
+        raise ValueError(f"ids[{row}] is {array[row]}, where 0 or more is needed")
+    return _column(array, np.uint64, "ids")

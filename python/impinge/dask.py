@@ -1,0 +1,257 @@
+"""Many processes or machines with Dask: questions about many poses and one scene, and the pairs of a scene too large for
+one.
+
+    from impinge.dask import ask_scene, self_join
+
+Two recipes over the functions of `impinge`; tasks are pure, so that Dask does again what a lost worker had done. They run on
+the current `distributed.Client`, else on Dask's own threads. `pip install 'impinge[dask]'` installs what they need.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import uuid
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
+import pyarrow.dataset as ds  # type: ignore[import-untyped, unused-ignore]
+import pyarrow.parquet as pq  # type: ignore[import-untyped, unused-ignore]
+from dask.base import compute
+from dask.delayed import delayed
+from numpy.typing import ArrayLike, NDArray
+
+from impinge._native import boxes, pairs_in_tile
+from impinge._poses import Poses
+from impinge._scene import Scene
+from impinge._shapes import Picked
+from impinge._tiles import Tiles, tiles as cut_tiles
+from impinge._world import World
+
+Question = Callable[[World, Any], NDArray[Any]]
+
+
+def ask_scene(question: Question, scene: Scene, rows: Any, *, dtype: Any = "float64") -> Any:
+    """Asks a scene about many rows, such as poses or configurations of a robot, in blocks.
+
+    rows: a Dask Array (n, ...), a Dask DataFrame, or a path or paths of Parquet. question(world, block): gets the scene as a
+    `World`, which each process makes once and keeps by its bytes, and a NumPy array (m, ...) or a pandas DataFrame of m
+    rows; returns an array (m,) of this dtype. Other threads may be asking the same world: it is to be read only.
+
+    Returns a Dask Array (n,), or a Dask Series with the index of the DataFrame, in the order of the rows and not yet computed.
+
+    >>> import dask.array, impinge
+    >>> from impinge.dask import ask_scene
+    >>> scene = impinge.Scene([impinge.Ball(1)] * 2, impinge.Poses([[0, 0, 0], [5, 0, 0]]))
+    >>> poses = impinge.Poses([[-3, 0, 0], [2.5, 0, 0], [9, 0, 0]]).matrices
+    >>> near = lambda world, poses: world.nearest(impinge.Ball(0.5), poses).distance
+    >>> ask_scene(near, scene, dask.array.from_array(poses, chunks=(2, 4, 4))).compute().tolist()
+    [1.5, 1.0, 2.5]
+    """
+    shared = delayed(scene)
+    if isinstance(rows, (str, os.PathLike, list)):
+        import dask.dataframe
+
+        rows = dask.dataframe.read_parquet(rows)
+    if hasattr(rows, "map_partitions"):
+        return rows.map_partitions(_ask_frame, question, shared, meta=(None, dtype))
+    if not hasattr(rows, "map_blocks"):
+        raise TypeError(f"rows is no Dask Array, Dask DataFrame or path: {type(rows).__name__}")
+    whole = rows.rechunk({axis: -1 for axis in range(1, rows.ndim)})
+    inner = list(range(1, rows.ndim))
+    return whole.map_blocks(_ask, question=question, scene=shared, dtype=dtype, drop_axis=inner, meta=np.empty(0, dtype))
+
+
+def self_join(
+    source: str | os.PathLike[str] | Sequence[str],
+    shapes: Scene,
+    output: str | os.PathLike[str],
+    *,
+    clearance: float = 0.0,
+    number_of_tiles: int = 64,
+    sample: int = 200_000,
+) -> int:
+    """Writes all pairs of objects that are at most `clearance` apart, out of core, and returns how many there are.
+
+    source: Parquet, as file, files or folder, with the columns of `objects_table`: `id` (integers of 0 or more, no two
+    equal), `shape` (the number of an object of `shapes`, whose own poses do not count), `pose` ((D+1)**2 numbers, a matrix row
+    by row). output: a folder that all workers reach, which is made; `part-*.parquet` there have the columns `id1` < `id2`
+    (uint64), ascending from part to part.
+
+    The bytes of the output follow from `source`, `shapes`, `clearance` and `sample`: any number of tiles and of workers, and
+    workers that die, give the same; `impinge.pairs_within` in one process finds the same pairs. About `sample` objects
+    decide the tiles. The rows are read twice, row group by row group; a worker holds one row group, or one tile with its
+    pairs, or one part of the output. Intermediate files are in a folder beside the output with the suffix `.scratch`, which
+    is removed at the end.
+
+    ValueError names a column that lacks, has nulls or is of another form, and a shape that there is not; FileExistsError if
+    there is an output.
+    """
+    output = Path(output)
+    scratch = output.with_name(output.name + ".scratch")
+    output.mkdir(parents=True)
+    units = _row_groups(source, shapes.dim)
+    starts = np.cumsum([0, *(unit.count_rows() for unit in units)])
+    shared = delayed(shapes)
+
+    step = max(1, int(starts[-1]) // max(1, sample))
+    sampled = _run(_sample, [(unit, int(start), shared, step) for unit, start in zip(units, starts, strict=False)])
+    picked = np.concatenate([found for _, found in sampled] or [np.empty((0, 2, shapes.dim), shapes.dtype)])
+    tiles = cut_tiles(picked, number_of_tiles, clearance=clearance)
+    firsts = _even_ranges([found for found, _ in sampled], len(units))
+
+    _run(_share_out, [(unit, number, shared, tiles, scratch) for number, unit in enumerate(units)])
+    found = _run(_join_tile, [(tile, shared, tiles, firsts, scratch) for tile in range(len(tiles))])
+    _run(_merge, [(number, scratch, output) for number in range(len(firsts) + 1)])
+    shutil.rmtree(scratch, ignore_errors=True)
+    return int(sum(found))
+
+
+def objects_table(ids: ArrayLike, picks: ArrayLike, poses: Any) -> Any:
+    """Objects as a table of pyarrow, to be written as Parquet for `self_join`.
+
+    ids: (n,) integers. picks: (n,) integers, the shape of each. poses: (n, D+1, D+1), or `Poses`.
+
+    >>> import impinge
+    >>> from impinge.dask import objects_table
+    >>> objects_table([7, 9], [0, 0], impinge.Poses([[1, 2], [3, 4]])).schema.names
+    ['id', 'shape', 'pose']
+    """
+    matrices = np.ascontiguousarray(poses.matrices if isinstance(poses, Poses) else poses)
+    flat = pa.FixedSizeListArray.from_arrays(pa.array(matrices.reshape(-1)), int(np.prod(matrices.shape[1:])))
+    columns = [pa.array(np.asarray(ids, np.uint64)), pa.array(np.asarray(picks, np.uint32)), flat]
+    return pa.table(columns, ["id", "shape", "pose"])
+
+
+@lru_cache(maxsize=4)
+def _world(scene: Scene) -> World:
+    world = World(dim=scene.dim, dtype=scene.dtype)  # type: ignore[arg-type, unused-ignore]
+    world.add(scene.shapes, scene.poses)
+    world.update()
+    return world
+
+
+def _ask(block: Any, question: Question, scene: Scene) -> NDArray[Any]:
+    found = np.asarray(question(_world(scene), block))
+    if found.shape != (len(block),):
+        raise ValueError(f"the answer has the shape {found.shape}, where ({len(block)},) is needed")
+    return found
+
+
+def _ask_frame(frame: Any, question: Question, scene: Scene) -> Any:
+    import pandas as pd  # type: ignore[import-untyped, unused-ignore]
+
+    return pd.Series(_ask(frame, question, scene), index=frame.index)
+
+
+def _run(task: Callable[..., Any], arguments: Sequence[tuple[Any, ...]]) -> tuple[Any, ...]:
+    """A task for each tuple of arguments, in any order and place; the results in order."""
+    tasks = [delayed(task, pure=False)(*given) for given in arguments]
+    results: tuple[Any, ...] = compute(*tasks)  # type: ignore[no-untyped-call, unused-ignore]
+    return results
+
+
+def _row_groups(source: Any, dim: int) -> list[Any]:
+    dataset = ds.dataset(os.fspath(source) if isinstance(source, os.PathLike) else source, format="parquet")
+    for name in ("id", "shape", "pose"):
+        if name not in dataset.schema.names:
+            raise ValueError(f"the source lacks the column {name!r}: it has {dataset.schema.names}")
+    size = getattr(dataset.schema.field("pose").type, "list_size", None)
+    if size != (dim + 1) ** 2:
+        needed = f"a list of the fixed size {(dim + 1) ** 2}"
+        raise ValueError(f"the column 'pose' is {dataset.schema.field('pose').type}, where {needed} is needed in {dim}D")
+    return [group for fragment in dataset.get_fragments() for group in fragment.split_by_row_group()]
+
+
+def _read(table: Any, shapes: Scene) -> tuple[NDArray[np.uint64], Picked, NDArray[Any]]:
+    """The ids, shapes and poses of a table."""
+    for name in ("id", "shape", "pose"):
+        if table[name].null_count:
+            raise ValueError(f"the column {name!r} has nulls")
+    ids = table["id"].cast(pa.uint64()).to_numpy()
+    width = shapes.dim + 1
+    poses = table["pose"].combine_chunks().flatten().to_numpy().reshape(-1, width, width)
+    return ids, Picked(shapes.shapes, table["shape"].to_numpy()), poses
+
+
+def _sample(unit: Any, start: int, shapes: Scene, step: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:
+    """The ids and boxes of one of so many rows; `start` is the number of the first row."""
+    table = unit.to_table(columns=["id", "shape", "pose"])
+    # Not every step-th one: rows of a grid come in a rhythm.
+    ids, picked, poses = _read(table.take(np.flatnonzero(_noise(start, len(table)) % step == 0)), shapes)
+    return ids, boxes(picked, poses, threads=1)
+
+
+def _noise(start: int, count: int) -> NDArray[np.uint64]:
+    """Numbers without a pattern for so many rows, everywhere the same: SplitMix64 (Steele, Lea and Flood 2014)."""
+    bits = np.arange(start + 1, start + count + 1, dtype=np.uint64) * np.uint64(0x9E3779B97F4A7C15)
+    bits = (bits ^ (bits >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    bits = (bits ^ (bits >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return bits ^ (bits >> np.uint64(31))
+
+
+def _even_ranges(ids: list[NDArray[np.uint64]], parts: int) -> NDArray[np.uint64]:
+    """The first ids of the second to the last part of the output; they do not depend on the tiles."""
+    every = np.sort(np.concatenate(ids or [np.empty(0, np.uint64)]))
+    return every[np.arange(1, parts) * len(every) // parts] if len(every) else every
+
+
+def _share_out(unit: Any, number: int, shapes: Scene, tiles: Tiles, scratch: Path) -> None:
+    """Writes the objects of a row group to the folders of their tiles."""
+    table = unit.to_table(columns=["id", "shape", "pose"])
+    _, picked, poses = _read(table, shapes)
+    rows = tiles.meeting(boxes(picked, poses, threads=1))
+    objects = np.repeat(np.arange(len(table)), np.diff(rows.starts))[np.argsort(rows.tile, kind="stable")]
+    _write_parts(table.take, objects, np.bincount(rows.tile, minlength=len(tiles)), scratch / "objects", number)
+
+
+def _join_tile(tile: int, shapes: Scene, tiles: Tiles, firsts: NDArray[np.uint64], scratch: Path) -> int:
+    """Writes the pairs of a tile to the folders of the parts of the output."""
+    table = _read_parts(scratch / "objects", tile)
+    if table is None:
+        return 0
+    ids, picked, poses = _read(table, shapes)
+    pairs = pairs_in_tile(picked, poses, ids, tiles, tile, threads=1)
+    parts = np.bincount(np.searchsorted(firsts, pairs[:, 0], side="right"), minlength=len(firsts) + 1)
+    _write_parts(lambda chosen: _pairs_table(pairs[chosen]), np.arange(len(pairs)), parts, scratch / "pairs", tile)
+    return len(pairs)
+
+
+def _merge(number: int, scratch: Path, output: Path) -> None:
+    """Writes a part of the output."""
+    table = _read_parts(scratch / "pairs", number)
+    pairs = np.empty((0, 2), np.uint64)
+    if table is not None:
+        pairs = np.stack([table["id1"].to_numpy(), table["id2"].to_numpy()], axis=1)
+    _write(_pairs_table(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]), output / f"part-{number:05}.parquet")
+
+
+def _pairs_table(pairs: NDArray[np.uint64]) -> Any:
+    return pa.table([pa.array(pairs[:, 0]), pa.array(pairs[:, 1])], ["id1", "id2"])
+
+
+def _write_parts(
+    take: Callable[[Any], Any], rows: NDArray[Any], counts: NDArray[Any], folder: Path, number: int
+) -> None:
+    """Writes `counts[k]` of the rows, one after the other, to the folder of each key k."""
+    ends = np.cumsum(counts)
+    for key in np.flatnonzero(counts):
+        _write(take(rows[ends[key] - counts[key] : ends[key]]), folder / f"key={key}" / f"part-{number:05}.parquet")
+
+
+def _read_parts(folder: Path, key: int) -> Any:
+    """What was written for a key, in the order of the parts; None for nothing."""
+    paths = sorted((folder / f"key={key}").glob("part-*.parquet"))
+    return pa.concat_tables([pq.read_table(path, partitioning=None) for path in paths]) if paths else None
+
+
+def _write(table: Any, path: Path) -> None:
+    """The file is there whole or not at all, also if the process dies or does it twice."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
+    pq.write_table(table, unfinished, compression="lz4")
+    os.replace(unfinished, path)
