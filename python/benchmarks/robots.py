@@ -120,7 +120,7 @@ class Sides:
         return table
 
     def _touches(self, row: int) -> bool | None:
-        """Whether a configuration has a pair without a gap, by support functions; none if bodies without corners may."""
+        """Whether a configuration has a pair without a gap, by support functions; none if others may decide."""
         poses = self.robot.poses(self.configurations[row])[:, None]
         corners, is_sure = self.pinocchio.corners, True
         for one, two in self.robot.pairs:
