@@ -59,8 +59,8 @@ sides in turn in one process. `us processor` is the time of all threads together
 what passed: impinge uses all threads, the others one. Coal runs behind Pinocchio, whose frames are part of its
 time: `one call of C++` is `computeCollisionsInParallel` with one thread, `a call each` `computeCollisions` and
 `computeDistances` from Python. FCL has its transforms ready, without frames. All end a configuration at its first
-collision. Of the configurations that differ the first {judged} are judged by support functions, unless a body is a
-cylinder.
+collision. Of the configurations that differ the first {judged} are judged by support functions, unless cylinders
+may decide.
 """
 
 
@@ -120,14 +120,15 @@ class Sides:
         return table
 
     def _touches(self, row: int) -> bool | None:
-        """Whether a configuration has a pair without a gap, by support functions; none if a body is not of corners."""
+        """Whether a configuration has a pair without a gap, by support functions; none if others may decide."""
         poses = self.robot.poses(self.configurations[row])[:, None]
-        corners = self.pinocchio.corners
-        if any(solid is None for solid in corners):
-            return None
-        return any(
-            greatest_gaps(corners[one], poses[one], corners[two], poses[two])[0] < 0 for one, two in self.robot.pairs
-        )
+        corners, is_sure = self.pinocchio.corners, True
+        for one, two in self.robot.pairs:
+            if corners[one] is None or corners[two] is None:
+                is_sure = False
+            elif greatest_gaps(corners[one], poses[one], corners[two], poses[two])[0] < 0:
+                return True
+        return False if is_sure else None
 
     def _note(self, row: int, ours: bool, rival: str, theirs: bool) -> str:
         """The answers of a configuration, and its least signed distances, each configuration asked alone."""
