@@ -4,9 +4,7 @@ use impinge::batch::{TileCut, Tiles, boxes as boxes_of, pairs_in_tile as pairs_o
 use impinge::bounding_volume::Aabb;
 use impinge::math::Point;
 use impinge::math::na::convert;
-use numpy::{
-    PyArray1, PyArray3, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods,
-};
+use numpy::{PyArray1, PyArray3, PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -217,8 +215,9 @@ impl<'py> Task for AskTile<'_, 'py> {
         let given = self.side.read::<N, D>(self.kind)?;
         let poses = given.poses()?;
         let side = given.side(&*poses)?;
-        let ask = |control: &_| pairs_of(&side, ids, &tiles, self.tile, control);
-        let found = supervise(py, side.len(), &self.call, ask)?;
+        let found = supervise(py, side.len(), &self.call, |control| {
+            pairs_of(&side, ids, &tiles, self.tile, control)
+        })?;
         let pairs = found.map_err(|error| error::of_batch(&error, "poses"))?;
         let rows = pairs.len();
         Ok(PyArray1::from_vec(py, pairs.into_flattened()).reshape([rows, 2])?.into_any())
