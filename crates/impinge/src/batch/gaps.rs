@@ -2,10 +2,10 @@
 
 use core::ops::Range;
 
-use super::side::{PreparedSide, pair_at};
+use super::side::{PreparedSide, index_in};
 use crate::chunks::CHUNK;
+use crate::collide::SlottedPair;
 use crate::collide::pair::Ordered;
-use crate::collide::{Placing, SlottedPair};
 use crate::math::{Space, max};
 
 /// The distance of each pair of a range, zero where the shapes touch or overlap, with the bits of the single call;
@@ -16,13 +16,14 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
     limit: N,
 ) -> Vec<Option<N>> {
     let mut found = vec![None; range.len()];
+    let placed = [sides[0].placed(range.clone()), sides[1].placed(range)];
     let mut convex = Vec::with_capacity(CHUNK);
-    for (slot, index) in range.enumerate() {
-        let [one, other] = pair_at(sides, index);
-        let [placed1, placed2] = [one.placed(), other.placed()];
-        let ordered = Ordered::new(&placed1, &placed2);
+    for (slot, found) in found.iter_mut().enumerate() {
+        let [placed1, placed2] =
+            [0, 1].map(|side| &placed[side][index_in(placed[side].len(), slot)]);
+        let ordered = Ordered::new(placed1, placed2);
         if ordered.has_composite() {
-            found[slot] = (N::tables().distance_in_world)(&placed1, &placed2, limit);
+            *found = (N::tables().distance_in_world)(placed1, placed2, limit);
             continue;
         }
         let pair = ordered.pair();

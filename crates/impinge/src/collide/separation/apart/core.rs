@@ -17,7 +17,7 @@ pub(super) enum LaneCore<'a, N: Real, V> {
 pub(super) struct LaneTies<V> {
     /// How many there are, as a number of the type.
     pub(super) count: V,
-    /// From one to another where there are two.
+    /// From one to another where there are two. Vertices at one place may count twice.
     pub(super) along: [V; 3],
 }
 
@@ -60,7 +60,8 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                 let mut along = [V::all(simd, N::ZERO); 3];
                 for axis in 0..3 {
                     let rise = direction[axis].abs() * half[axis] * two;
-                    let is_level = rise.simd_le(tolerance);
+                    // A box without extent along an axis has its corners twice.
+                    let is_level = rise.simd_le(tolerance) & (half[axis] * two).simd_gt(tolerance);
                     count = is_level.select(count + count, count);
                     let unit = Vector::<N, 3>::ith(axis, N::ONE);
                     along = either(rise.simd_lt(least), &spread(simd, &unit), &along);

@@ -17,10 +17,9 @@ pub(super) const LEAST_GAP: f64 = 1.0 / 64.0;
 /// Edges that turn by less than this from each other count as parallel: the square of the sine is 2⁻²⁰.
 const PARALLEL: f64 = 1.0 / 1_048_576.0;
 
-/// The gap between the bounds of a distance that is down to rounding: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`, as that of the
-/// general algorithm.
+/// The gap between the bounds of a distance that is down to rounding: 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
 fn tolerance<N: Real>() -> N {
-    max(N::lit(8.0) * N::EPSILON, N::lit(1.0 / 70_368_744_177_664.0))
+    max(N::lit(16.0) * N::EPSILON, N::lit(1.0 / 70_368_744_177_664.0))
 }
 
 /// Two cores in units of the pair, and how the second lies in the frame of the first.

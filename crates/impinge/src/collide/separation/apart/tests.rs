@@ -21,7 +21,7 @@ fn solids<N: Real>(random: &mut Random) -> Vec<Box<dyn Shape<N, 3>>> {
 fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     let pose = |round: usize| {
         let mut pose = random.turn::<N>();
-        pose.translation *= N::lit([0.5, 1.5, 3.0, 50.0][round % 4]);
+        pose.translation = random.vector::<N>() * N::lit([0.5, 1.5, 3.0, 50.0][round % 4]);
         if round % 5 == 0 {
             pose.rotation = Pose::identity().rotation;
             pose.translation = pose.translation.map(|x| (x * N::TWO).round() / N::TWO);
