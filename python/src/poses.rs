@@ -2,7 +2,9 @@
 
 use impinge::batch::{Matrices, OnePose, PoseSource};
 use impinge::math::Pose;
-use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{
+    Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 
 use crate::error;
@@ -12,39 +14,62 @@ use crate::space::Numeric;
 pub(crate) struct Poses<'py, N: Numeric<D>, const D: usize> {
     /// What Python calls it.
     name: &'static str,
-    /// An array of the shape (D+1, D+1) or (n, D+1, D+1) in C order; `None` for the identity.
-    matrices: Option<PyReadonlyArrayDyn<'py, N>>,
+    given: GivenPoses<'py, N>,
+}
+
+/// One pose or many.
+enum GivenPoses<'py, N: Element> {
+    /// The identity.
+    Identity,
+    /// A copy of a matrix (D+1, D+1): sooner made than a lock on the array.
+    One(Vec<N>),
+    /// An array of the shape (n, D+1, D+1) in C order, which is read where it lies.
+    Many(PyReadonlyArrayDyn<'py, N>),
+}
+
+impl<'py, N: Element> GivenPoses<'py, N> {
+    /// Of an array of the right shape and layout.
+    fn of(array: &Bound<'py, PyArrayDyn<N>>) -> PyResult<Self> {
+        Ok(if array.ndim() == 2 {
+            Self::One(array.to_vec()?)
+        } else {
+            Self::Many(array.try_readonly()?)
+        })
+    }
 }
 
 impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
     /// Takes an argument; what is no array of the right type and layout goes through `impinge._poses.matrices`.
     pub(crate) fn of(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
         if given.is_none() {
-            return Ok(Self { name, matrices: None });
+            return Ok(Self { name, given: GivenPoses::Identity });
         }
         if let Ok(array) = given.cast::<PyArrayDyn<N>>()
             && is_usable::<D>(array.shape())
             && array.is_c_contiguous()
         {
-            return Ok(Self { name, matrices: Some(array.try_readonly()?) });
+            return Ok(Self { name, given: GivenPoses::of(array)? });
         }
         let py = given.py();
         let dtype = N::get_dtype(py);
         let reader = py.import("impinge._poses")?.getattr("matrices")?;
         let array = reader.call1((given, D, dtype, name))?;
-        let matrices = array.cast::<PyArrayDyn<N>>()?.try_readonly()?;
-        Ok(Self { name, matrices: Some(matrices) })
+        Ok(Self { name, given: GivenPoses::of(array.cast::<PyArrayDyn<N>>()?)? })
     }
 
     /// There is one pose, not an array of poses.
     pub(crate) fn is_lone(&self) -> bool {
-        self.matrices.as_ref().is_none_or(|matrices| matrices.ndim() == 2)
+        !matches!(self.given, GivenPoses::Many(_))
     }
 
     /// As the library reads them.
     pub(crate) fn source(&self) -> PyResult<Box<dyn PoseSource<N, D> + '_>> {
-        let Some(matrices) = &self.matrices else { return Ok(Box::new(OnePose(Pose::identity()))) };
-        let matrices = Matrices::try_new(matrices.as_slice()?);
+        let numbers = match &self.given {
+            GivenPoses::Identity => return Ok(Box::new(OnePose(Pose::identity()))),
+            GivenPoses::One(numbers) => numbers,
+            GivenPoses::Many(matrices) => matrices.as_slice()?,
+        };
+        let matrices = Matrices::try_new(numbers);
         Ok(Box::new(matrices.map_err(|error| error::of_batch(&error, self.name))?))
     }
 }

@@ -79,6 +79,12 @@ impl<N: Real, const D: usize> PoseSource<N, D> for Matrices<'_, N, D> {
     fn translation(&self, index: usize) -> Vector<N, D> {
         translation_of(self.matrix(index))
     }
+
+    /// All rotations are finite.
+    #[inline]
+    fn unturned(&self, index: usize) -> Pose<N, D> {
+        Pose::from_translation(self.translation(index))
+    }
 }
 
 #[inline]

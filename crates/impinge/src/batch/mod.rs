@@ -39,6 +39,7 @@
 mod columns;
 mod control;
 mod error;
+mod gaps;
 mod manifolds;
 mod matrices;
 mod pairs;

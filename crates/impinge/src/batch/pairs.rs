@@ -8,15 +8,15 @@ use super::control::Progress;
 use super::side::{Element, PreparedSide, common_length, index_in, pair_at};
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, Side,
-    WitnessColumns,
+    WitnessColumns, gaps,
 };
 use crate::chunks::Cut;
 use crate::collide::Placing;
 use crate::math::{Real, Space, Vector, max};
 use crate::narrow_phase::ContactPrediction;
 use crate::query::{
-    ImpactOptions, Moving, Proximity, contact_between, distance_between, distance_within,
-    impact_of_pair, proximity_between, separation_between, witness_between,
+    ImpactOptions, Moving, Proximity, contact_between, distance_within, impact_of_pair,
+    proximity_between, separation_between, witness_between,
 };
 
 /// Two sides whose elements with one index are a pair.
@@ -237,7 +237,13 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
     control: &Control<'_>,
     out: &mut [N],
 ) -> Result<(), BatchError> {
-    batch.each(control, out, |[one, other], out, slot| out[slot] = distance_between(&one, &other))
+    out.check(batch.len)?;
+    batch.each_chunk(control, out, |sides, range, out| {
+        let found = gaps::distances(sides, range, N::INFINITY);
+        for (slot, distance) in out.iter_mut().zip(found) {
+            *slot = distance.unwrap_or(N::INFINITY);
+        }
+    })
 }
 
 /// See [`PairBatch::closest_points`].
@@ -260,7 +266,8 @@ pub(super) fn witnesses<N: Space<D>, const D: usize>(
     out: WitnessColumns<'_, N, D>,
 ) -> Result<(), BatchError> {
     batch.each(control, out, |[one, other], out, slot| {
-        out.put(slot, witness_between(&one, &other, max_distance).as_ref());
+        let with_features = !(out.feature1.is_empty() && out.feature2.is_empty());
+        out.put(slot, witness_between(&one, &other, max_distance, with_features).as_ref());
     })
 }
 

@@ -1,5 +1,7 @@
 //! Where the shapes of a batch are.
 
+use core::ops::Range;
+
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 
 /// What places a shape: a [`Pose`], nalgebra's isometries, or a type of your own.
@@ -92,6 +94,16 @@ pub trait PoseSource<N: Real, const D: usize>: Sync {
     /// The pose of what looks the same however it is turned: see [`Pose::unturned`].
     fn unturned(&self, index: usize) -> Pose<N, D> {
         self.pose(index).without_rotation()
+    }
+
+    /// Appends the poses of a range of indices: one call for many where a source is known by its methods alone.
+    fn append(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
+        out.extend(range.map(|index| self.pose(index)));
+    }
+
+    /// Appends what [`Self::unturned`] has of a range of indices.
+    fn append_unturned(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
+        out.extend(range.map(|index| self.unturned(index)));
     }
 }
 

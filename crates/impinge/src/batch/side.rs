@@ -1,6 +1,7 @@
 //! One side of a batch: shapes and where they are.
 
 use core::fmt;
+use core::ops::Range;
 
 use super::{BatchError, PoseSource};
 use crate::collide::{Placed, Placing};
@@ -190,6 +191,25 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         match &self.only {
             Some((pose, _)) => *pose,
             None => self.side.poses.pose(index_in(self.poses, element)),
+        }
+    }
+
+    /// The shapes of a range of elements where they are; a single element once.
+    pub(super) fn placed(&self, range: Range<usize>) -> Vec<Placed<'a, N, D>> {
+        if let Some((_, placed)) = &self.only {
+            return vec![*placed];
+        }
+        let (poses, mut found) = (self.side.poses, Vec::with_capacity(range.len()));
+        match &self.shape {
+            Some((_, shape)) if self.poses > 1 => {
+                if shape.turns() {
+                    poses.append(range, &mut found);
+                } else {
+                    poses.append_unturned(range, &mut found);
+                }
+                found.into_iter().map(|pose| Placed { pose, shape: *shape }).collect()
+            }
+            _ => range.map(|element| self.element(element).placed()).collect(),
         }
     }
 

@@ -21,7 +21,10 @@ pub(crate) mod parts;
 mod raw_manifold;
 pub(crate) mod separation;
 
-pub(crate) use batch::{KeptPairs, PairQuestion, Solid, update_pairs2, update_pairs3};
+pub(crate) use batch::{
+    KeptPairs, PairQuestion, SlottedPair, Solid, distances2, distances3, update_pairs2,
+    update_pairs3,
+};
 pub(crate) use manifold::{
     OnFace, between2, build3, contacts2, contacts3, on_face2, on_face3, tangents2, tangents3,
     witness_feature2, witness_feature3, witness_features2, witness_features3,

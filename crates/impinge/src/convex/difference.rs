@@ -86,7 +86,7 @@ pub(super) struct CorePair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
 }
 
 /// A solid's reach; found without squaring where that leaves the range of the numbers.
-fn safe_reach<N: Real, S: SupportMap<N, D> + ?Sized, const D: usize>(solid: &S) -> N {
+pub(crate) fn safe_reach<N: Real, S: SupportMap<N, D> + ?Sized, const D: usize>(solid: &S) -> N {
     let reach = solid.reach();
     if reach.is_finite_number() && reach * reach > N::MIN_POSITIVE {
         return reach;

@@ -46,6 +46,7 @@ pub(crate) use units::Units;
 
 use crate::math::Pose;
 use crate::shape::SupportMap;
+pub(crate) use difference::safe_reach;
 use difference::{CorePair, noise};
 use gjk::Answer;
 

@@ -16,6 +16,7 @@ pub(crate) mod exact;
 ))]
 pub(crate) mod halves;
 pub(crate) mod lanes;
+pub(crate) mod lone;
 #[cfg(test)]
 pub(crate) mod noise;
 pub(crate) mod order;

@@ -98,18 +98,20 @@ pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> Option<Witness<N, D>> {
-    witness_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), max_distance)
+    witness_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), max_distance, true)
 }
 
-/// [`witness`] of shapes that are placed in any way.
+/// [`witness`] of shapes that are placed in any way; without their features, which take long to find, these are faces
+/// of no number.
 #[inline]
 pub(crate) fn witness_between<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,
     other: &impl Placing<'a, N, D>,
     max_distance: N,
+    with_features: bool,
 ) -> Option<Witness<N, D>> {
     let [placed1, placed2] = Placed::within(one, other, max_distance)?;
-    (N::tables().witness_in_world)(&placed1, &placed2, max_distance)
+    (N::tables().witness_in_world)(&placed1, &placed2, max_distance, with_features)
 }
 
 /// See [`witness`].
@@ -117,6 +119,7 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     placed1: &Placed<'_, N, D>,
     placed2: &Placed<'_, N, D>,
     limit: N,
+    with_features: bool,
 ) -> Option<Witness<N, D>> {
     let (between, swapped) = Between::canonical(placed1, placed2);
     if !between.pair.pose12.is_finite() {
@@ -126,7 +129,11 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     if !found.separation.distance.is_finite_number() {
         return None;
     }
-    let features = features(&between.parts(found.parts), &found.local);
+    let features = if with_features {
+        features(&between.parts(found.parts), &found.local)
+    } else {
+        [FeatureId::Face(u32::MAX); 2]
+    };
     let first = if swapped { placed2 } else { placed1 };
     let witness = joined(&placed(&found.separation, first, false), &found, features);
     Some(if swapped { witness.flipped() } else { witness })

@@ -98,7 +98,7 @@ impl<V> SegmentPoints<V> {
 
 /// `nearest_of_segments`; the mask says where lengths are such that it is.
 #[inline(always)]
-fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     ends1: &SegmentEnds<V>,
     ends2: &SegmentEnds<V>,

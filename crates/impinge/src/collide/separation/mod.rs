@@ -6,6 +6,7 @@
 //! the order of [`ShapeKind`]:
 //!
 //! - [`balls`], [`segments`], [`boxes`] and [`polygons`] hold closed forms and separating axis tests;
+//! - [`apart`] searches the nearest points of triangles, boxes and hulls in 3D that are well apart, of one pair or eight;
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D, `triangles` and `chain` test eight
 //!   parts of a surface at once;
 //! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps;
@@ -15,6 +16,7 @@
 //! exactly if the signed distance is above the limit (or not a number). The limit never changes the
 //! answer.
 
+pub(crate) mod apart;
 pub(crate) mod balls;
 pub(crate) mod boxes;
 mod chain;

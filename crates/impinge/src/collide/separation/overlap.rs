@@ -9,7 +9,7 @@ use super::balls::{
 use super::flat_core::FlatCore;
 use super::projection::center_in_second;
 use super::segments::segment_segment;
-use super::{general, plane_any, revolved};
+use super::{apart, general, plane_any, revolved};
 use crate::collide::Pair;
 use crate::convex::{self, Simplicial};
 use crate::math::{Point, Real, Space};
@@ -40,6 +40,9 @@ enum DistanceMethod {
 pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
     if let Some(known) = known_in_space(pair) {
         return (known <= limit).then_some(known);
+    }
+    if is_plain(pair, limit) && are_faceted(pair) {
+        return apart::distance(pair, limit);
     }
     let way = way_in_space(pair);
     if way == DistanceMethod::Revolved && is_plain(pair, limit) && are_bare(pair) {
@@ -163,6 +166,11 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
 /// Overlaps need not be measured, and the solids are in the order of kinds.
 fn is_plain<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
     limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
+}
+
+/// Both are triangles, boxes or hulls.
+const fn are_faceted<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
+    apart::is_faceted(&pair.first) && apart::is_faceted(&pair.second)
 }
 
 /// None of the solids is a rounded one.

@@ -4,10 +4,12 @@ use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_ellipsoid, ball_polytope, ball_segment,
     ball_tapered, ball_triangle,
 };
-use super::boxes::{cuboid_cuboid, segment_cuboid};
+use super::boxes::segment_cuboid;
 use super::revolved::cylinder_cylinder;
 use super::segments::segment_segment;
-use super::{Algorithm, Table, flipped, general, hulls, look_up, plane_any, revolved, rounded};
+use super::{
+    Algorithm, Table, apart, flipped, general, hulls, look_up, plane_any, revolved, rounded,
+};
 use crate::collide::Pair;
 use crate::collide::parts;
 use crate::convex::Separation;
@@ -26,14 +28,13 @@ impl<N: Real> Table3<N> {
         let by: Algorithm<N, 3> = ball_cylinder::separation;
         let bo: Algorithm<N, 3> = ball_cone::separation;
         let ss: Algorithm<N, 3> = segment_segment::separation;
-        let sc: Algorithm<N, 3> = segment_cuboid::separation;
-        let sf: Algorithm<N, 3> = hulls::segment::separation;
-        let cc: Algorithm<N, 3> = cuboid_cuboid::separation;
         let be: Algorithm<N, 3> = ball_ellipsoid::separation;
         let bt: Algorithm<N, 3> = ball_tapered::separation;
         let rr: Algorithm<N, 3> = rounded::separation;
         let gg: Algorithm<N, 3> = general::separation;
-        let hh: Algorithm<N, 3> = hulls::separation;
+        let sc: Algorithm<N, 3> = segment_cuboid::separation;
+        let sf: Algorithm<N, 3> = hulls::segment::separation;
+        let ff: Algorithm<N, 3> = apart::separation;
         let yy: Algorithm<N, 3> = cylinder_cylinder::separation;
         let re: Algorithm<N, 3> = revolved::separation;
         let gp: Algorithm<N, 3> = plane_any::separation;
@@ -46,9 +47,9 @@ impl<N: Real> Table3<N> {
             [bb, bs, bs, b3, bc, bh, by, bo, be, bt, rr, gg, gp, gx],
             [__, ss, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, ss, sf, sc, sf, re, re, gg, gg, rr, gg, gp, gx],
-            [__, __, __, hh, hh, hh, re, re, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, cc, hh, re, re, gg, gg, rr, gg, gp, gx],
-            [__, __, __, __, __, hh, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, ff, ff, ff, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, ff, ff, re, re, gg, gg, rr, gg, gp, gx],
+            [__, __, __, __, __, ff, re, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, yy, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, re, gg, gg, rr, gg, gp, gx],
             [__, __, __, __, __, __, __, __, gg, gg, rr, gg, gp, gx],

@@ -6,7 +6,7 @@ use crate::math::{Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::Kind;
 
 /// The ends and the radius of a segment or capsule.
-pub(in crate::collide::separation) fn core<N: Real, const D: usize>(
+pub(in crate::collide) fn core<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     kind: &Kind<'_, N, D>,
 ) -> ([Point<N, D>; 2], N) {

@@ -1,0 +1,120 @@
+//! Cores in lanes: their support points, and how far the feature there extends.
+
+use crate::math::lanes::{dot, either, minus, spread, times};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Point, Real, Vector, Wide};
+use crate::shape::{Polytope, SupportMap};
+
+/// The core of one solid of each pair, in its own frame and in units of the pair. All lanes have the same kind.
+pub(super) enum LaneCore<'a, N: Real, V> {
+    /// The half extents.
+    Cuboid([V; 3]),
+    /// Vertices that all lanes share, in the units of the shape, and the factor to those of each pair.
+    Points { vertices: &'a [Point<N, 3>], hull: Option<&'a Polytope<N, 3>>, shrink: V },
+}
+
+/// The vertices that are as far along a direction as any, up to a tolerance.
+pub(super) struct LaneTies<V> {
+    /// How many there are, as a number of the type.
+    pub(super) count: V,
+    /// From one to another where there are two. Vertices at one place may count twice.
+    pub(super) along: [V; 3],
+}
+
+impl<N: Real, V> LaneCore<'_, N, V> {
+    /// A vertex farthest along a direction: the first of equals.
+    #[inline(always)]
+    pub(super) fn support<S: Simd>(&self, simd: S, direction: &[V; 3]) -> [V; 3]
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        match self {
+            Self::Cuboid(half) => {
+                let zero = V::all(simd, N::ZERO);
+                let toward =
+                    |axis: usize| direction[axis].simd_lt(zero).select(-half[axis], half[axis]);
+                [toward(0), toward(1), toward(2)]
+            }
+            Self::Points { vertices, hull, shrink } => {
+                let local = match hull {
+                    Some(hull) if <V::Mask as SimdMask<S>>::LEN == 1 => {
+                        lone_support(simd, hull, direction)
+                    }
+                    _ => farthest(simd, vertices, direction).0,
+                };
+                times(&local, *shrink)
+            }
+        }
+    }
+
+    /// The vertices that are as far along a unit vector as the farthest.
+    #[inline(always)]
+    pub(super) fn ties<S: Simd>(&self, simd: S, direction: &[V; 3], tolerance: V) -> LaneTies<V>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (one, two) = (V::all(simd, N::ONE), V::all(simd, N::TWO));
+        match self {
+            Self::Cuboid(half) => {
+                let (mut count, mut least) = (one, V::all(simd, N::INFINITY));
+                let mut along = [V::all(simd, N::ZERO); 3];
+                for axis in 0..3 {
+                    let rise = direction[axis].abs() * half[axis] * two;
+                    // A box without extent along an axis has its corners twice.
+                    let is_level = rise.simd_le(tolerance) & (half[axis] * two).simd_gt(tolerance);
+                    count = is_level.select(count + count, count);
+                    let unit = Vector::<N, 3>::ith(axis, N::ONE);
+                    along = either(rise.simd_lt(least), &spread(simd, &unit), &along);
+                    least = rise.smaller(least);
+                }
+                LaneTies { count, along }
+            }
+            Self::Points { vertices, shrink, .. } => {
+                let (best, highest) = farthest(simd, vertices, direction);
+                let (mut count, mut other) = (V::all(simd, N::ZERO), best);
+                for vertex in *vertices {
+                    let vertex = spread(simd, &vertex.coords);
+                    let below = (highest - dot(&vertex, direction)) * *shrink;
+                    let is_level = below.simd_le(tolerance);
+                    count = is_level.select(count + one, count);
+                    other = either(is_level, &vertex, &other);
+                }
+                // The last of them, or the one before where that is the support point.
+                LaneTies { count, along: times(&minus(&other, &best), *shrink) }
+            }
+        }
+    }
+}
+
+/// The farthest of some vertices along a direction, the first of equals, and how far it is.
+#[inline(always)]
+fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    vertices: &[Point<N, 3>],
+    direction: &[V; 3],
+) -> ([V; 3], V) {
+    let mut best = spread(simd, &vertices[0].coords);
+    let mut highest = dot(&best, direction);
+    for vertex in &vertices[1..] {
+        let vertex = spread(simd, &vertex.coords);
+        let height = dot(&vertex, direction);
+        let is_higher = height.simd_gt(highest);
+        best = either(is_higher, &vertex, &best);
+        highest = is_higher.select(height, highest);
+    }
+    (best, highest)
+}
+
+/// The same of the hull of a lone pair, whose vertices are in lanes.
+#[inline(always)]
+fn lone_support<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    hull: &Polytope<N, 3>,
+    direction: &[V; 3],
+) -> [V; 3] {
+    let mut toward = Vector::<N, 3>::zeros();
+    for axis in 0..3 {
+        direction[axis].store(&mut toward.as_mut_slice()[axis..=axis]);
+    }
+    spread(simd, &hull.core_support(&toward).coords)
+}

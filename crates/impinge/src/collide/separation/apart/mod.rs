@@ -1,0 +1,203 @@
+//! Triangles, boxes and hulls in 3D that are well apart: the nearest points of their cores, of one
+//! pair or of eight at a time, by the same source and so with the same bits.
+//!
+//! The search is that of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the Distance Between
+//! Complex Objects in Three-Dimensional Space", 1988), without branches: each step computes all features of the
+//! simplex at its newest corner and selects ([`simplex`]). What it gives is proved: the nearest points lie as far
+//! apart as two supporting planes. Anything else is left to the algorithm of the pair's kinds: cores that are nearer
+//! than 2⁻⁶ of the pair or overlap, several pairs of nearest points, bounds that do not meet.
+//!
+//! ```text
+//!        core 1             core 2        normal = nearest / |nearest|
+//!      +--------+          /\             lower bound: min normal · b − max normal · a, by support points
+//!      |        a*-------b*  \            upper bound: |b* − a*|
+//!      +--------+          \__\           both agree up to rounding, or there is no answer
+//! ```
+
+mod core;
+mod packet;
+mod search;
+mod simplex;
+#[cfg(test)]
+mod tests;
+
+use self::core::LaneCore;
+pub(crate) use self::packet::distances;
+#[cfg(test)]
+use self::search::LEAST_GAP;
+use self::search::{LaneCores, LaneGap};
+use super::boxes::cuboid_cuboid;
+use super::flat_core::FlatCore;
+use super::{Algorithm, hulls};
+use crate::collide::Pair;
+use crate::convex::{Separation, Units, safe_reach};
+use crate::math::arrays::Arrays;
+use crate::math::lanes::{LanePose, minus};
+use crate::math::lone::Lone;
+use crate::math::{Point, Pose, Real, Vector, Wide};
+use crate::shape::{Kind, Polytope, SupportMap};
+
+/// How many pairs are treated at once.
+const LANES: usize = 8;
+
+/// Hulls of more vertices are left to algorithms that do not visit all of them in each step.
+const MAX_VERTICES: usize = 128;
+
+/// The separation of two triangles, boxes or hulls: of those that are well
+/// apart by the search, of others by the algorithm of their kinds.
+#[inline]
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    match result(pair, limit, false) {
+        GapResult::Beyond => None,
+        GapResult::Apart(found) => Some(found).filter(|found| found.distance <= limit),
+        GapResult::Overlap | GapResult::Unproved => nearer(pair)(pair, limit),
+    }
+}
+
+/// The distance in [`separation`], or zero if the cores certainly overlap.
+pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    let distance = match result(pair, limit, limit >= N::ZERO) {
+        GapResult::Beyond => None,
+        GapResult::Apart(found) => Some(found.distance),
+        GapResult::Overlap => Some(N::ZERO),
+        GapResult::Unproved => nearer(pair)(pair, limit).map(|found| found.distance),
+    };
+    distance.filter(|distance| *distance <= limit)
+}
+
+/// A triangle, a box or a hull.
+pub(crate) const fn is_faceted<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
+    matches!(kind, Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_))
+}
+
+/// The algorithm for a pair of these kinds that may touch or overlap.
+fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
+    match (pair.first, pair.second) {
+        (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::separation,
+        _ => hulls::separation,
+    }
+}
+
+/// What is known of a pair.
+enum GapResult<N: Real> {
+    /// The solids are farther apart than the limit.
+    Beyond,
+    Apart(Separation<N, 3>),
+    /// The cores certainly overlap.
+    Overlap,
+    /// No answer is proved.
+    Unproved,
+}
+
+/// The result of the search for a lone pair.
+#[inline(never)]
+fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapResult<N> {
+    let Some(solids) = FlatPair::of(pair) else { return GapResult::Unproved };
+    let cores = [solids.lone_core(0), solids.lone_core(1)];
+    let translation = pair.pose12.translation * solids.units.shrink;
+    let pose12 = LanePose::of(Arrays, &Pose { rotation: pair.pose12.rotation, translation });
+    let [middle1, middle2] = [lone(&solids.middles[0]), lone(&solids.middles[1])];
+    let between = minus::<Arrays, _, 3>(&pose12.point::<Arrays>(&middle2), &middle1);
+    let limit = Lone(solids.limit_of_cores(limit));
+    let found = LaneCores { cores, pose12, between, limit }.gap(Arrays, with_overlap);
+    solids.result(&found)
+}
+
+/// Two solids with flat cores.
+struct FlatPair<'a, N: Real> {
+    solids: [FlatCore<'a, N, 3>; 2],
+    radii: [N; 2],
+    units: Units<N>,
+    /// The middles of the cores in their own frames, in units of the pair.
+    middles: [Vector<N, 3>; 2],
+}
+
+impl<'a, N: Real> FlatPair<'a, N> {
+    /// `None` for other solids, and where the numbers end.
+    #[inline]
+    fn of(pair: &Pair<'a, N, 3>) -> Option<Self> {
+        if !(is_faceted(&pair.first) && is_faceted(&pair.second)) {
+            return None;
+        }
+        let solids = [FlatCore::of(pair.first)?, FlatCore::of(pair.second)?];
+        let [reach1, reach2] = [safe_reach(&solids[0]), safe_reach(&solids[1])];
+        let units = Units::of(reach1, reach2, &pair.pose12.translation);
+        let is_small = solids
+            .iter()
+            .all(|solid| vertices(solid).is_none_or(|(all, _)| all.len() <= MAX_VERTICES));
+        let is_usual = units.scale.is_finite_number() && units.shrink.is_finite_number();
+        (is_small && is_usual).then(|| Self {
+            middles: [
+                solids[0].center().coords * units.shrink,
+                solids[1].center().coords * units.shrink,
+            ],
+            radii: [solids[0].rounding(), solids[1].rounding()],
+            solids,
+            units,
+        })
+    }
+
+    /// A limit of the solids as one of their cores, in units of the pair, that nothing within the limit exceeds by
+    /// rounding.
+    #[inline]
+    fn limit_of_cores(&self, limit: N) -> N {
+        let limit = (limit + self.radii[0] + self.radii[1]) * self.units.shrink;
+        limit + N::lit(64.0) * N::EPSILON * (N::ONE + limit.abs())
+    }
+
+    #[inline]
+    fn lone_core(&self, which: usize) -> LaneCore<'a, N, Lone<N>> {
+        let shrink = self.units.shrink;
+        match (self.solids[which], vertices(&self.solids[which])) {
+            (FlatCore::Cuboid(cuboid), _) => {
+                LaneCore::Cuboid(lone(&(cuboid.half_extents() * shrink)))
+            }
+            (_, found) => {
+                let (vertices, hull) = found.expect("the others have vertices");
+                LaneCore::Points { vertices, hull, shrink: Lone(shrink) }
+            }
+        }
+    }
+
+    #[inline]
+    fn result(&self, found: &LaneGap<Lone<N>, <Lone<N> as Wide<Arrays>>::Mask>) -> GapResult<N> {
+        use crate::math::simd::SimdMask;
+        let is = |mask| SimdMask::<Arrays>::any_true(mask);
+        if is(found.is_beyond) {
+            return GapResult::Beyond;
+        }
+        if is(found.is_overlap) {
+            return GapResult::Overlap;
+        }
+        if !is(found.is_apart) {
+            return GapResult::Unproved;
+        }
+        let vector = |v: &[Lone<N>; 3]| Vector::<N, 3>::new(v[0].0, v[1].0, v[2].0);
+        let [point1, point2] = &found.points;
+        let core = Separation {
+            distance: found.distance.0,
+            normal: vector(&found.normal),
+            point1: Point::from(vector(point1)),
+            point2: Point::from(vector(point2)),
+        };
+        GapResult::Apart(core.scaled(self.units.scale).rounded(self.radii[0], self.radii[1]))
+    }
+}
+
+/// A vector of a lone pair.
+#[inline(always)]
+fn lone<N: Real>(v: &Vector<N, 3>) -> [Lone<N>; 3] {
+    [Lone(v[0]), Lone(v[1]), Lone(v[2])]
+}
+
+/// The vertices of a solid that has more than ends or half extents.
+#[inline]
+fn vertices<'a, N: Real>(
+    solid: &FlatCore<'a, N, 3>,
+) -> Option<(&'a [Point<N, 3>], Option<&'a Polytope<N, 3>>)> {
+    match *solid {
+        FlatCore::Triangle(triangle) => Some((triangle.corners().as_slice(), None)),
+        FlatCore::Polytope(hull) => Some((hull.vertices(), Some(hull))),
+        _ => None,
+    }
+}

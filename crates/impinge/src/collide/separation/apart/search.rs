@@ -1,0 +1,159 @@
+//! The search for the nearest points of two cores, in lanes.
+
+use super::core::LaneCore;
+use super::simplex::{LaneCorner, LaneSimplex};
+use crate::math::lanes::{
+    LanePose, cross, dot, either, lit, minus, negated, over, plus, seen_from, times,
+};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Real, Wide, max};
+
+/// Cap on the number of support points. Most pairs take five or six.
+const ROUNDS: usize = 32;
+
+/// Cores nearer than this, in units of the pair, are left to algorithms that decide about touching: 2⁻⁶.
+pub(super) const LEAST_GAP: f64 = 1.0 / 64.0;
+
+/// Edges that turn by less than this from each other count as parallel: the square of the sine is 2⁻²⁰.
+const PARALLEL: f64 = 1.0 / 1_048_576.0;
+
+/// The gap between the bounds of a distance that is down to rounding: 2⁻¹⁹ in `f32`, 2⁻⁴⁶ in `f64`.
+fn tolerance<N: Real>() -> N {
+    max(N::lit(16.0) * N::EPSILON, N::lit(1.0 / 70_368_744_177_664.0))
+}
+
+/// Two cores in units of the pair, and how the second lies in the frame of the first.
+pub(super) struct LaneCores<'a, N: Real, V> {
+    pub(super) cores: [LaneCore<'a, N, V>; 2],
+    pub(super) pose12: LanePose<V, 3>,
+    /// From the middle of the first core to that of the second.
+    pub(super) between: [V; 3],
+    /// Lanes whose cores are farther apart need no answer.
+    pub(super) limit: V,
+}
+
+/// What the search found, in units of the pair and in the frame of the first core.
+pub(super) struct LaneGap<V, M> {
+    pub(super) distance: V,
+    /// Unit, from the first core to the second.
+    pub(super) normal: [V; 3],
+    pub(super) points: [[V; 3]; 2],
+    /// The lanes whose cores are apart, where all this is proved.
+    pub(super) is_apart: M,
+    /// The lanes that are farther apart than the limit.
+    pub(super) is_beyond: M,
+    /// The lanes whose cores certainly overlap.
+    pub(super) is_overlap: M,
+}
+
+impl<N: Real, V: Copy> LaneCores<'_, N, V> {
+    /// Runs the search; without `with_overlap` lanes that come nearer than [`LEAST_GAP`] are given up at once.
+    ///
+    /// A lane that is done keeps what it has, so that no lane depends on its neighbours.
+    #[inline(always)]
+    pub(super) fn gap<S: Simd>(&self, simd: S, with_overlap: bool) -> LaneGap<V, V::Mask>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (zero, least) = (V::all(simd, N::ZERO), lit::<S, N, V>(simd, LEAST_GAP));
+        let none = zero.simd_gt(zero);
+        let start = over(&self.between, dot(&self.between, &self.between).sqrt());
+        let mut simplex = LaneSimplex::new(simd, self.corner(simd, &start));
+        let (mut normal, mut distance) = (start, zero);
+        let (mut is_open, mut is_closed) = (!none, none);
+        let (mut is_beyond, mut is_overlap) = (none, none);
+        for _ in 0..ROUNDS {
+            let upper = simplex.squared.sqrt();
+            let along = over(&simplex.nearest, upper);
+            let corner = self.corner(simd, &along);
+            let lower = dot(&along, &corner.point);
+            normal = either(is_open, &along, &normal);
+            distance = is_open.select(lower, distance);
+            is_beyond |= is_open & lower.simd_gt(self.limit);
+            let gap = upper - lower;
+            let closes = is_open & gap.simd_le(V::all(simd, tolerance()));
+            let (next, holds_origin) = simplex.with(simd, &corner);
+            let is_nearer = next.squared.simd_lt(simplex.squared);
+            let stalls = is_open & !is_nearer & gap.simd_le(V::all(simd, N::TWO * tolerance()));
+            is_closed |= closes | stalls;
+            is_overlap |= is_open & !closes & holds_origin;
+            is_open = is_open & is_nearer & !(is_closed | is_beyond | is_overlap);
+            if !with_overlap {
+                is_open &= upper.simd_gt(least);
+            }
+            if !is_open.any_true() {
+                break;
+            }
+            simplex = simplex.or(&next, is_open);
+        }
+        let is_apart = is_closed & !is_beyond & distance.simd_gt(least);
+        let is_apart = is_apart & self.is_unique(simd, &normal);
+        let points = simplex.points();
+        LaneGap { distance, normal, points, is_apart, is_beyond, is_overlap }
+    }
+
+    /// The point of the difference of the cores that lies lowest along a unit vector.
+    #[inline(always)]
+    fn corner<S: Simd>(&self, simd: S, along: &[V; 3]) -> LaneCorner<V>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let on1 = self.cores[0].support(simd, along);
+        let toward1 = seen_from(&self.pose12.rotation, &negated(along));
+        let on2 = self.pose12.point(&self.cores[1].support(simd, &toward1));
+        LaneCorner { point: minus(&on2, &on1), on1 }
+    }
+
+    /// The lanes with one pair of nearest points only: no face or edge of the one is parallel to one of the other.
+    /// Where there are several, the middle of them is wanted, which is found elsewhere.
+    #[inline(always)]
+    fn is_unique<S: Simd>(&self, simd: S, normal: &[V; 3]) -> V::Mask
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let level = lit::<S, N, V>(simd, 16.0) * V::all(simd, tolerance());
+        let (one, two) = (V::all(simd, N::ONE), V::all(simd, N::TWO));
+        let toward1 = seen_from(&self.pose12.rotation, &negated(normal));
+        let ties1 = self.cores[0].ties(simd, normal, level);
+        let ties2 = self.cores[1].ties(simd, &toward1, level);
+        let along2 = self.pose12.vector(&ties2.along);
+        let turn = cross(&ties1.along, &along2);
+        let lengths = dot(&ties1.along, &ties1.along) * dot(&along2, &along2);
+        let crosses = dot(&turn, &turn).simd_gt(lit::<S, N, V>(simd, PARALLEL) * lengths);
+        let are_edges = ties1.count.simd_le(two) & ties2.count.simd_le(two);
+        ties1.count.simd_le(one) | ties2.count.simd_le(one) | (are_edges & crosses)
+    }
+}
+
+impl<V: Copy> LaneSimplex<V> {
+    /// This one, or another in some lanes.
+    #[inline(always)]
+    fn or<S: Simd>(&self, other: &Self, is_other: V::Mask) -> Self
+    where
+        V: Wide<S>,
+    {
+        let [first, second, third] = &self.corners;
+        Self {
+            corners: [
+                first.or(&other.corners[0], is_other),
+                second.or(&other.corners[1], is_other),
+                third.or(&other.corners[2], is_other),
+            ],
+            weights: either(is_other, &other.weights, &self.weights),
+            nearest: either(is_other, &other.nearest, &self.nearest),
+            squared: is_other.select(other.squared, self.squared),
+        }
+    }
+
+    /// The nearest points of the first and the second core.
+    #[inline(always)]
+    fn points<S: Simd>(&self) -> [[V; 3]; 2]
+    where
+        V: Wide<S>,
+    {
+        let [first, second, third] = &self.corners;
+        let some = plus(&times(&first.on1, self.weights[0]), &times(&second.on1, self.weights[1]));
+        let point1 = plus(&some, &times(&third.on1, self.weights[2]));
+        [point1, plus(&point1, &self.nearest)]
+    }
+}

@@ -1,0 +1,262 @@
+//! The point nearest to the origin on the faces of a tetrahedron that meet in its newest corner, in lanes.
+//!
+//! ```text
+//!            w  newest            candidates: the edges w p0, w p1, w p2 and the inside of the faces
+//!           /|\                   w p0 p1, w p1 p2, w p2 p0; corners may coincide, so that a triangle,
+//!          / | \                  an edge or a point is a tetrahedron too
+//!        p0--+--p1
+//!          \ | /
+//!           p2
+//! ```
+//!
+//! The old face p0 p1 p2 is not looked at: the newest corner lies beyond it, toward the origin.
+
+use crate::math::lanes::{cross, dot, either, either_mask, lit, minus, negated, plus, times};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Real, Wide};
+
+/// The planes of a simplex that holds the origin clearly are farther than this from it: 2⁻¹⁰ of the pair.
+const CLEAR: f64 = 1.0 / 1024.0;
+
+/// A point of the difference of two cores, and the point of the first core that it belongs to.
+#[derive(Clone, Copy)]
+pub(super) struct LaneCorner<V> {
+    pub(super) point: [V; 3],
+    pub(super) on1: [V; 3],
+}
+
+impl<V> LaneCorner<V> {
+    #[inline(always)]
+    pub(super) fn or<S: Simd>(&self, other: &Self, is_other: V::Mask) -> Self
+    where
+        V: Wide<S>,
+    {
+        Self {
+            point: either(is_other, &other.point, &self.point),
+            on1: either(is_other, &other.on1, &self.on1),
+        }
+    }
+}
+
+/// Up to three corners and the point of their hull nearest to the origin.
+#[derive(Clone, Copy)]
+pub(super) struct LaneSimplex<V> {
+    pub(super) corners: [LaneCorner<V>; 3],
+    /// What the corners contribute, of sum 1.
+    pub(super) weights: [V; 3],
+    pub(super) nearest: [V; 3],
+    pub(super) squared: V,
+}
+
+/// The best of the candidates so far.
+struct BestFeature<V> {
+    nearest: [V; 3],
+    squared: V,
+    /// The weights of the two old corners, and which these are: 0, 1, 2.
+    weights: [V; 2],
+    places: [V; 2],
+}
+
+impl<V> BestFeature<V> {
+    /// This one, or another that is nearer and admitted.
+    #[inline(always)]
+    fn or_nearer<S: Simd>(self, (other, is_admitted): (Self, V::Mask)) -> Self
+    where
+        V: Wide<S>,
+    {
+        let is_nearer = other.squared.simd_lt(self.squared) & is_admitted;
+        Self {
+            nearest: either(is_nearer, &other.nearest, &self.nearest),
+            squared: is_nearer.select(other.squared, self.squared),
+            weights: either(is_nearer, &other.weights, &self.weights),
+            places: either(is_nearer, &other.places, &self.places),
+        }
+    }
+}
+
+/// The newest corner of a simplex, and the others as seen from there.
+struct Fan<'a, V> {
+    old: &'a LaneSimplex<V>,
+    newest: &'a LaneCorner<V>,
+    edges: [[V; 3]; 3],
+    /// The squares of the lengths of the edges.
+    squares: [V; 3],
+    /// The cross products of the way to the origin with the edges.
+    turns: [[V; 3]; 3],
+}
+
+impl<V: Copy> LaneSimplex<V> {
+    /// A single corner.
+    #[inline(always)]
+    pub(super) fn new<S: Simd, N: Real>(simd: S, corner: LaneCorner<V>) -> Self
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+        Self {
+            corners: [corner; 3],
+            weights: [one, zero, zero],
+            nearest: corner.point,
+            squared: dot(&corner.point, &corner.point),
+        }
+    }
+
+    /// The simplex around the nearest point after one more corner, and the lanes in which all four corners
+    /// hold a ball around the origin.
+    ///
+    /// The third corner of a lane that has two is a copy, and copies add no nearer point: they are passed over where no
+    /// lane has three.
+    #[inline(always)]
+    pub(super) fn with<S: Simd, N: Real>(&self, simd: S, newest: &LaneCorner<V>) -> (Self, V::Mask)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let zero = V::all(simd, N::ZERO);
+        let fan = Fan::new(self, newest);
+        let (mut best, _) = fan.edge(simd, 0);
+        let mut holds_origin = zero.simd_gt(zero);
+        best = best.or_nearer(fan.edge(simd, 1)).or_nearer(fan.face(simd, [0, 1]));
+        if self.weights[2].simd_gt(zero).any_true() {
+            best = best.or_nearer(fan.edge(simd, 2));
+            best = best.or_nearer(fan.face(simd, [1, 2])).or_nearer(fan.face(simd, [2, 0]));
+            holds_origin = fan.holds_origin(simd);
+        }
+        (fan.reduced(simd, &best), holds_origin)
+    }
+}
+
+impl<'a, V: Copy> Fan<'a, V> {
+    #[inline(always)]
+    fn new<S: Simd>(old: &'a LaneSimplex<V>, newest: &'a LaneCorner<V>) -> Self
+    where
+        V: Wide<S>,
+    {
+        let to_origin = negated(&newest.point);
+        let [first, second, third] = &old.corners;
+        let edges = [
+            minus(&first.point, &newest.point),
+            minus(&second.point, &newest.point),
+            minus(&third.point, &newest.point),
+        ];
+        let [edge1, edge2, edge3] = &edges;
+        let squares = [dot(edge1, edge1), dot(edge2, edge2), dot(edge3, edge3)];
+        let turns = [cross(&to_origin, edge1), cross(&to_origin, edge2), cross(&to_origin, edge3)];
+        Self { old, newest, edges, squares, turns }
+    }
+
+    /// An edge from the newest corner, its ends included, and the lanes in which it has a length.
+    #[inline(always)]
+    fn edge<S: Simd, N: Real>(&self, simd: S, old: usize) -> (BestFeature<V>, V::Mask)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+        let (edge, newest) = (&self.edges[old], &self.newest.point);
+        let has_length = self.squares[old].simd_gt(zero);
+        let share = (-dot(newest, edge) / self.squares[old]).smaller(one).larger(zero);
+        let share = has_length.select(share, zero);
+        let nearest = plus(newest, &times(edge, share));
+        let place = index(simd, old);
+        let feature = BestFeature {
+            squared: dot(&nearest, &nearest),
+            nearest,
+            weights: [share, zero],
+            places: [place, place],
+        };
+        (feature, has_length)
+    }
+
+    /// A face at the newest corner, and the lanes in which the point of its plane that is nearest to the origin lies
+    /// within it.
+    #[inline(always)]
+    fn face<S: Simd, N: Real>(&self, simd: S, [one, two]: [usize; 2]) -> (BestFeature<V>, V::Mask)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (zero, whole) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
+        let normal = cross(&self.edges[one], &self.edges[two]);
+        let squared = dot(&normal, &normal);
+        let inverse = whole / squared;
+        let weight1 = dot(&self.turns[two], &normal) * inverse;
+        let weight2 = -(dot(&self.turns[one], &normal) * inverse);
+        let height = dot(&normal, &self.newest.point);
+        let tiny = V::all(simd, N::lit(64.0) * N::EPSILON * N::EPSILON);
+        let is_wide = squared.simd_gt(tiny * self.squares[one] * self.squares[two]);
+        let is_within = weight1.simd_gt(zero)
+            & weight2.simd_gt(zero)
+            & (weight1 + weight2).simd_lt(whole)
+            & is_wide;
+        let feature = BestFeature {
+            nearest: times(&normal, height / squared),
+            squared: height * height / squared,
+            weights: [weight1, weight2],
+            places: [index(simd, one), index(simd, two)],
+        };
+        (feature, is_within)
+    }
+
+    /// The lanes in which the origin is inside of the tetrahedron, clearly on the inner side of each face.
+    #[inline(always)]
+    fn holds_origin<S: Simd, N: Real>(&self, simd: S) -> V::Mask
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let [first, second, third] = &self.old.corners;
+        let base = cross(&minus(&second.point, &first.point), &minus(&third.point, &first.point));
+        let of_newest = dot(&base, &minus(&self.newest.point, &first.point));
+        let mut holds = is_clear(simd, &base, -dot(&base, &first.point), of_newest);
+        for [one, two, opposite] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
+            let normal = cross(&self.edges[one], &self.edges[two]);
+            let of_origin = -dot(&normal, &self.newest.point);
+            holds = holds & is_clear(simd, &normal, of_origin, dot(&normal, &self.edges[opposite]));
+        }
+        holds
+    }
+
+    /// The corners of a feature.
+    #[inline(always)]
+    fn reduced<S: Simd, N: Real>(&self, simd: S, best: &BestFeature<V>) -> LaneSimplex<V>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let [weight1, weight2] = best.weights;
+        LaneSimplex {
+            corners: [*self.newest, self.at(simd, best.places[0]), self.at(simd, best.places[1])],
+            weights: [V::all(simd, N::ONE) - weight1 - weight2, weight1, weight2],
+            nearest: best.nearest,
+            squared: best.squared,
+        }
+    }
+
+    /// The old corner of an index.
+    #[inline(always)]
+    fn at<S: Simd, N: Real>(&self, simd: S, place: V) -> LaneCorner<V>
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let [first, second, third] = &self.old.corners;
+        first.or(second, place.simd_eq(index(simd, 1))).or(third, place.simd_eq(index(simd, 2)))
+    }
+}
+
+/// The lanes in which the origin and another point lie on the same side of a plane, the origin clearly: of
+/// both the height along a normal that is not of unit length.
+#[inline(always)]
+fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    normal: &[V; 3],
+    of_origin: V,
+    of_point: V,
+) -> V::Mask {
+    let zero = V::all(simd, N::ZERO);
+    let least = lit::<S, N, V>(simd, CLEAR * CLEAR) * dot(normal, normal);
+    let is_far = (of_origin * of_origin).simd_gt(least);
+    let both = either_mask(of_origin.simd_gt(zero), of_point.simd_gt(zero), of_point.simd_lt(zero));
+    is_far & both
+}
+
+/// The index of an old corner as a number of the type.
+#[inline(always)]
+fn index<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, old: usize) -> V {
+    lit(simd, [0.0, 1.0, 2.0][old])
+}
