@@ -40,7 +40,7 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                     Some(hull) if <V::Mask as SimdMask<S>>::LEN == 1 => {
                         lone_support(simd, hull, direction)
                     }
-                    _ => farthest(simd, vertices, direction).0,
+                    _ => farthest(simd, vertices, direction),
                 };
                 times(&local, *shrink)
             }
@@ -70,29 +70,29 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                 LaneTies { count, along }
             }
             Self::Points { vertices, shrink, .. } => {
-                let (best, highest) = farthest(simd, vertices, direction);
+                let best = self.support(simd, direction);
+                let highest = dot(&best, direction);
                 let (mut count, mut other) = (V::all(simd, N::ZERO), best);
                 for vertex in *vertices {
-                    let vertex = spread(simd, &vertex.coords);
-                    let below = (highest - dot(&vertex, direction)) * *shrink;
-                    let is_level = below.simd_le(tolerance);
+                    let vertex = times(&spread(simd, &vertex.coords), *shrink);
+                    let is_level = (highest - dot(&vertex, direction)).simd_le(tolerance);
                     count = is_level.select(count + one, count);
                     other = either(is_level, &vertex, &other);
                 }
                 // The last of them, or the one before where that is the support point.
-                LaneTies { count, along: times(&minus(&other, &best), *shrink) }
+                LaneTies { count, along: minus(&other, &best) }
             }
         }
     }
 }
 
-/// The farthest of some vertices along a direction, the first of equals, and how far it is.
+/// The farthest of some vertices along a direction, the first of equals.
 #[inline(always)]
 fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     vertices: &[Point<N, 3>],
     direction: &[V; 3],
-) -> ([V; 3], V) {
+) -> [V; 3] {
     let mut best = spread(simd, &vertices[0].coords);
     let mut highest = dot(&best, direction);
     for vertex in &vertices[1..] {
@@ -102,7 +102,7 @@ fn farthest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         best = either(is_higher, &vertex, &best);
         highest = is_higher.select(height, highest);
     }
-    (best, highest)
+    best
 }
 
 /// The same of the hull of a lone pair, whose vertices are in lanes.

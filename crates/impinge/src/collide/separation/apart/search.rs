@@ -113,15 +113,19 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
     {
         let level = lit::<S, N, V>(simd, 16.0) * V::all(simd, tolerance());
         let (one, two) = (V::all(simd, N::ONE), V::all(simd, N::TWO));
-        let toward1 = seen_from(&self.pose12.rotation, &negated(normal));
         let ties1 = self.cores[0].ties(simd, normal, level);
+        let is_corner1 = ties1.count.simd_le(one);
+        if is_corner1.all_true() {
+            return is_corner1;
+        }
+        let toward1 = seen_from(&self.pose12.rotation, &negated(normal));
         let ties2 = self.cores[1].ties(simd, &toward1, level);
         let along2 = self.pose12.vector(&ties2.along);
         let turn = cross(&ties1.along, &along2);
         let lengths = dot(&ties1.along, &ties1.along) * dot(&along2, &along2);
         let crosses = dot(&turn, &turn).simd_gt(lit::<S, N, V>(simd, PARALLEL) * lengths);
         let are_edges = ties1.count.simd_le(two) & ties2.count.simd_le(two);
-        ties1.count.simd_le(one) | ties2.count.simd_le(one) | (are_edges & crosses)
+        is_corner1 | ties2.count.simd_le(one) | (are_edges & crosses)
     }
 }
 
