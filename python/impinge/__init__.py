@@ -10,6 +10,7 @@
 
 from impinge._native import (
     Shape,
+    aabb,
     cast_rays,
     closest_points,
     contact,
@@ -24,8 +25,11 @@ from impinge._native import (
     signed_distance,
     witness,
 )
+from impinge._pictures import Picture, picture
 from impinge._poses import Poses
+from impinge._recording import Recording
 from impinge._results import (
+    Boxes,
     ClosestPoints,
     Contact,
     Impact,
@@ -57,6 +61,76 @@ from impinge._shapes import (
     Triangle,
     TriMesh,
 )
-from impinge._world import NO_OBJECT, NearRows, Rows, World, WorldHit
+from impinge._world import World
+from impinge._world_arguments import Filter
+from impinge._world_results import (
+    NO_OBJECT,
+    HitRows,
+    ImpactRows,
+    NearRows,
+    Rows,
+    WorldHit,
+    WorldImpact,
+    WorldProjection,
+)
 
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "Ball",
+    "Boxes",
+    "Capsule",
+    "ClosestPoints",
+    "Compound",
+    "Cone",
+    "Contact",
+    "ConvexHull",
+    "Cuboid",
+    "Cylinder",
+    "Ellipsoid",
+    "Filter",
+    "HalfSpace",
+    "HeightField",
+    "HitRows",
+    "Impact",
+    "ImpactRows",
+    "Manifolds",
+    "NO_OBJECT",
+    "NearRows",
+    "Nearest",
+    "Picked",
+    "Picture",
+    "Polyline",
+    "Poses",
+    "Projection",
+    "Proximity",
+    "RayHit",
+    "Recording",
+    "Rounded",
+    "Rows",
+    "Scene",
+    "Segment",
+    "Shape",
+    "TaperedCapsule",
+    "Tetrahedron",
+    "TriMesh",
+    "Triangle",
+    "Witness",
+    "World",
+    "WorldHit",
+    "WorldImpact",
+    "WorldProjection",
+    "aabb",
+    "cast_rays",
+    "closest_points",
+    "contact",
+    "contact_manifolds",
+    "contains",
+    "distance",
+    "impact",
+    "nearest",
+    "pairs_within",
+    "picture",
+    "project_points",
+    "proximity",
+    "signed_distance",
+    "witness",
+]

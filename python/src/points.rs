@@ -5,11 +5,11 @@ use impinge::math::na::convert;
 use pyo3::prelude::*;
 
 use crate::answer::{Column, into_python};
-use crate::error;
+use crate::error::{self, not_nan};
 use crate::shapes::kind_of;
-use crate::side::SideArgument;
+use crate::side::{Elements, SideArgument};
 use crate::space::{Kind, Numeric, Task, run_in};
-use crate::supervise::{Call, supervise};
+use crate::supervise::{Call, each, supervise};
 use crate::vectors::Vectors;
 
 /// What is asked of points.
@@ -102,6 +102,7 @@ pub(crate) fn cast_rays<'py>(
     solid: bool,
     call: Call,
 ) -> PyResult<Bound<'py, PyAny>> {
+    not_nan("max_time", max_time)?;
     let kind = kind_of(shape, "shape")?;
     let side = SideArgument { shapes: shape, poses, names: ["shape", "poses"] };
     run_in(kind, CastRays { side, rays: [origins, directions], max_time, solid, call, kind })
@@ -138,5 +139,39 @@ impl<'py> Task for CastRays<'_, 'py> {
             found.map_err(|error| error::of_batch(&error, "origins"))?;
         let is_lone = given.is_lone() && origins.is_lone() && directions.is_lone();
         into_python(py, Some("RayHit"), columns.into(), is_lone)
+    }
+}
+
+/// Boxes of a side.
+struct Boxes<'a, 'py> {
+    side: SideArgument<'a, 'py>,
+    call: Call,
+    kind: Kind,
+}
+
+/// The axis-aligned boxes of placed shapes.
+pub(crate) fn boxes<'py>(
+    [shape, poses]: [&Bound<'py, PyAny>; 2],
+    call: Call,
+) -> PyResult<Bound<'py, PyAny>> {
+    let kind = kind_of(shape, "shape")?;
+    let side = SideArgument { shapes: shape, poses, names: ["shape", "poses"] };
+    run_in(kind, Boxes { side, call, kind })
+}
+
+impl<'py> Task for Boxes<'_, 'py> {
+    type Answer = Bound<'py, PyAny>;
+
+    fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
+        let py = self.side.shapes.py();
+        let given = self.side.read::<N, D>(self.kind)?;
+        let Elements { shapes, positions } = given.elements()?;
+        let found = each(py, shapes.len(), &self.call, |element| {
+            let aabb = shapes[element].aabb(&N::pose(&positions[element]));
+            [aabb.mins(), aabb.maxs()].map(|corner| corner.coords.into())
+        })?;
+        let corner = |end: usize| Column::Vectors(found.iter().map(|ends| ends[end]).collect());
+        let columns: Vec<Column<N, D>> = vec![corner(0), corner(1)];
+        into_python(py, Some("Boxes"), columns, given.is_lone())
     }
 }
