@@ -1,5 +1,9 @@
 """Every query of worlds: numbers known by arithmetic, filters, and the same answers in batches and alone."""
 
+import _thread
+import threading
+import time
+
 import impinge
 import numpy as np
 import pytest
@@ -222,3 +226,24 @@ def test_height_fields_have_holes_and_diagonals():
         impinge.HeightField(heights, [4, 1, 4], holes=[True, True, False])
     with pytest.raises(TypeError, match="backward"):
         impinge.HeightField(heights, [4, 1, 4], backward=3)
+
+
+def test_ctrl_c_ends_a_query_and_other_threads_run_meanwhile():
+    world = impinge.World()
+    rng = np.random.default_rng(1)
+    world.add(impinge.Ball(1), impinge.Poses(rng.uniform(-20, 20, (300, 3))))
+    rays, ticks = rng.normal(size=(3_000_000, 3)), []
+
+    def interrupt():
+        for _ in range(20):
+            time.sleep(0.01)
+            ticks.append(time.monotonic())
+        _thread.interrupt_main()
+
+    thread = threading.Thread(target=interrupt)
+    thread.start()
+    with pytest.raises(KeyboardInterrupt):
+        world.ray_hits(np.zeros(3), rays)
+    thread.join()
+    assert len(ticks) == 20
+    assert len(world) == 300
