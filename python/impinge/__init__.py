@@ -26,7 +26,9 @@ from impinge._native import (
     signed_distance,
     witness,
 )
+from impinge._pictures import Picture, picture
 from impinge._poses import Poses
+from impinge._recording import Recording
 from impinge._results import (
     ClosestPoints,
     Contact,
@@ -60,6 +62,79 @@ from impinge._shapes import (
     TriMesh,
 )
 from impinge._tiles import TileRows, Tiles, tiles
-from impinge._world import NO_OBJECT, NearRows, Rows, World, WorldHit
+from impinge._world import World
+from impinge._world_arguments import Filter
+from impinge._world_results import (
+    NO_OBJECT,
+    HitRows,
+    ImpactRows,
+    NearRows,
+    Rows,
+    WorldHit,
+    WorldImpact,
+    WorldProjection,
+)
 
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "Ball",
+    "Capsule",
+    "ClosestPoints",
+    "Compound",
+    "Cone",
+    "Contact",
+    "ConvexHull",
+    "Cuboid",
+    "Cylinder",
+    "Ellipsoid",
+    "Filter",
+    "HalfSpace",
+    "HeightField",
+    "HitRows",
+    "Impact",
+    "ImpactRows",
+    "Manifolds",
+    "NO_OBJECT",
+    "NearRows",
+    "Nearest",
+    "Picked",
+    "Picture",
+    "Polyline",
+    "Poses",
+    "Projection",
+    "Proximity",
+    "RayHit",
+    "Recording",
+    "Rounded",
+    "Rows",
+    "Scene",
+    "Segment",
+    "Shape",
+    "TaperedCapsule",
+    "Tetrahedron",
+    "TileRows",
+    "Tiles",
+    "TriMesh",
+    "Triangle",
+    "Witness",
+    "World",
+    "WorldHit",
+    "WorldImpact",
+    "WorldProjection",
+    "boxes",
+    "cast_rays",
+    "closest_points",
+    "contact",
+    "contact_manifolds",
+    "contains",
+    "distance",
+    "impact",
+    "nearest",
+    "pairs_in_tile",
+    "pairs_within",
+    "picture",
+    "project_points",
+    "proximity",
+    "signed_distance",
+    "tiles",
+    "witness",
+]

@@ -19,8 +19,10 @@ class Poses:
     A pose x -> rotation x + translation takes the frame of a shape to the world. Any function that takes poses
     also takes the matrices themselves, in C order and of the dtype of the shape without a copy.
 
-    translations: (D,) or (n, D). quaternions: (4,) or (n, 4), of any length but zero, in the order "xyzw" (SciPy, ROS) or
-    "wxyz" (MuJoCo, trimesh), in 3D. angles: a number or (n,) in radians, counter-clockwise, in 2D.
+    Errors: ValueError if a shape does not fit, a number is not finite or a quaternion is zero, with the row and the value.
+
+    translations: (D,) or (n, D), in the length of the shapes. quaternions: (4,) or (n, 4), of any length but zero, in the
+    order "xyzw" (SciPy, ROS) or "wxyz" (MuJoCo, trimesh), in 3D. angles: a number or (n,) in radians, counter-clockwise, in 2D.
 
     >>> half_turn = Poses([1, 2, 3], quaternions=[0, 0, 1, 0], order="xyzw")
     >>> half_turn.matrices[0].tolist()
@@ -37,7 +39,7 @@ class Poses:
         order: str | None = None,
         angles: ArrayLike | None = None,
     ) -> None:
-        places = _finite(np.asarray(translations, dtype=np.float64), "translations")
+        places = _finite(_floats(translations, "translations"), "translations")
         if places.ndim not in (1, 2) or places.shape[-1] not in (2, 3):
             raise ValueError(f"translations has the shape {places.shape}, where (D,) or (n, D) is needed")
         if quaternions is not None:
@@ -45,26 +47,41 @@ class Poses:
                 raise ValueError("quaternions are rotations of 3D, but translations have 2 numbers")
             if order not in ("xyzw", "wxyz"):
                 raise ValueError(f'order is {order!r}: name the order of quaternions, "xyzw" or "wxyz"')
-            rotations = _of_quaternions(np.asarray(quaternions, dtype=np.float64), order)
+            rotations = _of_quaternions(_floats(quaternions, "quaternions"), order)
         elif angles is not None:
             if places.shape[-1] != 2:
                 raise ValueError("angles are rotations of 2D, but translations have 3 numbers")
-            rotations = _of_angles(_finite(np.asarray(angles, dtype=np.float64), "angles"))
+            rotations = _of_angles(_finite(_floats(angles, "angles"), "angles"))
         else:
             rotations = np.eye(places.shape[-1])
         self.matrices = _joined(rotations, places)
 
     @classmethod
     def from_rotation(cls, rotation: Rotation, translations: ArrayLike) -> Poses:
-        """Of a `scipy.spatial.transform.Rotation`, one or many, in 3D."""
+        """Of a `scipy.spatial.transform.Rotation`, one or many, and translations (3,) or (n, 3).
+
+        >>> from scipy.spatial.transform import Rotation
+        >>> Poses.from_rotation(Rotation.from_euler("z", [[90], [180]], degrees=True), [1, 2, 3])
+        <impinge.Poses (2, 4, 4)>
+        """
+        if not hasattr(rotation, "as_matrix"):
+            raise TypeError(f"rotation is {type(rotation).__name__}, where a Rotation of SciPy is needed")
         poses = cls(translations)
+        if poses.matrices.shape[-1] != 4:
+            raise ValueError("rotation is of 3D, but translations have 2 numbers")
         poses.matrices = _joined(np.asarray(rotation.as_matrix()), poses.matrices[..., :-1, -1])
         return poses
 
     @classmethod
     def from_matrices(cls, matrices: ArrayLike) -> Poses:
-        """Of matrices (D+1, D+1) or (n, D+1, D+1)."""
-        array = np.asarray(matrices, dtype=np.float64)
+        """Of matrices (D+1, D+1) or (n, D+1, D+1), of 2D or 3D. They are checked where they are used.
+
+        >>> Poses.from_matrices(np.eye(3))
+        <impinge.Poses (3, 3)>
+        """
+        array = _floats(matrices, "matrices")
+        if array.ndim not in (2, 3) or array.shape[-2:] not in ((3, 3), (4, 4)):
+            raise ValueError(f"matrices has the shape {array.shape}, where (D+1, D+1) or (n, D+1, D+1) is needed")
         poses = cls(np.zeros(array.shape[-1] - 1))
         poses.matrices = array
         return poses
@@ -81,6 +98,10 @@ class Poses:
 
     def __repr__(self) -> str:
         return f"<impinge.Poses {self.matrices.shape}>"
+
+
+def _floats(given: ArrayLike, name: str) -> Array:
+    return numbers(given, np.float64, name, "numbers")
 
 
 def _finite(array: Array, name: str) -> Array:
@@ -133,14 +154,22 @@ def _joined(rotations: Array, translations: Array) -> Array:
     return matrices
 
 
+def numbers(given: Any, dtype: DTypeLike, name: str, what: str) -> Array:
+    """An argument as an array of this type in C order. TypeError for complex numbers, texts and ragged lists."""
+    try:
+        array = np.asarray(given)
+        if array.dtype.kind in "biufO":
+            return np.asarray(array, dtype=dtype, order="C")
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} is no array of {what}: {type(given).__name__}") from error
+    raise TypeError(f"{name} is no array of {what}: {array.dtype}")
+
+
 def matrices(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
     """An argument as an array (dim+1, dim+1) or (n, dim+1, dim+1) in C order."""
     if isinstance(given, Poses):
         given = given.matrices
-    try:
-        array = np.asarray(given, dtype=dtype, order="C")
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} is no array of matrices, Poses or None: {type(given).__name__}") from error
+    array = numbers(given, dtype, name, "matrices, Poses or None")
     if array.ndim not in (2, 3) or array.shape[-2:] != (dim + 1, dim + 1):
         need = f"({dim + 1}, {dim + 1}) or (n, {dim + 1}, {dim + 1})"
         raise ValueError(f"{name} has the shape {array.shape}, where {need} is needed in {dim}D")
@@ -149,10 +178,17 @@ def matrices(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
 
 def vectors(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
     """An argument as an array (dim,) or (n, dim) in C order."""
-    try:
-        array = np.asarray(given, dtype=dtype, order="C")
-    except (TypeError, ValueError) as error:
-        raise TypeError(f"{name} is no array of vectors: {type(given).__name__}") from error
+    array = numbers(given, dtype, name, "vectors")
     if array.ndim not in (1, 2) or array.shape[-1] != dim:
         raise ValueError(f"{name} has the shape {array.shape}, where ({dim},) or (n, {dim}) is needed in {dim}D")
     return array
+
+
+def angular_velocities(given: Any, dim: int, dtype: DTypeLike, name: str) -> tuple[Array, bool]:
+    """An argument as rows of one number in 2D, of three in 3D, and whether it was one row alone."""
+    need = "a number or (n,)" if dim == 2 else "(3,) or (n, 3)"
+    array = numbers(given, dtype, name, "angular velocities")
+    is_lone = array.ndim == dim - 2
+    if array.ndim not in (dim - 2, dim - 1) or (dim == 3 and array.shape[-1] != 3):
+        raise ValueError(f"{name} has the shape {array.shape}, where {need} is needed in {dim}D")
+    return np.ascontiguousarray(array.reshape(-1, 1 if dim == 2 else 3)), is_lone

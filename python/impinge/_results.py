@@ -23,7 +23,7 @@ class ClosestPoints(NamedTuple):
 
 
 class Witness(NamedTuple):
-    """The nearest or deepest points of two shapes, and the parts of composites they lie on."""
+    """The nearest or deepest points of two shapes, and the parts of composites they lie on: (n,) and (n, D), or scalars."""
 
     distance: Any
     point1: Any
@@ -34,7 +34,7 @@ class Witness(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Where two shapes touch: the depth is positive where they overlap."""
+    """Where two shapes touch: depth (n,), positive where they overlap, normal and points (n, D), or scalars."""
 
     depth: Any
     normal: Any
@@ -43,7 +43,7 @@ class Contact(NamedTuple):
 
 
 class Impact(NamedTuple):
-    """When two moving shapes meet, and where."""
+    """When two moving shapes meet, and where: (n,) and (n, D), or scalars."""
 
     time: Any
     normal: Any
@@ -60,7 +60,7 @@ class Nearest(NamedTuple):
 
 
 class Manifolds(NamedTuple):
-    """Contact points in rows: those of pair i are `starts[i]` to `starts[i + 1]`."""
+    """Contact points in rows: those of pair i are `starts[i]` to `starts[i + 1]` of the other columns, (m,) and (m, D)."""
 
     starts: Any
     depth: Any
@@ -88,7 +88,7 @@ class Manifolds(NamedTuple):
 
 
 class Projection(NamedTuple):
-    """The points of shapes that are nearest to given ones."""
+    """The points of shapes that are nearest to given ones: (n, D), (n,) and (n,), or scalars."""
 
     point: Any
     is_inside: Any
@@ -96,7 +96,7 @@ class Projection(NamedTuple):
 
 
 class RayHit(NamedTuple):
-    """Where rays meet shapes; the time is infinite without a hit."""
+    """Where rays meet shapes, (n,), (n, D) and (n,); the time is infinite without a hit."""
 
     time: Any
     normal: Any

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
 from impinge import _native
 from impinge._native import Shape
+from impinge._pictures import View, html_of
+
+if TYPE_CHECKING:
+    from impinge._native import Shapes
 
 
 class Scene:
     """Shapes at poses that do not change: it compares, hashes and pickles by its bytes.
+
+    shapes, poses: as of `impinge.distance`; at least one object. ValueError names the row of a pose that is none.
 
     The bytes are a recording of the calls that add the objects (the format of `impinge-record`): versioned, checksummed, the
     same on every machine. Poses are kept as unit quaternions: `poses` has their matrices, which may differ in the last digits
@@ -27,20 +32,28 @@ class Scene:
     [0.5, 0.5]
     """
 
-    def __init__(self, shapes: Shape | Sequence[Shape], poses: Any) -> None:
-        first = shapes if isinstance(shapes, Shape) else shapes[0]
-        self._take(_native.scene_bytes(shapes, poses), first.dim, first.dtype)
+    def __init__(self, shapes: Shapes, poses: Any) -> None:
+        self._take(_native.scene_bytes(shapes, poses))
 
-    def _take(self, data: bytes, dim: int, dtype: str) -> None:
-        self._shapes, self._poses = _native.scene_of_bytes(data, dim, dtype)
+    def _take(self, data: bytes) -> None:
+        self._shapes, self._poses, self.dim, self.dtype = _native.scene_of_bytes(data)
         self._poses.flags.writeable = False
-        self._bytes, self.dim, self.dtype = data, dim, dtype
+        self._bytes = data
 
     @classmethod
-    def from_bytes(cls, data: bytes, *, dim: int = 3, dtype: str = "float64") -> Scene:
-        """The scene of `to_bytes`. ValueError names the offset of what is damaged."""
+    def from_bytes(cls, data: bytes, *, dim: int | None = None, dtype: str | None = None) -> Scene:
+        """The scene of `to_bytes`. ValueError names the offset of what is damaged, or another dim or dtype than is asked for.
+
+        >>> import impinge
+        >>> data = impinge.Scene(impinge.Ball(1, dim=2), None).to_bytes()
+        >>> impinge.Scene.from_bytes(data)
+        <impinge.Scene of 1 objects, 2D float64>
+        """
         scene = cls.__new__(cls)
-        scene._take(bytes(data), dim, dtype)
+        scene._take(bytes(data))
+        for name, asked, given in (("dim", dim, scene.dim), ("dtype", dtype, scene.dtype)):
+            if asked not in (None, given):
+                raise ValueError(f"{name} is {asked!r}, but the scene is of {given!r}")
         return scene
 
     def to_bytes(self) -> bytes:
@@ -68,17 +81,19 @@ class Scene:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
             return NotImplemented
-        return (self.dim, self.dtype, self._bytes) == (other.dim, other.dtype, other._bytes)
+        return self._bytes == other._bytes
 
     def __hash__(self) -> int:
-        return hash((self.dim, self.dtype, self._bytes))
+        return hash(self._bytes)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return (_read, (self._bytes, self.dim, self.dtype))
+        return (Scene.from_bytes, (self._bytes,))
+
+    def _picture(self, view: View) -> tuple[str, bytes]:
+        return _native.picture_of(self._shapes, self._poses, view)
+
+    def _repr_html_(self) -> str:
+        return html_of(self)
 
     def __repr__(self) -> str:
         return f"<impinge.Scene of {len(self)} objects, {self.dim}D {self.dtype}>"
-
-
-def _read(data: bytes, dim: int, dtype: str) -> Scene:
-    return Scene.from_bytes(data, dim=dim, dtype=dtype)

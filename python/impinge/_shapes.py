@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import Shape
+from impinge._poses import numbers
 
 DType = Literal["float32", "float64"]
 
@@ -28,14 +29,15 @@ class Picked:
 
     def __init__(self, shapes: Sequence[Shape], picks: ArrayLike) -> None:
         self.shapes = list(shapes)
-        numbers = np.asarray(picks)
-        if numbers.ndim != 1 or (numbers.size and not np.issubdtype(numbers.dtype, np.integer)):
-            raise ValueError(f"picks is {numbers.dtype} of the shape {numbers.shape}, where (n,) integers are needed")
-        wrong = (numbers < 0) | (numbers >= len(self.shapes))
-        if wrong.any():
-            row = int(np.argmax(wrong))
-            raise ValueError(f"picks[{row}] is {numbers[row]}, but there are {len(self.shapes)} shapes")
-        self.picks: NDArray[np.uint32] = np.ascontiguousarray(numbers, dtype=np.uint32)
+        given = np.asarray(picks)
+        if given.ndim != 1 or (given.size and not np.issubdtype(given.dtype, np.integer)):
+            raise ValueError(f"picks is {given.dtype} of the shape {given.shape}, where (n,) integers are needed")
+        if given.size:
+            wrong = (given < 0) | (given >= len(self.shapes))
+            if wrong.any():
+                row = int(np.argmax(wrong))
+                raise ValueError(f"picks[{row}] is {given[row]}, but there are {len(self.shapes)} shapes")
+        self.picks: NDArray[np.uint32] = np.array(given.tolist(), dtype=np.uint32)
 
     def __len__(self) -> int:
         return len(self.picks)
@@ -45,7 +47,7 @@ def _make(
     name: str,
     dim: int,
     dtype: str,
-    numbers: ArrayLike = (),
+    values: ArrayLike = (),
     points: Any = None,
     parts: Any = None,
     children: Sequence[Shape] = (),
@@ -53,20 +55,42 @@ def _make(
     one_sided: bool = False,
     keep_internal_edges: bool = False,
 ) -> Shape:
-    flat = np.ascontiguousarray(numbers, dtype=np.float64).ravel()
+    flat = np.ascontiguousarray(values, dtype=np.float64).ravel()
+    if not all(isinstance(child, Shape) for child in children):
+        row = next(row for row, child in enumerate(children) if not isinstance(child, Shape))
+        raise TypeError(f"shapes[{row}] is {type(children[row]).__name__}, where a Shape is needed")
     return Shape(name, dim, dtype, flat, points, parts, list(children), poses, one_sided, keep_internal_edges)
+
+
+def _floats(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    return numbers(values, np.float64, name, "numbers")
+
+
+def _number(value: Any, name: str) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise TypeError(f"{name} is no number: {type(value).__name__}") from error
+
+
+def _finite(rows: NDArray[np.float64], name: str) -> NDArray[np.float64]:
+    wrong = ~np.isfinite(rows)
+    if wrong.any():
+        row = tuple(int(index) for index in np.argwhere(wrong)[0])
+        raise ValueError(f"{name}{list(row)} is {rows[row]}")
+    return rows
 
 
 def _rows(values: ArrayLike, name: str) -> NDArray[np.float64]:
     """Points as rows of two or three numbers."""
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    array = _finite(_floats(values, name), name)
     if array.ndim != 2 or array.shape[1] not in (2, 3):
         raise ValueError(f"{name} has the shape {array.shape}, where (n, 2) or (n, 3) is needed")
     return array
 
 
 def _vector(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    array = _finite(_floats(values, name), name)
     if array.ndim != 1 or array.shape[0] not in (2, 3):
         raise ValueError(f"{name} has the shape {array.shape}, where (2,) or (3,) is needed")
     return array
@@ -83,29 +107,47 @@ def _indices(values: ArrayLike, width: int, count: int, name: str) -> NDArray[np
     return np.ascontiguousarray(array, dtype=np.uint32)
 
 
+def _dim(given: int) -> int:
+    if given not in (2, 3):
+        raise ValueError(f"dim is {given}: it is 2 or 3")
+    return int(given)
+
+
 def Ball(radius: float, *, dim: int = 3, dtype: DType = "float64") -> Shape:
     """All points within a radius of the origin.
 
     >>> Ball(0.5)
     <impinge.Ball 3D float64>
     """
-    return _make("Ball", dim, dtype, [radius])
+    return _make("Ball", _dim(dim), dtype, [_number(radius, "radius")])
 
 
 def Cuboid(half_extents: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A box, or a rectangle in 2D, of half the side lengths."""
+    """A box, or a rectangle in 2D, of half the side lengths (D,), none of which is negative.
+
+    >>> Cuboid([1, 2]), Cuboid([1, 2, 3], dtype="float32")
+    (<impinge.Cuboid 2D float64>, <impinge.Cuboid 3D float32>)
+    """
     half = _vector(half_extents, "half_extents")
     return _make("Cuboid", len(half), dtype, half)
 
 
 def Ellipsoid(half_axes: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A stretched ball, or an ellipse in 2D."""
+    """A stretched ball, or an ellipse in 2D, of half the lengths (D,) along its axes.
+
+    >>> Ellipsoid([3, 2, 1])
+    <impinge.Ellipsoid 3D float64>
+    """
     half = _vector(half_axes, "half_axes")
     return _make("Ellipsoid", len(half), dtype, half)
 
 
 def HalfSpace(normal: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """All points behind a plane (a line in 2D) through the origin; the normal points out and is normalized."""
+    """All points behind a plane (a line in 2D) through the origin; the normal (D,) points out and is normalized.
+
+    >>> HalfSpace([0, 1, 0])
+    <impinge.HalfSpace 3D float64>
+    """
     direction = _vector(normal, "normal")
     length = np.linalg.norm(direction)
     if not (np.isfinite(length) and length > 0):
@@ -124,9 +166,13 @@ def Capsule(
     dim: int = 3,
     dtype: DType = "float64",
 ) -> Shape:
-    """The points within a radius of a segment: along y from -half_height to half_height, or between two ends."""
+    """The points within a radius of a segment: along y from -half_height to half_height, or between two ends (2, D).
+
+    >>> Capsule(1.0, 0.25), Capsule(ends=[[0, 0], [3, 4]], radius=1)
+    (<impinge.Capsule 3D float64>, <impinge.Capsule 2D float64>)
+    """
     points = _between(half_height, ends, dim)
-    return _make("Capsule", points.shape[1], dtype, [radius], points)
+    return _make("Capsule", points.shape[1], dtype, [_number(radius, "radius")], points)
 
 
 def TaperedCapsule(
@@ -137,9 +183,16 @@ def TaperedCapsule(
     dim: int = 3,
     dtype: DType = "float64",
 ) -> Shape:
-    """The hull of two balls with these radii around the lower and the upper end."""
+    """The hull of two balls with these radii (2,) around the lower and the upper end, or the two ends (2, D).
+
+    >>> TaperedCapsule(1.0, [0.5, 0.25])
+    <impinge.TaperedCapsule 3D float64>
+    """
     points = _between(half_height, ends, dim)
-    return _make("TaperedCapsule", points.shape[1], dtype, radii, points)
+    both = _floats(radii, "radii")
+    if both.shape != (2,):
+        raise ValueError(f"radii has the shape {both.shape}, where (2,) is needed")
+    return _make("TaperedCapsule", points.shape[1], dtype, both, points)
 
 
 def _between(half_height: float | None, ends: ArrayLike | None, dim: int) -> NDArray[np.float64]:
@@ -147,45 +200,81 @@ def _between(half_height: float | None, ends: ArrayLike | None, dim: int) -> NDA
         raise ValueError("give either half_height or ends")
     if ends is not None:
         return _rows(ends, "ends")
-    points = np.zeros((2, dim))
-    points[:, 1] = [-float(half_height or 0), float(half_height or 0)]
+    points = np.zeros((2, _dim(dim)))
+    height = _number(half_height, "half_height")
+    if not 0 <= height < np.inf:
+        raise ValueError(f"half_height is {height}: it is finite and not negative")
+    points[:, 1] = [-height, height]
     return points
 
 
 def Cylinder(half_height: float, radius: float, *, dtype: DType = "float64") -> Shape:
-    """A cylinder along y, in 3D."""
-    return _make("Cylinder", 3, dtype, [half_height, radius])
+    """A cylinder along y, in 3D.
+
+    >>> Cylinder(1.0, 0.5)
+    <impinge.Cylinder 3D float64>
+    """
+    return _make("Cylinder", 3, dtype, [_number(half_height, "half_height"), _number(radius, "radius")])
 
 
 def Cone(half_height: float, radius: float, *, dtype: DType = "float64") -> Shape:
-    """A cone along y with its apex on top, in 3D: the base is at -half_height."""
-    return _make("Cone", 3, dtype, [half_height, radius])
+    """A cone along y with its apex on top, in 3D: the base of this radius is at -half_height.
+
+    >>> Cone(1.0, 0.5)
+    <impinge.Cone 3D float64>
+    """
+    return _make("Cone", 3, dtype, [_number(half_height, "half_height"), _number(radius, "radius")])
 
 
 def Segment(ends: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A straight line between two points (2, D)."""
+    """A straight line between two points (2, D).
+
+    >>> Segment([[0, 0], [1, 0]])
+    <impinge.Segment 2D float64>
+    """
     points = _rows(ends, "ends")
     return _make("Segment", points.shape[1], dtype, points=points)
 
 
 def Triangle(corners: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A filled triangle of three points (3, D)."""
+    """A filled triangle of three points (3, D).
+
+    >>> Triangle([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    <impinge.Triangle 3D float64>
+    """
     points = _rows(corners, "corners")
     return _make("Triangle", points.shape[1], dtype, points=points)
 
 
 def Tetrahedron(corners: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """A solid of four points (4, 3)."""
-    return _make("Tetrahedron", 3, dtype, points=_rows(corners, "corners"))
+    """A solid of four points (4, 3).
+
+    >>> Tetrahedron([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    <impinge.Polytope 3D float64>
+    """
+    points = _rows(corners, "corners")
+    if points.shape != (4, 3):
+        raise ValueError(f"corners has the shape {points.shape}, where (4, 3) is needed")
+    return _make("Tetrahedron", 3, dtype, points=points)
 
 
 def Rounded(shape: Shape, radius: float) -> Shape:
-    """The points within a radius of a convex shape."""
-    return _make("Rounded", shape.dim, shape.dtype, [radius], children=[shape])
+    """The points within a radius of a convex shape. ValueError for a half-space or a composite.
+
+    >>> Rounded(Cuboid([1, 1, 1]), 0.25)
+    <impinge.Rounded 3D float64>
+    """
+    if not isinstance(shape, Shape):
+        raise TypeError(f"shape is {type(shape).__name__}, where a Shape is needed")
+    return _make("Rounded", shape.dim, shape.dtype, [_number(radius, "radius")], children=[shape])
 
 
 def ConvexHull(points: ArrayLike, *, dtype: DType = "float64") -> Shape:
-    """The convex hull of points (n, 3); in 2D of points (n, 2)."""
+    """The convex hull of points (n, 3); in 2D of points (n, 2). ValueError if it has no volume (no area).
+
+    >>> ConvexHull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])
+    <impinge.Polytope 3D float64>
+    """
     rows = _rows(points, "points")
     name = "ConvexHull" if rows.shape[1] == 3 else "ConvexPolygon"
     return _make(name, rows.shape[1], dtype, points=rows)
@@ -199,7 +288,9 @@ def TriMesh(
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
-    """A surface of triangles: vertices (n, D) and the numbers of their corners (m, 3), counter-clockwise from outside.
+    """A surface of triangles, filled in 2D: vertices (n, D) and the numbers of their corners (m, 3).
+
+    The corners are counter-clockwise from outside. ValueError names the row of a triangle or vertex that is none.
 
     one_sided: nothing touches it from behind. keep_internal_edges: contacts treat each triangle on its own.
 
@@ -227,7 +318,11 @@ def Polyline(
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
-    """A line of segments: vertices (n, D), and the numbers of the ends (m, 2); without, one vertex after the other."""
+    """A line of segments: vertices (n, D), and the numbers of the ends (m, 2); without, one vertex after the other.
+
+    >>> Polyline([[0, 0], [1, 0], [1, 1]])
+    <impinge.Composite 2D float64>
+    """
     rows = _rows(vertices, "vertices")
     if segments is None:
         segments = np.stack([np.arange(len(rows) - 1), np.arange(1, len(rows))], axis=1)
@@ -247,28 +342,81 @@ def HeightField(
     heights: ArrayLike,
     scale: ArrayLike,
     *,
+    holes: ArrayLike | None = None,
+    backward: ArrayLike | bool = False,
     one_sided: bool = False,
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
     """Heights along y over a grid around the origin: (rows, columns) in 3D, rows along z; (n,) in 2D.
 
-    The scale has the sizes of the whole grid along x (and z), and the factor of heights along y.
+    scale: (D,), the sizes of the whole grid along x (and z), and the factor of heights along y. holes: bools for cells that
+    are missing, (n-1,) in 2D and (rows-1, columns-1) in 3D, or (rows-1, columns-1, 2) for the triangles of cells. backward: a
+    bool, or one for each cell in 3D, whose two triangles then meet at the other diagonal. one_sided: nothing touches it from
+    below.
+
+    >>> import impinge
+    >>> field = HeightField([[0, 0, 0], [0, 2, 0], [0, 0, 0]], [4, 0.5, 4], holes=[[True, False], [False, False]])
+    >>> impinge.cast_rays(field, None, [[-1, 9, -1], [1, 9, 1]], [0, -1, 0]).time.tolist()
+    [inf, 8.5]
     """
-    grid = np.ascontiguousarray(heights, dtype=np.float64)
-    if grid.ndim not in (1, 2):
-        raise ValueError(f"heights has the shape {grid.shape}, where (n,) or (rows, columns) is needed")
+    grid = _finite(_floats(heights, "heights"), "heights")
+    if grid.ndim not in (1, 2) or min(grid.shape) < 2:
+        need = "(n,) or (rows, columns) with at least 2"
+        raise ValueError(f"heights has the shape {grid.shape}, where {need} is needed")
     factors = _vector(scale, "scale")
     if len(factors) != grid.ndim + 1:
         raise ValueError(f"scale has {len(factors)} numbers, where {grid.ndim + 1} are needed")
-    numbers = np.concatenate([factors, [grid.shape[-1]], grid.ravel()])
+    values = np.concatenate([factors, [grid.shape[-1]], grid.ravel()])
     return _make(
-        "HeightField", grid.ndim + 1, dtype, numbers, one_sided=one_sided, keep_internal_edges=keep_internal_edges
+        "HeightField",
+        grid.ndim + 1,
+        dtype,
+        values,
+        parts=_marks(tuple(size - 1 for size in grid.shape), holes, backward),
+        one_sided=one_sided,
+        keep_internal_edges=keep_internal_edges,
     )
 
 
+def _marks(cells: tuple[int, ...], holes: ArrayLike | None, backward: ArrayLike) -> NDArray[np.uint32]:
+    """What is special about cells: bits 0 and 1 for missing triangles, bit 2 for the other diagonal."""
+    marks = np.zeros(cells, dtype=np.uint32)
+    if holes is not None:
+        missing = _bools(holes, "holes")
+        if missing.shape == (*cells, 2) and len(cells) == 2:
+            marks |= missing[..., 0] * np.uint32(1) | missing[..., 1] * np.uint32(2)
+        elif missing.shape == cells:
+            marks |= missing * np.uint32(3 if len(cells) == 2 else 1)
+        else:
+            raise ValueError(f"holes has the shape {missing.shape}, where {cells} is needed")
+    turned = _bools(backward, "backward")
+    if turned.shape not in ((), cells) or (turned.any() and len(cells) == 1):
+        raise ValueError(f"backward has the shape {turned.shape}, where a bool or, in 3D, {cells} is needed")
+    marks |= turned * np.uint32(4)
+    return marks.reshape(-1, 1)
+
+
+def _bools(given: ArrayLike, name: str) -> NDArray[np.bool_]:
+    array = np.asarray(given)
+    if array.dtype != np.bool_:
+        raise TypeError(f"{name} is {array.dtype}, where bools are needed")
+    return array
+
+
 def Compound(shapes: Sequence[Shape], poses: Any) -> Shape:
-    """Shapes that move as one, each at its pose in the frame of the compound."""
-    if not shapes:
+    """Shapes that move as one, each at its pose in the frame of the compound: as many poses (n, D+1, D+1) as shapes.
+
+    The shapes may be compounds and other composites. ValueError if there is none, or a half-space among them.
+
+    >>> import impinge
+    >>> Compound([Ball(1), Cuboid([1, 1, 1])], impinge.Poses([[0, 0, 0], [3, 0, 0]]))
+    <impinge.Composite 3D float64>
+    """
+    if isinstance(shapes, Shape):
+        raise TypeError("shapes is a Shape, where a sequence of Shapes is needed")
+    if len(shapes) == 0:
         raise ValueError("shapes is empty")
+    if not isinstance(shapes[0], Shape):
+        raise TypeError(f"shapes[0] is {type(shapes[0]).__name__}, where a Shape is needed")
     return _make("Compound", shapes[0].dim, shapes[0].dtype, children=shapes, poses=poses)

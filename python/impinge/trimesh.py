@@ -2,8 +2,9 @@
 
     from impinge.trimesh import CollisionManager, scene_to_collision
 
-Meshes are surfaces, as they are for FCL: one that is inside another without touching it does not collide. Where surfaces
-overlap, distances are negative: minus the depth of the parts that are deepest in each other.
+Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as they are in trimesh: what is inside a surface without
+touching it does not collide. Where meshes overlap, distances are negative: minus the depth, of surfaces that of the triangles
+that are deepest in each other.
 """
 
 from __future__ import annotations
@@ -14,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from impinge._native import Shape, contact_manifolds, nearest, pairs_within, witness
-from impinge._shapes import Picked, TriMesh
+from impinge._native import Shape, contact_manifolds, nearest, pairs_within, project_points, witness
+from impinge._shapes import ConvexHull, Picked, TriMesh
 
 if TYPE_CHECKING:
     import trimesh
@@ -55,10 +56,10 @@ class ContactData:
 class DistanceData:
     """The nearest points of two meshes."""
 
-    def __init__(self, names: tuple[str, str], found: Any) -> None:
+    def __init__(self, names: tuple[str, str], faces: tuple[int, int], found: Any) -> None:
         self.names = set(names)
         self._points = dict(zip(names, (found.point1, found.point2), strict=True))
-        self._faces = dict(zip(names, (int(found.part1), int(found.part2)), strict=True))
+        self._faces = dict(zip(names, faces, strict=True))
         self._distance = float(found.distance)
 
     @property
@@ -90,19 +91,20 @@ class CollisionManager:
 
     def __init__(self) -> None:
         self._shapes: dict[str, Shape] = {}
+        # The triangles of convex meshes, which name faces.
+        self._surfaces: dict[str, Shape] = {}
         self._transforms: dict[str, NDArray[np.float64]] = {}
 
     def add_object(self, name: str, mesh: trimesh.Trimesh, transform: ArrayLike | None = None) -> Shape:
         """Adds a mesh, or replaces the one of this name."""
-        matrix = _matrix(transform)
-        self._shapes[name] = _shape(mesh)
-        self._transforms[name] = matrix
+        matrix, surface = _matrix(transform), TriMesh(mesh.vertices, mesh.faces)
+        self._place(name, _shape(mesh, surface), surface, matrix)
         return self._shapes[name]
 
     def remove_object(self, name: str) -> None:
         """Removes a mesh."""
         self._known(name)
-        del self._shapes[name], self._transforms[name]
+        del self._shapes[name], self._surfaces[name], self._transforms[name]
 
     def set_transform(self, name: str, transform: ArrayLike) -> None:
         """Moves a mesh."""
@@ -146,9 +148,16 @@ class CollisionManager:
         distance, names, data = self._nearest(_single(mesh, transform), None)
         return _answer(distance, names[0], data, return_name, return_data)
 
-    def min_distance_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
-        """How far the nearest two meshes are apart."""
+    def min_distance_internal(
+        self, name: str | None = None, return_names: bool = False, return_data: bool = False
+    ) -> Any:
+        """How far the nearest two meshes are apart; with a name, those of which one is this mesh."""
         one, other = np.triu_indices(len(self._shapes), 1)
+        if name is not None:
+            self._known(name)
+            row = sorted(self._shapes).index(name)
+            is_wanted = (one == row) | (other == row)
+            one, other = one[is_wanted], other[is_wanted]
         distance, names, data = self._nearest(self, (one, other))
         return _answer(distance, tuple(sorted(names)), data, return_names, return_data)
 
@@ -158,6 +167,16 @@ class CollisionManager:
         """How far the nearest meshes of two managers are apart; the own name is the first."""
         distance, names, data = self._nearest(other_manager, None)
         return _answer(distance, names, data, return_names, return_data)
+
+    def _place(self, name: str, shape: Shape, surface: Shape, matrix: NDArray[np.float64]) -> None:
+        self._shapes[name], self._surfaces[name], self._transforms[name] = shape, surface, matrix
+
+    def _faces(self, name: str, parts: Any, points: Any) -> NDArray[np.int64]:
+        """The faces that hold points of a mesh: its parts, or of a solid the triangles that are nearest."""
+        if self._shapes[name] is self._surfaces[name]:
+            return np.asarray(parts, dtype=np.int64)
+        found = project_points(self._surfaces[name], self._transforms[name], points, False)
+        return np.asarray(found.part, dtype=np.int64)
 
     def _known(self, name: str) -> None:
         if name not in self._shapes:
@@ -197,8 +216,12 @@ class CollisionManager:
         for pair in range(len(one)):
             pair_names = names[int(one[pair])], other_names[int(other[pair])]
             found = rows.of(pair)
+            if not len(found.depth):
+                continue
+            faces1 = self._faces(pair_names[0], found.part1, found.point1)
+            faces2 = manager._faces(pair_names[1], found.part2, found.point2)
             for index in range(len(found.depth)):
-                faces = int(found.part1[index]), int(found.part2[index])
+                faces = int(faces1[index]), int(faces2[index])
                 middle = (found.point1[index] + found.point2[index]) / 2
                 row = {"normal": found.normal[index], "point": middle, "depth": found.depth[index]}
                 data.append(ContactData(pair_names, faces, row))
@@ -217,19 +240,24 @@ class CollisionManager:
         first, second = int(one[best]), int(other[best])
         found = witness(shapes1[first], poses1[first], shapes2[second], poses2[second])
         pair = names[first], others[second]
-        return float(found.distance), pair, DistanceData(pair, found)
+        faces = (
+            int(self._faces(pair[0], found.part1, found.point1)),
+            int(manager._faces(pair[1], found.part2, found.point2)),
+        )
+        return float(found.distance), pair, DistanceData(pair, faces, found)
 
 
 def scene_to_collision(scene: trimesh.Scene) -> tuple[CollisionManager, dict[str, Shape]]:
     """A manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes."""
     manager = CollisionManager()
-    shapes: dict[Any, Shape] = {}
+    shapes: dict[Any, tuple[Shape, Shape]] = {}
     for node in scene.graph.nodes_geometry:
         transform, geometry = scene.graph[node]
         if geometry not in shapes:
-            shapes[geometry] = _shape(scene.geometry[geometry])
-        manager._shapes[node] = shapes[geometry]
-        manager._transforms[node] = _matrix(transform)
+            mesh = scene.geometry[geometry]
+            surface = TriMesh(mesh.vertices, mesh.faces)
+            shapes[geometry] = _shape(mesh, surface), surface
+        manager._place(node, *shapes[geometry], _matrix(transform))
     return manager, dict(manager._shapes)
 
 
@@ -240,8 +268,14 @@ def _single(mesh: trimesh.Trimesh, transform: ArrayLike | None) -> CollisionMana
     return manager
 
 
-def _shape(mesh: trimesh.Trimesh) -> Shape:
-    return TriMesh(mesh.vertices, mesh.faces)
+def _shape(mesh: trimesh.Trimesh, surface: Shape) -> Shape:
+    """The solid of a convex mesh, the surface of others: of flat ones too, which are convex and have no volume."""
+    if not mesh.is_convex:
+        return surface
+    try:
+        return ConvexHull(mesh.vertices)
+    except ValueError:
+        return surface
 
 
 def _matrix(transform: ArrayLike | None) -> NDArray[np.float64]:

@@ -1,7 +1,8 @@
 //! Errors of the library as exceptions that name the argument, the row and the value.
 
 use impinge::batch::BatchError;
-use impinge::world::WorldError;
+use impinge::world::GroupError;
+use impinge_record::RecordError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 
@@ -16,7 +17,25 @@ pub(crate) fn of_batch(error: &BatchError, poses: &str) -> PyErr {
     }
 }
 
-/// An error of a world about a row of an argument.
-pub(crate) fn of_world(error: &WorldError, argument: &str, row: usize) -> PyErr {
+/// An error of a world, recorded or not, about a row of an argument.
+pub(crate) fn of_row(error: &RecordError, argument: &str, row: usize) -> PyErr {
     PyValueError::new_err(format!("{argument}[{row}]: {error}"))
+}
+
+/// An error of a world about a call as a whole.
+pub(crate) fn of_call(error: &RecordError) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// A group that there is not.
+pub(crate) fn of_groups(error: &GroupError) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+/// A limit must be a number, which may be infinite.
+pub(crate) fn not_nan(name: &str, value: f64) -> Result<(), PyErr> {
+    if value.is_nan() {
+        return Err(PyValueError::new_err(format!("{name} is nan")));
+    }
+    Ok(())
 }

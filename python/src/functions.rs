@@ -7,11 +7,12 @@
 use pyo3::prelude::*;
 
 use crate::pairs::{
-    Closest, Contacts, Distances, Form, Manifolds, Nearest, PairCall, Proximities, Witnesses,
+    Closest, Contacts, Distances, Form, ImpactCall, Manifolds, Nearest, PairCall, Proximities,
+    Witnesses,
 };
 use crate::points;
 use crate::points::{PointQuestion, ask_points};
-use crate::supervise::Call;
+use crate::supervise::{Call, Threads, count};
 
 /// Adds the functions about pairs.
 pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -30,6 +31,17 @@ pub(crate) fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(cast_rays, module)?)
 }
 
+/// How many points a manifold may have: at least one.
+struct MaxPoints(usize);
+
+impl FromPyObject<'_, '_> for MaxPoints {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        count(given, "max_points").map(Self)
+    }
+}
+
 type Object<'py> = Bound<'py, PyAny>;
 type Answer<'py> = PyResult<Object<'py>>;
 
@@ -39,7 +51,11 @@ type Answer<'py> = PyResult<Object<'py>>;
 /// poses1, poses2: `None`, a matrix (D+1, D+1), an array (n, D+1, D+1) or `Poses`. One stands for all.
 /// threads: how many; those of the machine without. progress: an object with `update(n)`, as tqdm's bars have it.
 ///
-/// Returns a float, or an array (n,) if an argument has many elements. Infinite if a pose is not finite.
+/// Returns a float, or an array (n,) if an argument has many elements, a length in the unit of the shapes.
+///
+/// Errors: ValueError names the argument and the row of a matrix that is no pose (not finite, not a rotation), an array of
+/// another shape, and lengths that differ; TypeError a thing of another kind, and a shape of another dim or dtype.
+/// KeyboardInterrupt on Ctrl-C, and what `progress` raises, end the work.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 2, 5]
@@ -52,7 +68,7 @@ fn distance<'py>(
     poses1: &Object<'py>,
     shape2: &Object<'py>,
     poses2: &Object<'py>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
@@ -61,8 +77,8 @@ fn distance<'py>(
 
 /// The nearest points of two solids that are at most `max_distance` apart.
 ///
-/// Arguments as `distance`. Returns `ClosestPoints(distance, point1, point2)` in the world frame: the distance is zero
-/// and the points are NaN where the solids touch or overlap, infinite and NaN beyond the limit.
+/// Arguments and errors as of `distance`. Returns `ClosestPoints(distance, point1, point2)`, (n,) and (n, D) in the world
+/// frame: the distance is zero and the points are NaN where the solids touch or overlap, infinite and NaN beyond the limit.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 4
@@ -77,7 +93,7 @@ fn closest_points<'py>(
     shape2: &Object<'py>,
     poses2: &Object<'py>,
     max_distance: f64,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
@@ -86,9 +102,9 @@ fn closest_points<'py>(
 
 /// The nearest or deepest points of two shapes, with the signed distance, the normal and the parts.
 ///
-/// Arguments as `distance`. Returns `Witness(distance, point1, point2, normal, part1, part2)`: the distance is negative
-/// where the shapes overlap, and `point2 = point1 + distance * normal`. Beyond `max_distance` it is infinite, points are
-/// NaN and parts 4294967295.
+/// Arguments and errors as of `distance`. Returns `Witness(distance, point1, point2, normal, part1, part2)`, (n,) and (n,
+/// D) in the world frame; the normal is from the first to the second. The distance is negative where the shapes overlap,
+/// and `point2 = point1 + distance * normal`. Beyond `max_distance` it is infinite, points are NaN and parts 4294967295.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 1.75
@@ -103,7 +119,7 @@ fn witness<'py>(
     shape2: &Object<'py>,
     poses2: &Object<'py>,
     max_distance: f64,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
@@ -112,7 +128,7 @@ fn witness<'py>(
 
 /// Whether two solids intersect (0), are at most `margin` apart (1), or farther (2): see `Proximity`.
 ///
-/// Arguments as `distance`. Returns an int, or an array of bytes. Touching counts as intersecting.
+/// Arguments and errors as of `distance`. Returns an int, or an array (n,) of uint8. Touching counts as intersecting.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [2, 3, 4]
@@ -126,7 +142,7 @@ fn proximity<'py>(
     shape2: &Object<'py>,
     poses2: &Object<'py>,
     margin: f64,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
@@ -135,9 +151,9 @@ fn proximity<'py>(
 
 /// The contact of two solids that overlap, touch, or are at most `prediction` apart.
 ///
-/// Arguments as `distance`. Returns `Contact(depth, normal, point1, point2)`: the depth is positive where they overlap
-/// and minus the distance where they are apart; `-inf` and NaN without a contact. The normal is from the first to the
-/// second. Composites: the deepest contact of their manifolds.
+/// Arguments and errors as of `distance`. Returns `Contact(depth, normal, point1, point2)`, (n,) and (n, D) in the world
+/// frame: the depth is positive where they overlap and minus the distance where they are apart; `-inf` and NaN without a
+/// contact. The normal is from the first to the second. Composites: the deepest contact of their manifolds.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[1, 3] = 1.75
@@ -152,7 +168,7 @@ fn contact<'py>(
     shape2: &Object<'py>,
     poses2: &Object<'py>,
     prediction: f64,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
@@ -161,9 +177,9 @@ fn contact<'py>(
 
 /// All contact points of each pair that is at most `prediction` apart.
 ///
-/// Arguments as `distance`; `max_points` bounds the points of a manifold. Returns `Manifolds` with rows: the points of
-/// pair i are `starts[i]` to `starts[i + 1]` of `depth`, `normal`, `point1`, `point2`, `manifold` (its number within the
-/// pair), `part1`, `part2`.
+/// Arguments and errors as of `distance`; `max_points` bounds the points of a manifold. Returns `Manifolds` with rows: the
+/// points of pair i are `starts[i]` to `starts[i + 1]` of `depth`, `normal`, `point1`, `point2`, `manifold` (its number
+/// within the pair), `part1`, `part2`.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[1, 3] = 1.9
@@ -178,17 +194,18 @@ fn contact_manifolds<'py>(
     shape2: &Object<'py>,
     poses2: &Object<'py>,
     prediction: f64,
-    max_points: Option<usize>,
-    threads: Option<usize>,
+    max_points: Option<MaxPoints>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Manifolds { prediction, max_points }, Form::Columns)
+        .ask(Manifolds { prediction, max_points: max_points.map(|given| given.0) }, Form::Columns)
 }
 
 /// The nearest pair of a batch: `Nearest(pair, distance)`, or -1 and an infinite distance beyond `max_distance`.
 ///
-/// Arguments as `distance`. Quicker than all distances, since the limit shrinks. Of equal ones the lowest index.
+/// Arguments and errors as of `distance`. Quicker than all distances, since the limit shrinks. Of equal ones the lowest
+/// index.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [7, 3, 5]
@@ -202,25 +219,33 @@ fn nearest<'py>(
     shape2: &Object<'py>,
     poses2: &Object<'py>,
     max_distance: f64,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
         .ask(Nearest(max_distance), Form::Single)
 }
 
-/// When two solids that move along straight lines, without turning, first come within `target_distance`.
+/// When two moving solids first come within `target_distance`.
 ///
-/// Arguments as `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time. Returns
-/// `Impact(time, normal, point1, point2, is_reached)`, points and normal at that time; without an impact by `max_time` the
-/// time is infinite. `is_reached` is false where the search ended early: the solids do not meet before `time`.
+/// Arguments and errors as of `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time.
+/// angular_velocity1, angular_velocity2: in 2D a number or (n,) in radians, counter-clockwise; in 3D (3,) or (n, 3), the
+/// axis in the world frame times radians. They turn about the origins of the shapes' frames; without both nothing turns.
+/// Returns `Impact(time, normal, point1, point2, is_reached)`, points and normal at that time; without an impact by
+/// `max_time` the time is infinite. `is_reached` is false where the search ended early: the solids do not meet before
+/// `time`.
 ///
 /// >>> import impinge, numpy as np
 /// >>> pose = np.eye(4); pose[0, 3] = 6
 /// >>> impinge.impact(impinge.Ball(1), None, [0, 0, 0], impinge.Ball(1), pose, [-2, 0, 0]).time
 /// 2.0
+/// >>> bar, pin = impinge.Cuboid([2, 0]), impinge.Ball(0.5, dim=2)
+/// >>> turn = {"angular_velocity1": np.pi / 2, "max_time": 1}
+/// >>> found = impinge.impact(bar, None, [0, 0], pin, impinge.Poses([0, 1]), [0, 0], **turn)
+/// >>> round(found.time, 9)
+/// 0.666666667
 #[pyfunction]
-#[pyo3(signature = (shape1, poses1, velocity1, shape2, poses2, velocity2, max_time=f64::INFINITY, target_distance=0.0, *, threads=None, progress=None))]
+#[pyo3(signature = (shape1, poses1, velocity1, shape2, poses2, velocity2, max_time=f64::INFINITY, target_distance=0.0, *, angular_velocity1=None, angular_velocity2=None, threads=None, progress=None))]
 fn impact<'py>(
     shape1: &Object<'py>,
     poses1: &Object<'py>,
@@ -230,19 +255,23 @@ fn impact<'py>(
     velocity2: &Object<'py>,
     max_time: f64,
     target_distance: f64,
-    threads: Option<usize>,
+    angular_velocity1: Option<&Object<'py>>,
+    angular_velocity2: Option<&Object<'py>>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask_impacts(
-        [velocity1, velocity2],
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask_impacts(ImpactCall {
+        velocities: [velocity1, velocity2],
+        angular_velocities: [angular_velocity1, angular_velocity2],
         max_time,
         target_distance,
-    )
+    })
 }
 
 /// The pairs of elements that are at most `distance` apart, as an ascending array (m, 2) of uint32.
 ///
-/// With one side: its pairs [i, j] with i < j. With two: i of the first and j of the second, all against all.
+/// With one side: its pairs [i, j] with i < j. With two: i of the first and j of the second, all against all. Arguments and
+/// errors as of `distance`; ValueError too if `distance` is negative or NaN.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 3, 6.5]
@@ -257,7 +286,7 @@ fn pairs_within<'py>(
     shape2: Option<&Object<'py>>,
     poses2: Option<&Object<'py>>,
     distance: f64,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     let none = py.None().into_bound(py);
@@ -269,8 +298,9 @@ fn pairs_within<'py>(
 
 /// The points of shapes that are nearest to points of the world.
 ///
-/// shape, poses: as of `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`. A point inside is
-/// its own projection if `solid`, else it goes to the boundary. What is not finite has NaN and part 4294967295.
+/// shape, poses: as of `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`, (n, D), (n,) and
+/// (n,). Errors as of `distance`; a point may be anything. A point inside is its own projection if `solid`, else it goes to
+/// the boundary. What is not finite has NaN and part 4294967295.
 ///
 /// >>> import impinge
 /// >>> impinge.project_points(impinge.Ball(1), None, [4, 0, 0]).point.tolist()
@@ -282,16 +312,16 @@ fn project_points<'py>(
     poses: &Object<'py>,
     points: &Object<'py>,
     solid: bool,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     let question = PointQuestion::Project { solid };
-    ask_points([shape, poses, points], question, Call { threads, progress })
+    ask_points([shape, poses, points], question, Call::new(threads, progress))
 }
 
 /// The distances of points from shapes, negative inside.
 ///
-/// Arguments as `project_points`. Returns a float or an array (n,); infinite for what is not finite.
+/// Arguments and errors as of `project_points`. Returns a float or an array (n,), lengths; infinite for what is not finite.
 ///
 /// >>> import impinge
 /// >>> impinge.signed_distance(impinge.Ball(2), None, [[5, 0, 0], [0, 1, 0]]).tolist()
@@ -302,15 +332,15 @@ fn signed_distance<'py>(
     shape: &Object<'py>,
     poses: &Object<'py>,
     points: &Object<'py>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    ask_points([shape, poses, points], PointQuestion::SignedDistance, Call { threads, progress })
+    ask_points([shape, poses, points], PointQuestion::SignedDistance, Call::new(threads, progress))
 }
 
 /// Whether points are inside shapes, or on them.
 ///
-/// Arguments as `project_points`. Returns a bool or an array of bools.
+/// Arguments and errors as of `project_points`. Returns a bool or an array (n,) of bools.
 ///
 /// >>> import impinge
 /// >>> impinge.contains(impinge.Cuboid([1, 1]), None, [[0, 0], [1, 1], [1, 2]]).tolist()
@@ -321,17 +351,17 @@ fn contains<'py>(
     shape: &Object<'py>,
     poses: &Object<'py>,
     points: &Object<'py>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    ask_points([shape, poses, points], PointQuestion::Contains, Call { threads, progress })
+    ask_points([shape, poses, points], PointQuestion::Contains, Call::new(threads, progress))
 }
 
 /// Where rays meet shapes.
 ///
-/// shape, poses: as of `distance`. origins, directions: (D,) or (n, D); a direction need not be a unit vector, and times are
-/// in units of its length. Returns `RayHit(time, normal, part)`: the time is infinite without a hit by `max_time`. A ray that
-/// starts inside hits at time zero if `solid`, else where it leaves.
+/// shape, poses: as of `distance`. origins, directions: (D,) or (n, D); a direction need not be a unit vector, and times
+/// are in units of its length. Returns `RayHit(time, normal, part)`, (n,), (n, D) and (n,): the time is infinite without a
+/// hit by `max_time`. A ray that starts inside hits at time zero if `solid`, else where it leaves.
 ///
 /// >>> import impinge
 /// >>> hit = impinge.cast_rays(impinge.Ball(1), None, [-4, 0, 0], [2, 0, 0])
@@ -346,9 +376,9 @@ fn cast_rays<'py>(
     directions: &Object<'py>,
     max_time: f64,
     solid: bool,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    let call = Call { threads, progress };
+    let call = Call::new(threads, progress);
     points::cast_rays([shape, poses, origins, directions], max_time, solid, call)
 }

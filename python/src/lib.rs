@@ -11,15 +11,21 @@
 mod answer;
 mod error;
 mod functions;
+mod kept_world;
+mod options;
 mod pairs;
+mod pictures;
 mod points;
 mod poses;
+mod recordings;
 mod scene;
 mod shapes;
 mod side;
 mod space;
 mod supervise;
 mod tiles;
+mod turning;
+mod typed_world;
 mod vectors;
 mod world;
 mod world_queries;
@@ -33,5 +39,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<world::World>()?;
     functions::add_to(module)?;
     tiles::add_to(module)?;
+    module.add_function(wrap_pyfunction!(pictures::picture_of, module)?)?;
+    module.add_function(wrap_pyfunction!(recordings::recording_page, module)?)?;
     scene::add_to(module)
 }

@@ -11,17 +11,21 @@ use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
 use crate::answer::{Column, into_python};
-use crate::error;
+use crate::error::{self, not_nan};
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
 use crate::space::{Kind, Numeric, Task, run_in};
-use crate::supervise::{Call, supervise};
+use crate::supervise::{Call, Threads, supervise};
+use crate::turning::AskTurning;
 use crate::vectors::Vectors;
 
 /// A question about every pair of a batch.
 pub(crate) trait Question: Sync {
     /// The class of the answers in `impinge._results`; without, the only column is the answer.
     const CLASS: Option<&'static str>;
+
+    /// What limits the answers, and its name in Python.
+    fn limit(&self) -> (&'static str, f64);
 
     /// Answers as columns.
     fn answer<N: Numeric<D>, const D: usize>(
@@ -35,6 +39,10 @@ pub(crate) struct Distances;
 
 impl Question for Distances {
     const CLASS: Option<&'static str> = None;
+
+    fn limit(&self) -> (&'static str, f64) {
+        ("", 0.0)
+    }
 
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
@@ -52,6 +60,10 @@ pub(crate) struct Closest(pub(crate) f64);
 
 impl Question for Closest {
     const CLASS: Option<&'static str> = Some("ClosestPoints");
+
+    fn limit(&self) -> (&'static str, f64) {
+        ("max_distance", self.0)
+    }
 
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
@@ -73,6 +85,10 @@ pub(crate) struct Witnesses(pub(crate) f64);
 
 impl Question for Witnesses {
     const CLASS: Option<&'static str> = Some("Witness");
+
+    fn limit(&self) -> (&'static str, f64) {
+        ("max_distance", self.0)
+    }
 
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
@@ -105,6 +121,10 @@ pub(crate) struct Proximities(pub(crate) f64);
 impl Question for Proximities {
     const CLASS: Option<&'static str> = None;
 
+    fn limit(&self) -> (&'static str, f64) {
+        ("margin", self.0)
+    }
+
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
@@ -126,6 +146,10 @@ pub(crate) struct Contacts(pub(crate) f64);
 
 impl Question for Contacts {
     const CLASS: Option<&'static str> = Some("Contact");
+
+    fn limit(&self) -> (&'static str, f64) {
+        ("prediction", self.0)
+    }
 
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
@@ -153,6 +177,10 @@ pub(crate) struct Nearest(pub(crate) f64);
 impl Question for Nearest {
     const CLASS: Option<&'static str> = Some("Nearest");
 
+    fn limit(&self) -> (&'static str, f64) {
+        ("max_distance", self.0)
+    }
+
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
@@ -174,6 +202,10 @@ pub(crate) struct Manifolds {
 impl Question for Manifolds {
     const CLASS: Option<&'static str> = Some("Manifolds");
 
+    fn limit(&self) -> (&'static str, f64) {
+        ("prediction", self.prediction)
+    }
+
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
@@ -194,37 +226,39 @@ impl Question for Manifolds {
 
 /// The two sides of a call, and how it is to be done.
 pub(crate) struct PairCall<'a, 'py> {
-    py: Python<'py>,
-    sides: [SideArgument<'a, 'py>; 2],
-    call: Call,
+    pub(crate) py: Python<'py>,
+    pub(crate) sides: [SideArgument<'a, 'py>; 2],
+    pub(crate) call: Call,
 }
 
 impl<'a, 'py> PairCall<'a, 'py> {
     pub(crate) fn new(
         [shape1, poses1, shape2, poses2]: [&'a Bound<'py, PyAny>; 4],
-        threads: Option<usize>,
+        threads: Option<Threads>,
         progress: Option<Py<PyAny>>,
     ) -> Self {
         let side1 = SideArgument { shapes: shape1, poses: poses1, names: ["shape1", "poses1"] };
         let side2 = SideArgument { shapes: shape2, poses: poses2, names: ["shape2", "poses2"] };
-        Self { py: shape1.py(), sides: [side1, side2], call: Call { threads, progress } }
+        Self { py: shape1.py(), sides: [side1, side2], call: Call::new(threads, progress) }
     }
 
     /// Asks about the pairs.
     pub(crate) fn ask<Q: Question>(self, question: Q, form: Form) -> PyResult<Bound<'py, PyAny>> {
+        let (name, value) = question.limit();
+        not_nan(name, value)?;
         let kind = kind_of(self.sides[0].shapes, "shape1")?;
         run_in(kind, Ask { call: self, question, form, kind })
     }
 
     /// Asks when the shapes of each pair meet.
-    pub(crate) fn ask_impacts(
-        self,
-        velocities: [&Bound<'py, PyAny>; 2],
-        max_time: f64,
-        target_distance: f64,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    pub(crate) fn ask_impacts(self, impacts: ImpactCall<'a, 'py>) -> PyResult<Bound<'py, PyAny>> {
+        not_nan("max_time", impacts.max_time)?;
+        not_nan("target_distance", impacts.target_distance)?;
         let kind = kind_of(self.sides[0].shapes, "shape1")?;
-        run_in(kind, AskImpacts { call: self, velocities, max_time, target_distance, kind })
+        if impacts.angular_velocities.iter().any(Option::is_some) {
+            return run_in(kind, AskTurning { call: self, impacts, kind });
+        }
+        run_in(kind, AskImpacts { call: self, impacts, kind })
     }
 
     /// Asks which elements are near each other; without `is_two_sided` those of the first side.
@@ -308,12 +342,18 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
     }
 }
 
-/// Asks when the shapes of each pair meet.
+/// How the shapes of pairs move, and up to when.
+pub(crate) struct ImpactCall<'a, 'py> {
+    pub(crate) velocities: [&'a Bound<'py, PyAny>; 2],
+    pub(crate) angular_velocities: [Option<&'a Bound<'py, PyAny>>; 2],
+    pub(crate) max_time: f64,
+    pub(crate) target_distance: f64,
+}
+
+/// Asks when the shapes of each pair meet on straight ways.
 struct AskImpacts<'a, 'py> {
     call: PairCall<'a, 'py>,
-    velocities: [&'a Bound<'py, PyAny>; 2],
-    max_time: f64,
-    target_distance: f64,
+    impacts: ImpactCall<'a, 'py>,
     kind: Kind,
 }
 
@@ -322,16 +362,14 @@ impl<'py> Task for AskImpacts<'_, 'py> {
 
     fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
         let PairCall { py, sides: [side1, side2], call } = self.call;
-        let [velocity1, velocity2] = self.velocities;
+        let [velocity1, velocity2] = self.impacts.velocities;
         let velocity1 = Vectors::<N, D>::of(velocity1, "velocity1")?;
         let velocity2 = Vectors::<N, D>::of(velocity2, "velocity2")?;
         let (given1, given2) = (side1.read::<N, D>(self.kind)?, side2.read::<N, D>(self.kind)?);
         let (poses1, poses2) = (given1.poses()?, given2.poses()?);
         let batch = PairBatch::try_new(given1.side(&*poses1)?, given2.side(&*poses2)?);
         let batch = batch.map_err(|error| error::of_batch(&error, "poses2"))?;
-        let options = ImpactOptions::new()
-            .with_max_time(convert(self.max_time))
-            .with_target_distance(convert(self.target_distance));
+        let options = self.impacts.options();
         let impacts = Impacts { velocities: [velocity1.rows()?, velocity2.rows()?], options };
         let found = supervise(py, batch.len(), &call, |control| impacts.answer(&batch, control))?;
         let columns = found.map_err(|error| error::of_batch(&error, "velocities"))?;

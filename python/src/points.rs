@@ -5,7 +5,7 @@ use impinge::math::na::convert;
 use pyo3::prelude::*;
 
 use crate::answer::{Column, into_python};
-use crate::error;
+use crate::error::{self, not_nan};
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
 use crate::space::{Kind, Numeric, Task, run_in};
@@ -102,6 +102,7 @@ pub(crate) fn cast_rays<'py>(
     solid: bool,
     call: Call,
 ) -> PyResult<Bound<'py, PyAny>> {
+    not_nan("max_time", max_time)?;
     let kind = kind_of(shape, "shape")?;
     let side = SideArgument { shapes: shape, poses, names: ["shape", "poses"] };
     run_in(kind, CastRays { side, rays: [origins, directions], max_time, solid, call, kind })

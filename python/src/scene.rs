@@ -1,13 +1,17 @@
 //! Scenes as canonical bytes: a recording of the calls that add the objects, which has a checksum and a version.
 
+use std::collections::BTreeMap;
+
+use impinge::math::{Pose, Real};
 use impinge::narrow_phase::GeometricQueryType;
-use impinge::shape::ShapeHandle;
+use impinge::shape::{Compound, Rounded, ShapeHandle};
 use impinge::world::CollisionGroups;
-use impinge_record::{ReadError, RecordError, Recorder, Registry, Replay};
+use impinge_record::{Header, ReadError, RecordError, Recorder, Registry, Replay, ShapeData};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::error;
 use crate::poses;
 use crate::shapes::{Shape, kind_of};
 use crate::side::SideArgument;
@@ -43,35 +47,95 @@ impl<'py> Task for Write<'_, 'py> {
         let given = self.side.read::<N, D>(self.kind)?;
         let poses = given.poses()?;
         let len = given.side(&*poses)?.len();
-        let refused = |error: RecordError| PyValueError::new_err(error.to_string());
-        let mut recorder = Recorder::new(N::ZERO, Registry::<N, D, ()>::new()).map_err(refused)?;
-        let query = GeometricQueryType::Contacts(N::ZERO, N::ZERO);
+        let mut shapes = EqualShapes { by_bytes: BTreeMap::new(), last: None };
+        let mut recorder = recorder::<N, D>().map_err(|refused| error::of_call(&refused))?;
         for element in 0..len {
             let position = N::isometry(&poses.pose(if poses.len() == 1 { 0 } else { element }));
-            let shape = given.shape(element).clone();
-            recorder.add(position, shape, CollisionGroups::new(), query, ()).map_err(refused)?;
+            let added = shapes.shared(given.shape(element)).and_then(|shape| {
+                recorder.add(position, shape, CollisionGroups::new(), contacts(), ())
+            });
+            added.map_err(|refused| error::of_row(&refused, "poses", element))?;
         }
         Ok(PyBytes::new(self.side.shapes.py(), &recorder.finish().bytes))
     }
 }
 
-/// The shapes of the objects, one for each, and their poses, of the bytes of a scene.
+/// What is asked of the objects of scenes, which nobody asks.
+const fn contacts<N: Real>() -> GeometricQueryType<N> {
+    GeometricQueryType::Contacts(N::ZERO, N::ZERO)
+}
+
+/// A recorder of a world without objects.
+fn recorder<N: Numeric<D>, const D: usize>() -> Result<Recorder<N, D, ()>, RecordError> {
+    Recorder::new(N::ZERO, Registry::new())
+}
+
+/// Shapes that are equal, as one: a recording has a shape once for each handle, a scene once for each value.
+struct EqualShapes<N: Numeric<D>, const D: usize> {
+    /// By the bytes of a recording of the shape alone.
+    by_bytes: BTreeMap<Vec<u8>, ShapeHandle<N, D>>,
+    /// What was given last, and what stands for it: objects that share a shape mostly follow each other.
+    last: Option<[ShapeHandle<N, D>; 2]>,
+}
+
+impl<N: Numeric<D>, const D: usize> EqualShapes<N, D> {
+    /// The handle that stands for all shapes equal to this.
+    fn shared(&mut self, shape: &ShapeHandle<N, D>) -> Result<ShapeHandle<N, D>, RecordError> {
+        if let Some([_, shared]) = self.last.as_ref().filter(|[given, _]| given.is_same(shape)) {
+            return Ok(shared.clone());
+        }
+        let with_shared = self.with_shared_children(shape)?;
+        let mut alone = recorder::<N, D>()?;
+        let (here, groups) = (N::isometry(&Pose::identity()), CollisionGroups::new());
+        alone.add(here, with_shared.clone(), groups, contacts(), ())?;
+        let shared = self.by_bytes.entry(alone.finish().bytes).or_insert(with_shared).clone();
+        self.last = Some([shape.clone(), shared.clone()]);
+        Ok(shared)
+    }
+
+    /// The same shape, made of shapes that stand for all equal to them. A recorder refuses what nests too deep.
+    fn with_shared_children(
+        &mut self,
+        shape: &ShapeHandle<N, D>,
+    ) -> Result<ShapeHandle<N, D>, RecordError> {
+        let (mut children, mut placed) = (Vec::new(), Vec::new());
+        let data = if let Some(compound) = shape.as_shape::<Compound<N, D>>() {
+            for (number, (position, child)) in (0..).zip(compound.children()) {
+                placed.push((*position, number));
+                children.push(self.shared(child)?);
+            }
+            ShapeData::Compound(placed)
+        } else if let Some(rounded) = shape.as_shape::<Rounded<N, D>>() {
+            children.push(self.shared(rounded.shape())?);
+            ShapeData::Rounded { shape: 0, radius: rounded.radius() }
+        } else {
+            return Ok(shape.clone());
+        };
+        let child = |number: u32| Ok(children[number as usize].clone());
+        Ok(data.make(&child).expect("the numbers are those of a shape"))
+    }
+}
+
+/// Shapes, poses, dimension and scalar of a scene.
+type SceneParts<'py> = (Vec<Py<Shape>>, Bound<'py, PyAny>, u8, &'static str);
+
+/// The shapes of the objects, one for each, and their poses, of the bytes of a scene, and its dimension and scalar.
 #[pyfunction]
-fn scene_of_bytes<'py>(
-    py: Python<'py>,
-    bytes: &[u8],
-    dim: u8,
-    dtype: &str,
-) -> PyResult<(Vec<Py<Shape>>, Bound<'py, PyAny>)> {
-    let kind = Kind::parse(dim, dtype)?;
-    run_in(kind, Read { py, bytes, kind })
+fn scene_of_bytes<'py>(py: Python<'py>, bytes: &[u8]) -> PyResult<SceneParts<'py>> {
+    let kind = Kind::of_header(&Header::read(bytes).map_err(|error| refused(&error))?)?;
+    let (shapes, poses) = run_in(kind, Read { py, bytes, kind })?;
+    Ok((shapes, poses, kind.dim(), kind.dtype()))
 }
 
 /// The only shape of the bytes of a scene.
 #[pyfunction]
-fn shape_of_bytes(py: Python<'_>, bytes: &[u8], dim: u8, dtype: &str) -> PyResult<Py<Shape>> {
-    let (mut shapes, _) = scene_of_bytes(py, bytes, dim, dtype)?;
+fn shape_of_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Py<Shape>> {
+    let (mut shapes, ..) = scene_of_bytes(py, bytes)?;
     shapes.pop().ok_or_else(|| PyValueError::new_err("the scene has no object"))
+}
+
+fn refused(error: &ReadError) -> PyErr {
+    PyValueError::new_err(error.to_string())
 }
 
 struct Read<'a, 'py> {
@@ -84,9 +148,9 @@ impl<'py> Task for Read<'_, 'py> {
     type Answer = (Vec<Py<Shape>>, Bound<'py, PyAny>);
 
     fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
-        let refused = |error: ReadError| PyValueError::new_err(error.to_string());
-        let mut replay = Replay::open(self.bytes, &Registry::<N, D, ()>::new()).map_err(refused)?;
-        replay.seek_end().map_err(refused)?;
+        let replay = Replay::open(self.bytes, &Registry::<N, D, ()>::new());
+        let mut replay = replay.map_err(|error| refused(&error))?;
+        replay.seek_end().map_err(|error| refused(&error))?;
         let objects = || replay.world().collision_objects();
         let mut shapes: Vec<Py<Shape>> = Vec::with_capacity(replay.world().len());
         let mut last: Option<&ShapeHandle<N, D>> = None;

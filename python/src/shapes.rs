@@ -6,7 +6,7 @@ use std::sync::Arc;
 use impinge::batch::Shapes;
 use impinge::math::na::convert;
 use impinge::math::{Point, Space, Vector};
-use impinge::shape::ShapeHandle;
+use impinge::shape::{ShapeHandle, ShapeKind};
 use impinge_record::{Field, Mesh, Problem, ShapeData};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -30,7 +30,10 @@ pub(crate) struct Shape {
 impl Shape {
     /// A shape of the library as Python has it.
     pub(crate) fn of<N: Numeric<D>, const D: usize>(kind: Kind, shape: ShapeHandle<N, D>) -> Self {
-        let name = format!("{:?}", shape.geometry().kind());
+        let name = match shape.geometry().kind() {
+            ShapeKind::Plane => "HalfSpace".to_owned(),
+            kind => format!("{kind:?}"),
+        };
         Self { kind, handle: Arc::new(shape), name }
     }
 
@@ -120,12 +123,19 @@ impl Shape {
         format!("<impinge.{} {}D {}>", self.name, self.dim(), self.dtype())
     }
 
+    /// A small picture, for notebooks.
+    #[pyo3(name = "_repr_html_")]
+    fn repr_html<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let pictures = slf.py().import("impinge._pictures")?;
+        pictures.getattr("html_of")?.call1((slf,))
+    }
+
     /// Pickled as the bytes of a scene of this shape alone.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
-        let (py, shape) = (slf.py(), slf.get());
+        let py = slf.py();
         let bytes = scene_bytes(slf.as_any(), &py.None().into_bound(py))?;
         let read = py.import("impinge._native")?.getattr("shape_of_bytes")?;
-        (read, (bytes, shape.dim(), shape.dtype())).into_pyobject(py)
+        (read, (bytes,)).into_pyobject(py)
     }
 }
 
@@ -256,13 +266,15 @@ impl Description<'_, '_> {
             reason = "a count from Python's side"
         )]
         let columns = *columns as usize;
-        let rows = if D == 3 { heights.len() / columns.max(1) } else { 2 };
-        let cells = rows.saturating_sub(1) * columns.saturating_sub(1);
+        let Some(marks) = &self.parts else {
+            return Err(PyValueError::new_err("HeightField lacks marks"));
+        };
+        let marks = marks.as_slice()?.iter().map(|&mark| u8::try_from(mark).unwrap_or(0));
         Ok(Field {
             columns,
             heights,
             scale: Vector::from_fn(|axis, _| convert(scale[axis])),
-            marks: vec![0; cells],
+            marks: marks.collect(),
             is_one_sided: self.one_sided,
             keeps_internal_edges: self.keep_internal_edges,
         })

@@ -2,6 +2,7 @@
 
 use impinge::batch::{BatchError, PoseSource, Side};
 use impinge::shape::ShapeHandle;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::error;
@@ -64,5 +65,33 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, N, D> {
             }
             other => error::of_batch(&other, name),
         })
+    }
+
+    /// Each element's shape and position, of one that stands for all too.
+    pub(crate) fn elements(&self) -> PyResult<Elements<'_, N, D>> {
+        let poses = self.poses()?;
+        let len = self.side(&*poses)?.len();
+        let pose = |element| poses.pose(if poses.len() == 1 { 0 } else { element });
+        Ok(Elements {
+            shapes: (0..len).map(|element| self.shape(element)).collect(),
+            positions: (0..len).map(|element| N::isometry(&pose(element))).collect(),
+        })
+    }
+}
+
+/// The elements of a side, which other threads may read.
+pub(crate) struct Elements<'a, N: Numeric<D>, const D: usize> {
+    pub(crate) shapes: Vec<&'a ShapeHandle<N, D>>,
+    pub(crate) positions: Vec<N::Isometry>,
+}
+
+/// How many elements arguments have together, where one stands for all.
+pub(crate) fn common(lengths: &[(&str, usize)]) -> PyResult<usize> {
+    let len = lengths.iter().map(|(_, len)| *len).find(|len| *len != 1).unwrap_or(1);
+    match lengths.iter().find(|(_, given)| *given != 1 && *given != len) {
+        None => Ok(len),
+        Some((name, given)) => Err(PyValueError::new_err(format!(
+            "{name} has {given} elements where {len} are needed"
+        ))),
     }
 }

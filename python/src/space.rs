@@ -1,9 +1,12 @@
 //! The scalar and the dimension of a call: the one place where they are chosen.
 
-use impinge_record::Recordable;
+use impinge_record::{Header, Recordable};
 use numpy::Element;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+
+use crate::pictures::Pictured;
+use crate::turning::Turning;
 
 /// A scalar and a dimension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -33,6 +36,12 @@ impl Kind {
         Ok(Self { is_double, is_spatial })
     }
 
+    /// Of the header of a recording.
+    pub(crate) fn of_header(header: &Header) -> PyResult<Self> {
+        let dtype = if header.scalar_bytes == 8 { "float64" } else { "float32" };
+        Self::parse(header.dimension, dtype)
+    }
+
     /// The number of dimensions.
     pub(crate) const fn dim(self) -> u8 {
         if self.is_spatial { 3 } else { 2 }
@@ -58,9 +67,12 @@ impl Kind {
 }
 
 /// A scalar and a dimension in which Python works.
-pub(crate) trait Numeric<const D: usize>: Recordable<D> + Element {}
+pub(crate) trait Numeric<const D: usize>:
+    Recordable<D> + Element + Pictured<D> + Turning<D>
+{
+}
 
-impl<N: Recordable<D> + Element, const D: usize> Numeric<D> for N {}
+impl<N: Recordable<D> + Element + Pictured<D> + Turning<D>, const D: usize> Numeric<D> for N {}
 
 /// A computation that is generic over the scalar and the dimension. It is a type, because a closure cannot be generic.
 pub(crate) trait Task {

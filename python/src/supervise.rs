@@ -11,8 +11,9 @@ use std::sync::OnceLock;
 use std::thread;
 
 use impinge::batch::{BatchError, Control};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 /// Batches of at most so many elements are done by the calling thread: the library does not share them out either.
@@ -25,10 +26,47 @@ const TICK: Duration = Duration::from_millis(50);
 #[derive(Debug, Default)]
 pub(crate) struct Call {
     /// How many threads; those of the machine without.
-    pub(crate) threads: Option<usize>,
+    threads: Option<usize>,
     /// An object with the method `update(n)`, as tqdm's bars have it.
-    pub(crate) progress: Option<Py<PyAny>>,
+    progress: Option<Py<PyAny>>,
 }
+
+impl Call {
+    /// Of the arguments of Python.
+    pub(crate) fn new(threads: Option<Threads>, progress: Option<Py<PyAny>>) -> Self {
+        Self { threads: threads.map(|threads| threads.0), progress }
+    }
+}
+
+/// How many threads a call may use: at least one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Threads(usize);
+
+impl FromPyObject<'_, '_> for Threads {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        count(given, "threads").map(Self)
+    }
+}
+
+/// The argument of this name as a number that is at least one.
+pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usize> {
+    match given.extract::<usize>() {
+        Ok(number) if number > 0 => Ok(number),
+        Err(error) if error.is_instance_of::<PyTypeError>(given.py()) => {
+            let kind = given.get_type().name()?;
+            Err(PyTypeError::new_err(format!("{name} is a {kind}, where an integer is needed")))
+        }
+        _ => {
+            let value = given.str()?;
+            Err(PyValueError::new_err(format!("{name} is {value}: it is at least 1, or None")))
+        }
+    }
+}
+
+/// Hears how many elements are done, and may stop the work.
+type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
 /// Does `work` about so many elements with the interpreter released.
 ///
@@ -40,26 +78,73 @@ pub(crate) fn supervise<T: Send>(
     call: &Call,
     work: impl Fn(&Control<'_>) -> Result<T, BatchError> + Sync,
 ) -> PyResult<Result<T, BatchError>> {
-    if call.threads == Some(0) {
-        return Err(PyValueError::new_err("threads is 0: it is at least 1, or None"));
-    }
+    released(py, len, call, |report| match report {
+        Some(report) => work(&Control::with_progress(report)),
+        None => work(&Control::new()),
+    })
+}
+
+/// The answers of `ask` about each of so many elements, in order, with the interpreter released. The threads share
+/// chunks of elements.
+///
+/// # Errors
+/// What the progress bar raises, and `KeyboardInterrupt`.
+pub(crate) fn each<T: Send>(
+    py: Python<'_>,
+    len: usize,
+    call: &Call,
+    ask: impl Fn(usize) -> T + Sync,
+) -> PyResult<Vec<T>> {
+    released(py, len, call, |report| match report {
+        Some(report) => in_chunks(len, report, &ask),
+        None => (0..len).map(&ask).collect(),
+    })
+}
+
+/// Does `work` without the interpreter: at once where it is short, else beside this thread, with a report.
+fn released<T: Send>(
+    py: Python<'_>,
+    len: usize,
+    call: &Call,
+    work: impl Fn(Option<Report<'_>>) -> T + Sync,
+) -> PyResult<T> {
     if len <= SMALL && call.progress.is_none() {
-        return Ok(py.detach(|| work(&Control::new())));
+        return Ok(py.detach(|| work(None)));
     }
     py.detach(|| beside(call, &work))
 }
 
+/// Asks about chunks of elements; after a stop the rest is not asked.
+fn in_chunks<T: Send>(
+    len: usize,
+    report: Report<'_>,
+    ask: &(impl Fn(usize) -> T + Sync),
+) -> Vec<T> {
+    let (done, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let chunks = (0..len.div_ceil(SMALL)).into_par_iter().map(|chunk| {
+        if is_stopped.load(Ordering::Relaxed) {
+            return Vec::new();
+        }
+        let begin = chunk * SMALL;
+        let found: Vec<T> = (begin..len.min(begin + SMALL)).map(ask).collect();
+        let before = done.fetch_add(found.len(), Ordering::Relaxed);
+        if report(before + found.len()).is_break() {
+            is_stopped.store(true, Ordering::Relaxed);
+        }
+        found
+    });
+    let chunks: Vec<Vec<T>> = chunks.collect();
+    chunks.into_iter().flatten().collect()
+}
+
 /// Works in another thread and looks after it in this one, which has released the interpreter.
-fn beside<T: Send>(
-    call: &Call,
-    work: &(impl Fn(&Control<'_>) -> Result<T, BatchError> + Sync),
-) -> PyResult<Result<T, BatchError>> {
+fn beside<T: Send>(call: &Call, work: &(impl Fn(Option<Report<'_>>) -> T + Sync)) -> PyResult<T> {
     let watch = Watch::default();
     let report = |done| watch.report(done);
     let caller = thread::current();
     thread::scope(|scope| {
         let worker = scope.spawn(|| {
-            let found = in_pool(call.threads, || work(&Control::with_progress(&report)));
+            let found = in_pool(call.threads, || work(Some(&report)));
             watch.is_finished.store(true, Ordering::Release);
             caller.unpark();
             found
@@ -82,7 +167,7 @@ struct Watch {
 impl Watch {
     /// The worker has done so many elements.
     fn report(&self, done: usize) -> ControlFlow<()> {
-        self.done.store(done, Ordering::Relaxed);
+        self.done.fetch_max(done, Ordering::Relaxed);
         if self.is_stopped.load(Ordering::Relaxed) {
             ControlFlow::Break(())
         } else {

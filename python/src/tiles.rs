@@ -12,7 +12,7 @@ use crate::error;
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
 use crate::space::{Kind, Numeric, Task, run_in};
-use crate::supervise::{Call, supervise};
+use crate::supervise::{Call, Threads, supervise};
 use crate::vectors::Vectors;
 
 /// Adds the functions about tiles.
@@ -40,12 +40,12 @@ type Object<'py> = Bound<'py, PyAny>;
 fn boxes<'py>(
     shapes: &Object<'py>,
     poses: &Object<'py>,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Object<'py>> {
     let kind = kind_of(shapes, "shapes")?;
     let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
-    run_in(kind, AskBoxes { side, kind, call: Call { threads, progress } })
+    run_in(kind, AskBoxes { side, kind, call: Call::new(threads, progress) })
 }
 
 /// The pairs of a tile that are at most the clearance of the tiles apart, as an ascending array (m, 2) of uint64.
@@ -70,13 +70,13 @@ fn pairs_in_tile<'py>(
     ids: &Object<'py>,
     tiles: GivenTiles<'py>,
     tile: u32,
-    threads: Option<usize>,
+    threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Object<'py>> {
     let kind = kind_of(shapes, "shapes")?;
     kind.expect("tiles", tiles.kind()?)?;
     let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
-    run_in(kind, AskTile { side, ids, tiles, tile, call: Call { threads, progress }, kind })
+    run_in(kind, AskTile { side, ids, tiles, tile, call: Call::new(threads, progress), kind })
 }
 
 /// The axes and places of the cuts of so many tiles; `boxes` is an array (n, 2, D) of the kind in C order.

@@ -1,89 +1,372 @@
 //! Questions to worlds about many rays, points and shapes, with answers in columns or rows of handles.
 
-use impinge::bounding_volume::Ray;
+use impinge::bounding_volume::{Aabb, Ray};
 use impinge::math::na::convert;
 use impinge::math::{Point, Vector};
-use impinge::query::ImpactOptions;
-use impinge::shape::ShapeHandle;
-use impinge::world::QueryFilter;
+use impinge::narrow_phase::CollisionObjectHandle;
+use impinge::query::{ClosestPoints, Impact, ImpactOptions, RayIntersection};
+use impinge::world::{CollisionGroups, CollisionObject, NearObject, QueryFilter};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::answer::Column;
-use crate::side::SideArgument;
+use crate::error;
+use crate::options::FilterOptions;
+use crate::side::{Elements, GivenSide, SideArgument, common};
 use crate::space::{Kind, Numeric};
+use crate::supervise::{Call, each};
+use crate::typed_world::TypedWorld;
 use crate::vectors::Vectors;
-use crate::world::{Arrays, TypedWorld};
+use crate::world::Arrays;
 
 /// The handle of no object.
 const NO_OBJECT: u64 = u64::MAX;
 
-/// Up to how many objects are wanted, and up to which distance.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RowQuestion {
-    pub(crate) count: usize,
-    pub(crate) max_distance: f64,
+/// A question: its name is that of a function of this module.
+#[derive(FromPyObject)]
+pub(crate) struct Asking {
+    name: String,
+    /// The longest time or distance.
+    limit: f64,
+    /// What counts as a hit of a moving shape.
+    target_distance: f64,
+    /// Up to how many objects are wanted of each element; without, all.
+    wanted: Option<usize>,
+    solid: bool,
 }
 
 /// The questions that a world of any scalar and dimension answers.
 pub(crate) trait WorldQueries {
-    /// For each ray: time, normal and handle of the first object.
-    fn cast_rays<'py>(
+    /// Answers a question about arrays. With one answer for each element: handles and what the question has beside
+    /// them. Else rows: starts first.
+    fn ask<'py>(
         &self,
-        rays: [&Bound<'py, PyAny>; 2],
-        max_time: f64,
-        solid: bool,
-    ) -> Arrays<'py>;
-    /// For each element a row of the nearest objects: starts, handles, distances.
-    fn near<'py>(
-        &self,
-        side: &SideArgument<'_, 'py>,
-        kind: Kind,
-        question: RowQuestion,
-    ) -> Arrays<'py>;
-    /// For each point a row of the objects that hold it: starts, handles.
-    fn containing<'py>(&self, points: &Bound<'py, PyAny>) -> Arrays<'py>;
-    /// For each moving element: time, normal, points and handle of the first object.
-    fn cast_shape<'py>(
-        &self,
-        side: &SideArgument<'_, 'py>,
-        kind: Kind,
-        velocities: &Bound<'py, PyAny>,
-        limits: [f64; 2],
+        asking: &Asking,
+        given: (&[Bound<'py, PyAny>], Kind),
+        filter: Option<&FilterOptions>,
+        call: &Call,
     ) -> Arrays<'py>;
 }
 
-/// Lists of handles, one after the other.
-struct Rows {
-    starts: Vec<i64>,
-    handles: Vec<u64>,
+/// An object and what a question found about it.
+#[derive(Clone, Copy)]
+struct Found<N, const D: usize> {
+    handle: u64,
+    /// A time or distance.
+    number: N,
+    normal: [N; D],
+    points: [[N; D]; 2],
+    is_inside: bool,
 }
 
-impl Rows {
-    fn new() -> Self {
-        Self { starts: vec![0], handles: Vec::new() }
-    }
-
-    fn end(&mut self) {
-        self.starts.push(i64::try_from(self.handles.len()).unwrap_or(i64::MAX));
+impl<N: Numeric<D>, const D: usize> Found<N, D> {
+    /// Nothing was found of this object but itself; without an object, no answer.
+    fn of(handle: u64) -> Self {
+        let nowhere = [convert::<f64, N>(f64::NAN); D];
+        let (number, points) = (N::INFINITY, [nowhere; 2]);
+        Self { handle, number, normal: nowhere, points, is_inside: false }
     }
 }
 
-fn arrays<'py, N: Numeric<D>, const D: usize, const COUNT: usize>(
-    py: Python<'py>,
-    columns: [Column<N, D>; COUNT],
-) -> Arrays<'py> {
-    columns.into_iter().map(|column| column.into_array(py)).collect()
+/// What a question has beside handles.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Beside {
+    Nothing,
+    /// Time and normal.
+    Hits,
+    /// Time, normal and both points.
+    Impacts,
+    /// Distance and both points.
+    Near,
+    /// The point on the object, and whether it is inside.
+    Projections,
 }
 
-/// How many elements arguments have together, where one stands for all.
-fn common(lengths: &[(&str, usize)]) -> PyResult<usize> {
-    let len = lengths.iter().map(|(_, len)| *len).find(|len| *len != 1).unwrap_or(1);
-    match lengths.iter().find(|(_, given)| *given != 1 && *given != len) {
-        None => Ok(len),
-        Some((name, given)) => Err(PyValueError::new_err(format!(
-            "{name} has {given} elements where {len} are needed"
-        ))),
+/// Objects that a question is about.
+struct Chosen {
+    groups: Option<CollisionGroups>,
+    /// In order.
+    excluded: Vec<CollisionObjectHandle>,
+}
+
+/// A question with its arrays read: what it finds about an element. Filters are not shared by threads, so each
+/// element has its own.
+struct Prepared<'a, N: Numeric<D>, const D: usize> {
+    len: usize,
+    beside: Beside,
+    /// All that is found of each element, not the first alone.
+    in_rows: bool,
+    find: Box<Find<'a, N, D>>,
+}
+
+type Find<'a, N, const D: usize> =
+    dyn Fn(usize, &QueryFilter<'_, N, D, ()>) -> Vec<Found<N, D>> + Sync + 'a;
+
+impl<N: Numeric<D>, const D: usize> WorldQueries for TypedWorld<N, D> {
+    fn ask<'py>(
+        &self,
+        asking: &Asking,
+        (given, kind): (&[Bound<'py, PyAny>], Kind),
+        filter: Option<&FilterOptions>,
+        call: &Call,
+    ) -> Arrays<'py> {
+        let chosen = self.chosen(filter)?;
+        let py = given[0].py();
+        let answer = |prepared: Prepared<'_, N, D>| {
+            let Prepared { len, beside, in_rows, find } = prepared;
+            let found = each(py, len, call, |element| chosen.ask(element, &*find))?;
+            columns(py, found, beside, in_rows)
+        };
+        match (asking.name.as_str(), given) {
+            ("ray_hit" | "ray_hits", [origins, directions]) => {
+                let vectors =
+                    [Vectors::of(origins, "origins")?, Vectors::of(directions, "directions")?];
+                answer(self.rays(asking, &vectors)?)
+            }
+            ("project" | "nearest_to_points" | "containing", [points]) => {
+                let points = Vectors::of(points, "points")?;
+                answer(self.points(asking, &points)?)
+            }
+            ("in_boxes", [mins, maxs]) => {
+                let corners = [Vectors::of(mins, "mins")?, Vectors::of(maxs, "maxs")?];
+                answer(self.boxes(&corners)?)
+            }
+            ("near" | "overlapping" | "overlaps_any", [shapes, poses]) => {
+                let given = placed(shapes, poses).read::<N, D>(kind)?;
+                answer(self.shapes(asking, &given)?)
+            }
+            ("cast" | "casts", [shapes, poses, velocities]) => {
+                let given = placed(shapes, poses).read::<N, D>(kind)?;
+                let velocities = Vectors::of(velocities, "velocities")?;
+                answer(self.casts(asking, &given, &velocities)?)
+            }
+            (name, _) => Err(PyValueError::new_err(format!("there is no question {name:?}"))),
+        }
+    }
+}
+
+/// The arguments of a side.
+const fn placed<'a, 'py>(
+    shapes: &'a Bound<'py, PyAny>,
+    poses: &'a Bound<'py, PyAny>,
+) -> SideArgument<'a, 'py> {
+    SideArgument { shapes, poses, names: ["shape", "poses"] }
+}
+
+impl Chosen {
+    fn ask<N: Numeric<D>, const D: usize>(
+        &self,
+        element: usize,
+        find: &Find<'_, N, D>,
+    ) -> Vec<Found<N, D>> {
+        let is_wanted = |object: &CollisionObject<N, D, ()>| {
+            self.excluded.binary_search(&object.handle()).is_err()
+        };
+        let mut filter = QueryFilter::new();
+        if let Some(groups) = self.groups {
+            filter = filter.groups(groups);
+        }
+        if !self.excluded.is_empty() {
+            filter = filter.predicate(&is_wanted);
+        }
+        find(element, &filter)
+    }
+}
+
+impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
+    fn chosen(&self, filter: Option<&FilterOptions>) -> PyResult<Chosen> {
+        let Some(filter) = filter else {
+            return Ok(Chosen { groups: None, excluded: Vec::new() });
+        };
+        let mut excluded = self.fresh(&filter.exclude, "exclude")?;
+        excluded.sort_unstable();
+        let groups = (!filter.groups.is_empty()).then(|| filter.groups.groups()).transpose();
+        Ok(Chosen { groups: groups.map_err(|refused| error::of_groups(&refused))?, excluded })
+    }
+
+    fn rays<'a>(
+        &'a self,
+        asking: &Asking,
+        [origins, directions]: &'a [Vectors<'_, N, D>; 2],
+    ) -> PyResult<Prepared<'a, N, D>> {
+        let (origins, directions) = (origins.rows()?, directions.rows()?);
+        let len = common(&[("origins", origins.len()), ("directions", directions.len())])?;
+        let (limit, solid, in_rows) = (convert(asking.limit), asking.solid, asking.in_rows());
+        let find = move |element, filter: &QueryFilter<'_, N, D, ()>| {
+            let origin = Point::from(entry(origins, element));
+            let ray = Ray::new(origin, Vector::from(entry(directions, element)));
+            if in_rows {
+                let hits = self.world.ray_hits(&ray, limit, solid, filter);
+                hits.into_iter().map(|(object, hit)| self.hit(object, &hit)).collect()
+            } else {
+                let hit = self.world.first_ray_hit(&ray, limit, solid, filter);
+                hit.map(|(object, hit)| self.hit(object, &hit)).into_iter().collect()
+            }
+        };
+        Ok(Prepared { len, beside: Beside::Hits, in_rows, find: Box::new(find) })
+    }
+
+    fn points<'a>(
+        &'a self,
+        asking: &Asking,
+        points: &'a Vectors<'_, N, D>,
+    ) -> PyResult<Prepared<'a, N, D>> {
+        let points = points.rows()?;
+        let at = move |element: usize| Point::from(points[element]);
+        let (limit, solid, count) = (convert(asking.limit), asking.solid, asking.count());
+        let len = points.len();
+        let (beside, find): (_, Box<Find<'a, N, D>>) = match asking.name.as_str() {
+            "project" => (
+                Beside::Projections,
+                Box::new(move |element, filter| {
+                    let found = self.world.project_point(&at(element), limit, solid, filter);
+                    let found = found.map(|(object, nearest)| Found {
+                        points: [points[element], nearest.point.coords.into()],
+                        is_inside: nearest.is_inside,
+                        ..Found::of(self.of(object.handle()))
+                    });
+                    found.into_iter().collect()
+                }),
+            ),
+            "containing" => (
+                Beside::Nothing,
+                Box::new(move |element, filter| {
+                    self.alone(self.world.objects_containing(&at(element), filter))
+                }),
+            ),
+            _ => (
+                Beside::Near,
+                Box::new(move |element, filter| {
+                    let point = at(element);
+                    let found = self.world.nearest_to_point(&point, count, limit, filter);
+                    found.iter().map(|near| self.near(near)).collect()
+                }),
+            ),
+        };
+        Ok(Prepared { len, beside, in_rows: asking.in_rows(), find })
+    }
+
+    fn boxes<'a>(
+        &'a self,
+        [mins, maxs]: &'a [Vectors<'_, N, D>; 2],
+    ) -> PyResult<Prepared<'a, N, D>> {
+        let (mins, maxs) = (mins.rows()?, maxs.rows()?);
+        let len = common(&[("mins", mins.len()), ("maxs", maxs.len())])?;
+        let aabb = |row| {
+            let [lower, upper] = [entry(mins, row), entry(maxs, row)].map(Point::from);
+            let refused =
+                |error| PyValueError::new_err(format!("mins[{row}], maxs[{row}]: {error}"));
+            Aabb::try_new(lower, upper).map_err(refused)
+        };
+        let aabbs: Vec<Aabb<N, D>> = (0..len).map(aabb).collect::<PyResult<_>>()?;
+        let find = move |element: usize, filter: &QueryFilter<'_, N, D, ()>| {
+            self.alone(self.world.objects_in_aabb(&aabbs[element], filter))
+        };
+        Ok(Prepared { len, beside: Beside::Nothing, in_rows: true, find: Box::new(find) })
+    }
+
+    fn shapes<'a>(
+        &'a self,
+        asking: &Asking,
+        given: &'a GivenSide<'_, N, D>,
+    ) -> PyResult<Prepared<'a, N, D>> {
+        let Elements { shapes, positions } = given.elements()?;
+        let (len, limit, count) = (shapes.len(), convert(asking.limit), asking.count());
+        let (beside, find): (_, Box<Find<'a, N, D>>) = match asking.name.as_str() {
+            "overlapping" => (
+                Beside::Nothing,
+                Box::new(move |element, filter| {
+                    let (position, shape) = (&positions[element], &**shapes[element]);
+                    self.alone(self.world.objects_overlapping(position, shape, filter))
+                }),
+            ),
+            "overlaps_any" => (
+                Beside::Projections,
+                Box::new(move |element, filter| {
+                    let (position, shape) = (&positions[element], &**shapes[element]);
+                    let is_inside = self.world.overlaps_any(position, shape, filter);
+                    vec![Found { is_inside, ..Found::of(NO_OBJECT) }]
+                }),
+            ),
+            _ => (
+                Beside::Near,
+                Box::new(move |element, filter| {
+                    let (position, shape) = (&positions[element], &**shapes[element]);
+                    let found = self.world.nearest_objects(position, shape, count, limit, filter);
+                    found.iter().map(|near| self.near(near)).collect()
+                }),
+            ),
+        };
+        Ok(Prepared { len, beside, in_rows: asking.in_rows(), find })
+    }
+
+    fn casts<'a>(
+        &'a self,
+        asking: &Asking,
+        given: &'a GivenSide<'_, N, D>,
+        velocities: &'a Vectors<'_, N, D>,
+    ) -> PyResult<Prepared<'a, N, D>> {
+        let Elements { shapes, positions } = given.elements()?;
+        let velocities = velocities.rows()?;
+        let len = common(&[("poses", shapes.len()), ("velocities", velocities.len())])?;
+        let in_rows = asking.in_rows();
+        let options = ImpactOptions::new()
+            .with_max_time(convert(asking.limit))
+            .with_target_distance(convert(asking.target_distance));
+        let find = move |element, filter: &QueryFilter<'_, N, D, ()>| {
+            let (position, shape) = (entry(&positions, element), &**entry(&shapes, element));
+            let velocity = Vector::from(entry(velocities, element));
+            if in_rows {
+                let found =
+                    self.world.cast_shape_all(&position, &velocity, shape, &options, filter);
+                found.into_iter().map(|(object, impact)| self.impact(object, &impact)).collect()
+            } else {
+                let found = self.world.cast_shape(&position, &velocity, shape, &options, filter);
+                found.map(|(object, impact)| self.impact(object, &impact)).into_iter().collect()
+            }
+        };
+        Ok(Prepared { len, beside: Beside::Impacts, in_rows, find: Box::new(find) })
+    }
+
+    fn hit(&self, object: &CollisionObject<N, D, ()>, hit: &RayIntersection<N, D>) -> Found<N, D> {
+        Found { number: hit.toi, normal: hit.normal.into(), ..Found::of(self.of(object.handle())) }
+    }
+
+    fn impact(&self, object: &CollisionObject<N, D, ()>, impact: &Impact<N, D>) -> Found<N, D> {
+        Found {
+            number: impact.toi,
+            normal: (*impact.normal).into(),
+            points: [impact.world1, impact.world2].map(|point| point.coords.into()),
+            ..Found::of(self.of(object.handle()))
+        }
+    }
+
+    fn near(&self, near: &NearObject<'_, N, D, ()>) -> Found<N, D> {
+        let found = Found { number: near.distance, ..Found::of(self.of(near.object.handle())) };
+        match near.points {
+            ClosestPoints::WithinMargin(point1, point2) => {
+                Found { points: [point1, point2].map(|point| point.coords.into()), ..found }
+            }
+            _ => found,
+        }
+    }
+
+    /// Objects without anything beside them.
+    fn alone<'a>(
+        &self,
+        objects: impl Iterator<Item = &'a CollisionObject<N, D, ()>>,
+    ) -> Vec<Found<N, D>> {
+        objects.map(|object| Found::of(self.of(object.handle()))).collect()
+    }
+}
+
+impl Asking {
+    fn in_rows(&self) -> bool {
+        !matches!(self.name.as_str(), "ray_hit" | "cast" | "project" | "overlaps_any")
+    }
+
+    fn count(&self) -> usize {
+        self.wanted.unwrap_or(usize::MAX)
     }
 }
 
@@ -92,135 +375,37 @@ fn entry<T: Copy>(list: &[T], element: usize) -> T {
     list[if list.len() == 1 { 0 } else { element }]
 }
 
-impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
-    /// Calls with each element of a side.
-    fn each_element(
-        &self,
-        side: &SideArgument<'_, '_>,
-        kind: Kind,
-        mut visit: impl FnMut(usize, &ShapeHandle<N, D>, &N::Isometry),
-    ) -> PyResult<()> {
-        let given = side.read::<N, D>(kind)?;
-        let poses = given.poses()?;
-        let len = given.side(&*poses)?.len();
-        for element in 0..len {
-            let pose = poses.pose(if poses.len() == 1 { 0 } else { element });
-            visit(element, given.shape(element), &N::isometry(&pose));
-        }
-        Ok(())
-    }
-}
-
-impl<N: Numeric<D>, const D: usize> WorldQueries for TypedWorld<N, D> {
-    fn cast_rays<'py>(
-        &self,
-        [origins, directions]: [&Bound<'py, PyAny>; 2],
-        max_time: f64,
-        solid: bool,
-    ) -> Arrays<'py> {
-        let py = origins.py();
-        let origins = Vectors::<N, D>::of(origins, "origins")?;
-        let directions = Vectors::<N, D>::of(directions, "directions")?;
-        let (origins, directions) = (origins.rows()?, directions.rows()?);
-        let len = common(&[("origins", origins.len()), ("directions", directions.len())])?;
-        let (mut time, mut handles) = (vec![N::INFINITY; len], vec![NO_OBJECT; len]);
-        let mut normal = vec![[not_a_number::<N, D>(); D]; len];
-        py.detach(|| {
-            let filter = QueryFilter::new();
-            for element in 0..len {
-                let origin = Point::from(Vector::from(entry(origins, element)));
-                let ray = Ray::new(origin, Vector::from(entry(directions, element)));
-                let found = self.world.first_ray_hit(&ray, convert(max_time), solid, &filter);
-                if let Some((object, hit)) = found {
-                    time[element] = hit.toi;
-                    normal[element] = hit.normal.into();
-                    handles[element] = self.of(object.handle());
-                }
-            }
+/// Answers as columns; in rows with the starts before them, else one for each element.
+fn columns<N: Numeric<D>, const D: usize>(
+    py: Python<'_>,
+    mut found: Vec<Vec<Found<N, D>>>,
+    beside: Beside,
+    in_rows: bool,
+) -> Arrays<'_> {
+    let mut columns: Vec<Column<N, D>> = Vec::new();
+    if in_rows {
+        let ends = found.iter().scan(0, |end, row| {
+            *end += row.len();
+            Some(i64::try_from(*end).unwrap_or(i64::MAX))
         });
-        arrays(
-            py,
-            [Column::<N, D>::Numbers(time), Column::Vectors(normal), Column::Handles(handles)],
-        )
+        columns.push(Column::Rows(core::iter::once(0).chain(ends).collect()));
+    } else {
+        found.iter_mut().filter(|row| row.is_empty()).for_each(|row| {
+            row.push(Found::of(NO_OBJECT));
+        });
     }
-
-    fn near<'py>(
-        &self,
-        side: &SideArgument<'_, 'py>,
-        kind: Kind,
-        question: RowQuestion,
-    ) -> Arrays<'py> {
-        let (mut rows, mut distances, filter) = (Rows::new(), Vec::new(), QueryFilter::new());
-        let RowQuestion { count, max_distance } = question;
-        self.each_element(side, kind, |_, shape, position| {
-            let limit = convert(max_distance);
-            for near in self.world.nearest_objects(position, &**shape, count, limit, &filter) {
-                rows.handles.push(self.of(near.object.handle()));
-                distances.push(near.distance);
-            }
-            rows.end();
-        })?;
-        let distances = Column::<N, D>::Numbers(distances);
-        arrays(
-            side.shapes.py(),
-            [Column::Rows(rows.starts), Column::Handles(rows.handles), distances],
-        )
-    }
-
-    fn containing<'py>(&self, points: &Bound<'py, PyAny>) -> Arrays<'py> {
-        let py = points.py();
-        let points = Vectors::<N, D>::of(points, "points")?;
-        let (mut rows, filter) = (Rows::new(), QueryFilter::new());
-        for point in points.rows()? {
-            let point = Point::from(Vector::from(*point));
-            rows.handles.extend(
-                self.world
-                    .objects_containing(&point, &filter)
-                    .map(|object| self.of(object.handle())),
-            );
-            rows.end();
-        }
-        arrays(py, [Column::<N, D>::Rows(rows.starts), Column::Handles(rows.handles)])
-    }
-
-    fn cast_shape<'py>(
-        &self,
-        side: &SideArgument<'_, 'py>,
-        kind: Kind,
-        velocities: &Bound<'py, PyAny>,
-        [max_time, target_distance]: [f64; 2],
-    ) -> Arrays<'py> {
-        let py = velocities.py();
-        let velocities = Vectors::<N, D>::of(velocities, "velocities")?;
-        let velocities = velocities.rows()?;
-        let options = ImpactOptions::new()
-            .with_max_time(convert(max_time))
-            .with_target_distance(convert(target_distance));
-        let (mut time, mut normal, mut handles) = (Vec::new(), Vec::new(), Vec::new());
-        let (filter, mut len) = (QueryFilter::new(), 0);
-        self.each_element(side, kind, |element, shape, position| {
-            len = element + 1;
-            let Some(velocity) = velocities.get(if velocities.len() == 1 { 0 } else { element })
-            else {
-                return;
-            };
-            let velocity = Vector::from(*velocity);
-            let found = self.world.cast_shape(position, &velocity, &**shape, &options, &filter);
-            time.push(found.map_or(N::INFINITY, |(_, impact)| impact.toi));
-            normal.push(
-                found.map_or([not_a_number::<N, D>(); D], |(_, impact)| (*impact.normal).into()),
-            );
-            handles.push(found.map_or(NO_OBJECT, |(object, _)| self.of(object.handle())));
-        })?;
-        common(&[("poses", len), ("velocities", velocities.len())])?;
-        arrays(
-            py,
-            [Column::<N, D>::Numbers(time), Column::Vectors(normal), Column::Handles(handles)],
-        )
-    }
-}
-
-/// What there is where there is no answer.
-fn not_a_number<N: Numeric<D>, const D: usize>() -> N {
-    convert(f64::NAN)
+    let flat: Vec<Found<N, D>> = found.into_iter().flatten().collect();
+    columns.push(Column::Handles(flat.iter().map(|one| one.handle).collect()));
+    let number = || Column::Numbers(flat.iter().map(|one| one.number).collect());
+    let normal = || Column::Vectors(flat.iter().map(|one| one.normal).collect());
+    let point = |side: usize| Column::Vectors(flat.iter().map(|one| one.points[side]).collect());
+    let is_inside = || Column::Flags(flat.iter().map(|one| one.is_inside).collect());
+    columns.extend(match beside {
+        Beside::Nothing => Vec::new(),
+        Beside::Hits => vec![number(), normal()],
+        Beside::Impacts => vec![number(), normal(), point(0), point(1)],
+        Beside::Near => vec![number(), point(0), point(1)],
+        Beside::Projections => vec![point(1), is_inside()],
+    });
+    columns.into_iter().map(|column| column.into_array(py)).collect()
 }

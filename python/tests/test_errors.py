@@ -28,7 +28,7 @@ HERE = np.tile(np.eye(4), (3, 1, 1))
         (lambda: impinge.distance(BALL, None, "ball", None), TypeError, ["shape2"]),
         (lambda: impinge.distance([], None, BALL, None), ValueError, ["shape1 has no shape"]),
         (lambda: impinge.distance(BALL, None, BALL, np.eye(3)), ValueError, ["poses2", "(3, 3)"]),
-        (lambda: impinge.distance(BALL, None, BALL, "here"), TypeError, ["poses2", "str"]),
+        (lambda: impinge.distance(BALL, None, BALL, "here"), TypeError, ["poses2", "<U4"]),
         (lambda: impinge.distance(BALL, HERE, BALL, HERE[:2]), ValueError, ["2", "3"]),
         (lambda: impinge.distance([BALL] * 2, HERE, BALL, None), ValueError, ["poses1", "3", "2"]),
         (lambda: impinge.distance(BALL, None, BALL, 2 * HERE), ValueError, ["poses2[0]"]),

@@ -97,4 +97,5 @@ def test_random_meshes_as_trimesh_has_them():
             # FCL's distances of triangles are right to some 1e-7.
             assert mine == pytest.approx(expected, abs=1e-6)
         else:
-            assert mine <= 0
+            # FCL has the depth of one of the meshes that overlap, impinge that of the deepest.
+            assert mine <= expected + 1e-6

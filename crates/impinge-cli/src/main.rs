@@ -16,7 +16,6 @@ mod motion;
 mod number;
 mod output;
 mod page;
-mod picture;
 mod progress;
 mod scene;
 mod separation;

@@ -2,14 +2,14 @@
 
 use core::fmt;
 use std::collections::BTreeMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use impinge::math::Space;
 use impinge::shape::ShapeHandle;
 use impinge::world::{BroadPhasePairFilter, CollisionWorld};
 
 /// Registers a filter in a world.
-type Register<N, const D: usize, T> = Rc<dyn Fn(&mut CollisionWorld<N, D, T>)>;
+type Register<N, const D: usize, T> = Arc<dyn Fn(&mut CollisionWorld<N, D, T>) + Send + Sync>;
 
 /// Shapes of the user's own types and pair filters, by name. A recording holds the names; the program that
 /// replays it gives the same things under these.
@@ -52,7 +52,7 @@ impl<N: Space<D>, const D: usize, T> Registry<N, D, T> {
         let register = move |world: &mut CollisionWorld<N, D, T>| {
             world.register_broad_phase_pair_filter(&own, filter.clone());
         };
-        self.filters.insert(name.to_owned(), Rc::new(register));
+        self.filters.insert(name.to_owned(), Arc::new(register));
         self
     }
 

@@ -30,6 +30,8 @@
 //! assert!(image.to_png().starts_with(b"\x89PNG"));
 //! ```
 //!
+//! [`world_drawing`] draws a world in sizes that suit its objects.
+//!
 //! [`Golden`] compares an [`Image`] with a file, for tests that would notice a change of a picture.
 #![forbid(unsafe_code)]
 
@@ -54,6 +56,7 @@ mod recording;
 mod shade;
 mod svg_picture;
 mod svg_write;
+mod world_drawing;
 
 pub use camera::Camera;
 pub use compare::{Difference, compare};
@@ -62,3 +65,4 @@ pub use image::{Image, ImageError};
 pub use picture::Picture;
 pub use png_picture::{Png, PngPicture};
 pub use svg_picture::{Svg, SvgPicture};
+pub use world_drawing::world_drawing;

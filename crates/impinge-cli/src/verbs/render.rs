@@ -6,7 +6,7 @@ use impinge::debug_render::{DebugOptions, DebugRender};
 use impinge::dim3::math::Vector;
 use impinge::math::Real;
 use impinge::world::CollisionWorld;
-use impinge_view::{Camera, PngPicture};
+use impinge_view::{Camera, PngPicture, world_drawing};
 
 use crate::args::{LayerName, RenderArgs};
 use crate::convert::direction;
@@ -14,7 +14,6 @@ use crate::error::CliError;
 use crate::input::Input;
 use crate::log::Log;
 use crate::output::{self, Outcome};
-use crate::picture::drawing;
 use crate::scene::Loaded;
 use crate::space::{Stage, Task, run_in};
 
@@ -110,7 +109,7 @@ impl PictureStyle<'_> {
         world: &CollisionWorld<N, D, T>,
     ) -> Result<Vec<u8>, CliError> {
         let camera = N::camera(self.camera()?);
-        let mut drawing = drawing(world, options(&self.args.layers));
+        let mut drawing = world_drawing(world, options(&self.args.layers));
         // The formats are different types, which only this trait has in common.
         let mut draw = |picture: &mut dyn DebugRender<N, D>| drawing.world(world, picture);
         let size @ [width, _] = self.args.size.0;

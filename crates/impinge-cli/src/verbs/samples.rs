@@ -7,14 +7,13 @@ use std::path::Path;
 use impinge::debug_render::DebugOptions;
 use impinge::dim3::math::Vector;
 use impinge_samples::{Entry, Make, Running, Sample, entries};
-use impinge_view::{Camera, PngPicture};
+use impinge_view::{Camera, PngPicture, world_drawing};
 use serde::Serialize;
 
 use crate::args::{SamplesArgs, Size};
 use crate::error::CliError;
 use crate::output::{self, FAINT, NAME, Outcome, Report, finish};
 use crate::page::assets;
-use crate::picture::drawing;
 use crate::progress::Progress;
 use crate::space::Stage;
 
@@ -109,7 +108,7 @@ where
     if running.world().contact_pairs().count() > MAX_PAIRS {
         (options.contact_point, options.contact_normal) = (None, None);
     }
-    let mut drawing = drawing(running.world(), options);
+    let mut drawing = world_drawing(running.world(), options);
     drawing.world(running.world(), &mut picture);
     running.draw(&mut drawing, &mut picture);
     Ok(picture.to_png())

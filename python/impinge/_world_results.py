@@ -1,0 +1,76 @@
+"""What queries of worlds return: columns of arrays, or rows of lists."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Handles = NDArray[np.uint64]
+
+NO_OBJECT = int(np.iinfo(np.uint64).max)
+"""The handle of no object, where a query has no answer."""
+
+
+class WorldHit(NamedTuple):
+    """What rays hit first: time (n,), normal (n, D) and handle (n,); infinite, NaN and `NO_OBJECT` without a hit."""
+
+    time: Any
+    normal: Any
+    handle: Handles
+
+
+class WorldImpact(NamedTuple):
+    """What moving shapes meet first: time (n,), normal (n, D) from the shape to the object, handle (n,), points (n, D)."""
+
+    time: Any
+    normal: Any
+    handle: Handles
+    point1: Any
+    point2: Any
+
+
+class WorldProjection(NamedTuple):
+    """The nearest points on objects: point (n, D), is_inside (n,), handle (n,); NaN and `NO_OBJECT` without one."""
+
+    point: Any
+    is_inside: Any
+    handle: Handles
+
+
+class Rows(NamedTuple):
+    """Lists of objects: those of element i are `starts[i]` to `starts[i + 1]` of `handle`."""
+
+    starts: NDArray[np.int64]
+    handle: Handles
+
+
+class HitRows(NamedTuple):
+    """Lists of objects that rays hit, in order of time."""
+
+    starts: NDArray[np.int64]
+    handle: Handles
+    time: Any
+    normal: Any
+
+
+class ImpactRows(NamedTuple):
+    """Lists of objects that moving shapes meet, in order of time."""
+
+    starts: NDArray[np.int64]
+    handle: Handles
+    time: Any
+    normal: Any
+    point1: Any
+    point2: Any
+
+
+class NearRows(NamedTuple):
+    """Lists of objects with their distances, the nearest first, and the nearest points: NaN where they overlap."""
+
+    starts: NDArray[np.int64]
+    handle: Handles
+    distance: Any
+    point1: Any
+    point2: Any

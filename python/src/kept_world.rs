@@ -1,0 +1,140 @@
+//! The world behind a world of Python: by itself, or inside a recorder while it is recorded.
+
+use core::ops::Deref;
+
+use impinge::math::Space;
+use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::shape::ShapeHandle;
+use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge_record::{RecordError, Recorder, Registry};
+
+use crate::space::Numeric;
+
+/// A world, which is read through [`Deref`] and changed by the methods: a recorder hears of every change.
+pub(crate) enum KeptWorld<N: Numeric<D>, const D: usize> {
+    Plain(CollisionWorld<N, D, ()>),
+    Recorded(Recorder<N, D, ()>),
+}
+
+impl<N: Numeric<D>, const D: usize> Deref for KeptWorld<N, D> {
+    type Target = CollisionWorld<N, D, ()>;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Plain(world) => world,
+            Self::Recorded(recorder) => recorder,
+        }
+    }
+}
+
+/// The isometry type of a scalar and dimension.
+type Isometry<N, const D: usize> = <N as Space<D>>::Isometry;
+
+/// What an object is asked for.
+type Query<N> = GeometricQueryType<N>;
+
+impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
+    pub(crate) fn add(
+        &mut self,
+        position: Isometry<N, D>,
+        shape: ShapeHandle<N, D>,
+        groups: CollisionGroups,
+        query: Query<N>,
+    ) -> Result<CollisionObjectHandle, RecordError> {
+        match self {
+            Self::Plain(world) => Ok(world.try_add(position, shape, groups, query, ())?),
+            Self::Recorded(recorder) => recorder.add(position, shape, groups, query, ()),
+        }
+    }
+
+    pub(crate) fn remove(&mut self, handles: &[CollisionObjectHandle]) -> Result<(), RecordError> {
+        match self {
+            Self::Plain(world) => Ok(world.try_remove(handles)?),
+            Self::Recorded(recorder) => recorder.remove(handles),
+        }
+    }
+
+    pub(crate) fn set_positions(
+        &mut self,
+        positions: &[(CollisionObjectHandle, Isometry<N, D>)],
+    ) -> Result<(), RecordError> {
+        match self {
+            Self::Plain(world) => Ok(world.try_set_positions(positions)?),
+            Self::Recorded(recorder) => recorder.set_positions(positions),
+        }
+    }
+
+    pub(crate) fn set_shape(
+        &mut self,
+        handle: CollisionObjectHandle,
+        shape: ShapeHandle<N, D>,
+    ) -> Result<(), RecordError> {
+        match self {
+            Self::Plain(world) => Ok(world.try_set_shape(handle, shape)?),
+            Self::Recorded(recorder) => recorder.set_shape(handle, shape),
+        }
+    }
+
+    pub(crate) fn set_groups(
+        &mut self,
+        handle: CollisionObjectHandle,
+        groups: CollisionGroups,
+    ) -> Result<(), RecordError> {
+        match self {
+            Self::Plain(world) => Ok(world.try_set_collision_groups(handle, groups)?),
+            Self::Recorded(recorder) => recorder.set_collision_groups(handle, groups),
+        }
+    }
+
+    pub(crate) fn set_query(
+        &mut self,
+        handle: CollisionObjectHandle,
+        query: Query<N>,
+    ) -> Result<(), RecordError> {
+        match self {
+            Self::Plain(world) => Ok(world.try_set_query_type(handle, query)?),
+            Self::Recorded(recorder) => recorder.set_query_type(handle, query),
+        }
+    }
+
+    pub(crate) fn update(&mut self) {
+        match self {
+            Self::Plain(world) => world.update(),
+            Self::Recorded(recorder) => recorder.update(),
+        }
+    }
+
+    /// Begins to record, with an update; a world that is recorded goes on as it is.
+    pub(crate) fn record(&mut self, margin: N) -> Result<(), RecordError> {
+        let Self::Plain(world) = self else { return Ok(()) };
+        let world = std::mem::replace(world, CollisionWorld::new(N::ZERO));
+        match Recorder::of_world(world, margin, Registry::new()) {
+            Ok(recorder) => *self = Self::Recorded(recorder),
+            Err(refused) => {
+                *self = Self::Plain(*refused.world);
+                return Err(refused.error);
+            }
+        }
+        Ok(())
+    }
+
+    /// Ends to record: the bytes of the recording, if there is one.
+    pub(crate) fn stop(&mut self) -> Option<Vec<u8>> {
+        let none = Self::Plain(CollisionWorld::new(N::ZERO));
+        match std::mem::replace(self, none) {
+            Self::Plain(world) => {
+                *self = Self::Plain(world);
+                None
+            }
+            Self::Recorded(recorder) => {
+                let recording = recorder.finish();
+                *self = Self::Plain(recording.world);
+                Some(recording.bytes)
+            }
+        }
+    }
+
+    pub(crate) const fn is_recorded(&self) -> bool {
+        matches!(self, Self::Recorded(_))
+    }
+}

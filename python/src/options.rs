@@ -1,0 +1,71 @@
+//! What Python says of objects and questions beside arrays: groups, query types and filters.
+
+use impinge::math::Real;
+use impinge::math::na::convert;
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::world::{CollisionGroups, GroupError};
+use pyo3::prelude::*;
+
+/// Numbers of groups; without a list it is that of new objects.
+#[derive(FromPyObject)]
+pub(crate) struct GroupLists {
+    membership: Option<Vec<usize>>,
+    whitelist: Option<Vec<usize>>,
+    blacklist: Option<Vec<usize>>,
+}
+
+impl GroupLists {
+    /// As the library has them.
+    pub(crate) fn groups(&self) -> Result<CollisionGroups, GroupError> {
+        let mut groups = CollisionGroups::new();
+        if let Some(membership) = &self.membership {
+            groups.try_set_membership(membership)?;
+        }
+        if let Some(whitelist) = &self.whitelist {
+            groups.try_set_whitelist(whitelist)?;
+        }
+        if let Some(blacklist) = &self.blacklist {
+            groups.try_set_blacklist(blacklist)?;
+        }
+        Ok(groups)
+    }
+
+    /// No list is given.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.membership.is_none() && self.whitelist.is_none() && self.blacklist.is_none()
+    }
+}
+
+/// What is computed of the pairs of an object.
+#[derive(FromPyObject)]
+pub(crate) struct QueryOptions {
+    /// Contacts up to the sum of the predictions of both objects; used where there is no margin.
+    prediction: f64,
+    /// Proximity instead of contacts, with this margin.
+    margin: Option<f64>,
+}
+
+impl QueryOptions {
+    /// As the library has it.
+    pub(crate) fn query_type<N: Real>(&self) -> GeometricQueryType<N> {
+        match self.margin {
+            Some(margin) => GeometricQueryType::Proximity(convert(margin)),
+            None => GeometricQueryType::Contacts(convert(self.prediction), N::ZERO),
+        }
+    }
+}
+
+/// What a new object is to be, apart from shape and pose.
+#[derive(FromPyObject)]
+pub(crate) struct ObjectOptions {
+    pub(crate) query: QueryOptions,
+    pub(crate) groups: GroupLists,
+}
+
+/// Which objects a question is about.
+#[derive(FromPyObject)]
+pub(crate) struct FilterOptions {
+    pub(crate) groups: GroupLists,
+    /// Handles.
+    pub(crate) exclude: Vec<u64>,
+}

@@ -1,0 +1,105 @@
+//! Small pictures for notebooks: SVG in 2D, PNG in 3D.
+
+use impinge::debug_render::{DebugOptions, DebugRender};
+use impinge::dim3::math::Vector as Vector3;
+use impinge::math::{Real, Space};
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge_view::{Camera, PngPicture, SvgPicture, world_drawing};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::shapes::kind_of;
+use crate::side::SideArgument;
+use crate::space::{Kind, Numeric, Task, run_in};
+
+/// How things are seen.
+#[derive(FromPyObject)]
+pub(crate) struct PictureView {
+    /// Width and height in pixels; the height of a picture in 2D follows from what is drawn.
+    size: [u32; 2],
+    /// The direction of view in 3D, and what is above.
+    look: [f64; 3],
+    up: [f64; 3],
+    title: String,
+}
+
+/// A scalar and a dimension in which there are pictures.
+pub(crate) trait Pictured<const D: usize>: Space<D> {
+    /// The format of pictures, as the ends of files name it.
+    const FORMAT: &'static str;
+
+    /// The bytes of a picture of what is drawn.
+    fn bytes(view: &PictureView, draw: &mut dyn FnMut(&mut dyn DebugRender<Self, D>)) -> Vec<u8>;
+}
+
+impl<N: Real> Pictured<2> for N {
+    const FORMAT: &'static str = "svg";
+
+    fn bytes(view: &PictureView, draw: &mut dyn FnMut(&mut dyn DebugRender<N, 2>)) -> Vec<u8> {
+        let picture = SvgPicture::plane(view.size[0]).with_title(&view.title, "");
+        let mut picture = picture.without_legend();
+        draw(&mut picture);
+        picture.to_svg().into_bytes()
+    }
+}
+
+impl<N: Real> Pictured<3> for N {
+    const FORMAT: &'static str = "png";
+
+    fn bytes(view: &PictureView, draw: &mut dyn FnMut(&mut dyn DebugRender<N, 3>)) -> Vec<u8> {
+        let camera = Camera::look_along(&Vector3::from(view.look), &Vector3::from(view.up));
+        let mut picture = PngPicture::new(camera.perspective(0.5), view.size).without_texts();
+        draw(&mut picture);
+        picture.to_png()
+    }
+}
+
+/// A picture of the objects of a world, with contacts and proximities of the last update: format and bytes.
+pub(crate) fn picture<N: Numeric<D>, const D: usize>(
+    world: &CollisionWorld<N, D, ()>,
+    view: &PictureView,
+) -> (&'static str, Vec<u8>) {
+    let mut drawing = world_drawing(world, DebugOptions::default());
+    let bytes = N::bytes(view, &mut |picture| drawing.world(world, picture));
+    (<N as Pictured<D>>::FORMAT, bytes)
+}
+
+/// A picture of shapes at poses.
+#[pyfunction]
+pub(crate) fn picture_of<'py>(
+    shapes: &Bound<'py, PyAny>,
+    poses: &Bound<'py, PyAny>,
+    view: PictureView,
+) -> PyResult<(&'static str, Bound<'py, PyBytes>)> {
+    let kind = kind_of(shapes, "shapes")?;
+    let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
+    run_in(kind, Draw { side, kind, view })
+}
+
+struct Draw<'a, 'py> {
+    side: SideArgument<'a, 'py>,
+    kind: Kind,
+    view: PictureView,
+}
+
+impl<'py> Task for Draw<'_, 'py> {
+    type Answer = (&'static str, Bound<'py, PyBytes>);
+
+    fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
+        let given = self.side.read::<N, D>(self.kind)?;
+        let poses = given.poses()?;
+        let mut world = CollisionWorld::<N, D, ()>::new(N::ZERO);
+        // Nothing touches: shapes alone are drawn, and no pair is looked at, for the world is not updated.
+        let query = GeometricQueryType::Proximity(N::ZERO);
+        for element in 0..given.side(&*poses)?.len() {
+            let position = N::isometry(&poses.pose(if poses.len() == 1 { 0 } else { element }));
+            let shape = given.shape(element).clone();
+            let added = world.try_add(position, shape, CollisionGroups::new(), query, ());
+            added.map_err(|refused| crate::error::of_row(&refused.into(), "poses", element))?;
+        }
+        let py = self.side.shapes.py();
+        let (format, bytes) = py.detach(|| picture(&world, &self.view));
+        Ok((format, PyBytes::new(py, &bytes)))
+    }
+}

@@ -1,0 +1,186 @@
+//! Impacts of solids that move and turn.
+
+use impinge::math::na::convert;
+use impinge::math::{Real, Space, Vector};
+use impinge::query::{
+    ConstantVelocities, Impact, ImpactOptions, ImpactStatus, RigidMotion, nonlinear_time_of_impact,
+};
+use impinge::shape::ShapeHandle;
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
+use pyo3::prelude::*;
+
+use crate::answer::{Column, into_python};
+use crate::pairs::{ImpactCall, PairCall};
+use crate::space::{Kind, Numeric, Task};
+use crate::supervise::each;
+use crate::vectors::Vectors;
+
+/// A scalar and a dimension in which bodies turn.
+pub(crate) trait Turning<const D: usize>: Space<D> {
+    /// How many numbers an angular velocity has.
+    const ANGULAR: usize;
+
+    /// Constant velocities, the angular one of [`Self::ANGULAR`] numbers.
+    fn motion(
+        position: Self::Isometry,
+        linear: Vector<Self, D>,
+        angular: &[Self],
+    ) -> Box<dyn RigidMotion<Self, D>>;
+}
+
+impl<N: Real> Turning<2> for N {
+    const ANGULAR: usize = 1;
+
+    fn motion(
+        position: <N as Space<2>>::Isometry,
+        linear: Vector<N, 2>,
+        angular: &[N],
+    ) -> Box<dyn RigidMotion<N, 2>> {
+        Box::new(ConstantVelocities::<N, 2>::new(position, linear, angular[0]))
+    }
+}
+
+impl<N: Real> Turning<3> for N {
+    const ANGULAR: usize = 3;
+
+    fn motion(
+        position: <N as Space<3>>::Isometry,
+        linear: Vector<N, 3>,
+        angular: &[N],
+    ) -> Box<dyn RigidMotion<N, 3>> {
+        let angular = Vector::<N, 3>::from_fn(|axis, _| angular[axis]);
+        Box::new(ConstantVelocities::<N, 3>::new(position, linear, angular))
+    }
+}
+
+/// Angular velocities as an argument: (n, 1) in 2D, (n, 3) in 3D; none is zero.
+struct Angular<'py, N: Numeric<D>, const D: usize> {
+    rows: Option<PyReadonlyArrayDyn<'py, N>>,
+    is_lone: bool,
+}
+
+impl<'py, N: Numeric<D>, const D: usize> Angular<'py, N, D> {
+    fn of(given: Option<&Bound<'py, PyAny>>, name: &str) -> PyResult<Self> {
+        let Some(given) = given else { return Ok(Self { rows: None, is_lone: true }) };
+        let py = given.py();
+        let reader = py.import("impinge._poses")?.getattr("angular_velocities")?;
+        let read = reader.call1((given, D, N::get_dtype(py), name))?;
+        let (rows, is_lone) = read.extract::<(Bound<'py, PyAny>, bool)>()?;
+        Ok(Self { rows: Some(rows.cast::<PyArrayDyn<N>>()?.try_readonly()?), is_lone })
+    }
+
+    /// All numbers, row by row.
+    fn numbers(&self) -> PyResult<Vec<N>> {
+        Ok(match &self.rows {
+            None => vec![N::ZERO; <N as Turning<D>>::ANGULAR],
+            Some(rows) => rows.as_slice()?.to_vec(),
+        })
+    }
+}
+
+/// One body of each pair.
+struct Bodies<'a, N: Numeric<D>, const D: usize> {
+    shapes: Vec<&'a ShapeHandle<N, D>>,
+    positions: Vec<N::Isometry>,
+    linear: &'a [[N; D]],
+    angular: Vec<N>,
+}
+
+impl<N: Numeric<D>, const D: usize> Bodies<'_, N, D> {
+    /// Names and lengths of what may have one element for all.
+    fn lengths(&self, [poses, linear, angular]: [&'static str; 3]) -> [(&'static str, usize); 3] {
+        let turns = self.angular.len() / <N as Turning<D>>::ANGULAR;
+        [(poses, self.positions.len()), (linear, self.linear.len()), (angular, turns)]
+    }
+
+    fn motion(&self, element: usize) -> Box<dyn RigidMotion<N, D>> {
+        let at = |len: usize| if len == 1 { 0 } else { element };
+        let width = <N as Turning<D>>::ANGULAR;
+        let begin = at(self.angular.len() / width) * width;
+        let linear = Vector::from(self.linear[at(self.linear.len())]);
+        let position = self.positions[at(self.positions.len())];
+        N::motion(position, linear, &self.angular[begin..begin + width])
+    }
+
+    fn shape(&self, element: usize) -> &ShapeHandle<N, D> {
+        self.shapes[if self.shapes.len() == 1 { 0 } else { element }]
+    }
+}
+
+/// Asks when bodies that move and turn meet.
+pub(crate) struct AskTurning<'a, 'py> {
+    pub(crate) call: PairCall<'a, 'py>,
+    pub(crate) impacts: ImpactCall<'a, 'py>,
+    pub(crate) kind: Kind,
+}
+
+impl<'py> Task for AskTurning<'_, 'py> {
+    type Answer = Bound<'py, PyAny>;
+
+    fn run<N: Numeric<D>, const D: usize>(self) -> PyResult<Self::Answer> {
+        let Self { call: PairCall { py, sides, call }, impacts, kind } = self;
+        let [linear1, linear2] = impacts.velocities;
+        let (linear1, linear2) = (
+            Vectors::<N, D>::of(linear1, "velocity1")?,
+            Vectors::<N, D>::of(linear2, "velocity2")?,
+        );
+        let [angular1, angular2] = impacts.angular_velocities;
+        let angular1 = Angular::<N, D>::of(angular1, "angular_velocity1")?;
+        let angular2 = Angular::<N, D>::of(angular2, "angular_velocity2")?;
+        let (given1, given2) = (sides[0].read::<N, D>(kind)?, sides[1].read::<N, D>(kind)?);
+        let bodies1 = Bodies {
+            shapes: given1.elements()?.shapes,
+            positions: given1.elements()?.positions,
+            linear: linear1.rows()?,
+            angular: angular1.numbers()?,
+        };
+        let bodies2 = Bodies {
+            shapes: given2.elements()?.shapes,
+            positions: given2.elements()?.positions,
+            linear: linear2.rows()?,
+            angular: angular2.numbers()?,
+        };
+        let lengths = [
+            bodies1.lengths(["poses1", "velocity1", "angular_velocity1"]),
+            bodies2.lengths(["poses2", "velocity2", "angular_velocity2"]),
+        ];
+        let len = crate::side::common(&lengths.concat())?;
+        let options = impacts.options::<N>();
+        let found = each(py, len, &call, |element| {
+            let (motion1, motion2) = (bodies1.motion(element), bodies2.motion(element));
+            let (shape1, shape2) = (bodies1.shape(element), bodies2.shape(element));
+            nonlinear_time_of_impact(&*motion1, &**shape1, &*motion2, &**shape2, &options)
+        })?;
+        let is_lone = [given1.is_lone(), given2.is_lone(), linear1.is_lone(), linear2.is_lone()];
+        let is_lone = is_lone.into_iter().all(|it| it) && angular1.is_lone && angular2.is_lone;
+        into_python(py, Some("Impact"), columns(&found), is_lone)
+    }
+}
+
+/// Time, normal, points and whether the time is that of an impact.
+fn columns<N: Numeric<D>, const D: usize>(found: &[Option<Impact<N, D>>]) -> Vec<Column<N, D>> {
+    let nowhere = [convert::<f64, N>(f64::NAN); D];
+    let time = found.iter().map(|one| one.map_or(N::INFINITY, |impact| impact.toi));
+    let vectors = |of: &dyn Fn(&Impact<N, D>) -> [N; D]| {
+        Column::Vectors(found.iter().map(|one| one.as_ref().map_or(nowhere, of)).collect())
+    };
+    let reached = |one: &Option<Impact<N, D>>| {
+        one.is_some_and(|impact| impact.status == ImpactStatus::Reached)
+    };
+    vec![
+        Column::Numbers(time.collect()),
+        vectors(&|impact| (*impact.normal).into()),
+        vectors(&|impact| impact.world1.coords.into()),
+        vectors(&|impact| impact.world2.coords.into()),
+        Column::Flags(found.iter().map(reached).collect()),
+    ]
+}
+
+impl ImpactCall<'_, '_> {
+    /// The limits as the library has them.
+    pub(crate) fn options<N: Real>(&self) -> ImpactOptions<N> {
+        ImpactOptions::new()
+            .with_max_time(convert(self.max_time))
+            .with_target_distance(convert(self.target_distance))
+    }
+}

@@ -1,0 +1,325 @@
+//! A world of one scalar and dimension behind [`AnyWorld`]: handles, bulk changes, events and contacts.
+
+use impinge::math::Point;
+use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent};
+use impinge::query::Proximity;
+use impinge::shape::{MeshError, Polyline, ShapeHandle, TriMesh};
+use impinge_record::RecordError;
+use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::answer::Column;
+use crate::error;
+use crate::kept_world::KeptWorld;
+use crate::options::{GroupLists, ObjectOptions, QueryOptions};
+use crate::pictures::{PictureView, picture};
+use crate::poses::Poses;
+use crate::shapes::ShapesArgument;
+use crate::side::SideArgument;
+use crate::space::{Kind, Numeric};
+use crate::vectors::Vectors;
+use crate::world::{AnyWorld, Arrays};
+use crate::world_queries::WorldQueries;
+
+/// A world of the library.
+pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
+    pub(crate) world: KeptWorld<N, D>,
+    margin: N,
+    /// For each index how often it was used, and the handle of the library that has it now.
+    slots: Vec<(u32, CollisionObjectHandle)>,
+}
+
+impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
+    pub(crate) const fn new(world: KeptWorld<N, D>, margin: N) -> Self {
+        Self { world, margin, slots: Vec::new() }
+    }
+
+    /// The handles of the library.
+    pub(crate) fn fresh(
+        &self,
+        handles: &[u64],
+        argument: &str,
+    ) -> PyResult<Vec<CollisionObjectHandle>> {
+        let fresh = |(row, &handle)| {
+            let stale = || {
+                let message = format!("{argument}[{row}] is {handle}: there is no such object");
+                PyValueError::new_err(message)
+            };
+            self.alive(handle).ok_or_else(stale)
+        };
+        handles.iter().enumerate().map(fresh).collect()
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a handle has an index and an age of 32 bits"
+    )]
+    fn alive(&self, handle: u64) -> Option<CollisionObjectHandle> {
+        let (index, age) = (handle as u32, (handle >> 32) as u32);
+        let slot = self.slots.get(index as usize).filter(|slot| slot.0 == age)?;
+        self.world.contains(slot.1).then_some(slot.1)
+    }
+
+    /// The handle in Python of an object that was just added.
+    fn name(&mut self, handle: CollisionObjectHandle) -> u64 {
+        let index = handle.uid();
+        let age = match self.slots.get_mut(index) {
+            Some(slot) => {
+                *slot = (slot.0.wrapping_add(1), handle);
+                slot.0
+            }
+            None => {
+                self.slots.push((0, handle));
+                0
+            }
+        };
+        u64::from(age) << 32 | index as u64
+    }
+
+    pub(crate) fn of(&self, handle: CollisionObjectHandle) -> u64 {
+        u64::from(self.slots[handle.uid()].0) << 32 | handle.uid() as u64
+    }
+
+    /// Gives objects other shapes, all or none.
+    fn exchange(
+        &mut self,
+        handles: &[CollisionObjectHandle],
+        shape_of: impl Fn(usize) -> ShapeHandle<N, D>,
+    ) -> PyResult<()> {
+        let before: Vec<_> = handles
+            .iter()
+            .filter_map(|handle| Some(self.world.collision_object(*handle)?.shape().clone()))
+            .collect();
+        for (row, handle) in handles.iter().enumerate() {
+            if let Err(refused) = self.world.set_shape(*handle, shape_of(row)) {
+                for (handle, shape) in handles.iter().zip(before).take(row) {
+                    let is_known = self.world.set_shape(*handle, shape);
+                    debug_assert!(is_known.is_ok(), "it was the shape of the object");
+                }
+                return Err(error::of_row(&refused, "shapes", row));
+            }
+        }
+        Ok(())
+    }
+
+    /// The shape of an object with other vertices; `None` if it is no mesh and no line of segments.
+    fn deformed(
+        shape: &ShapeHandle<N, D>,
+        vertices: &[Point<N, D>],
+    ) -> Option<Result<ShapeHandle<N, D>, MeshError>> {
+        if let Some(mesh) = shape.as_shape::<TriMesh<N, D>>() {
+            let mut mesh = mesh.clone();
+            return Some(mesh.try_set_vertices(vertices).map(|()| ShapeHandle::new(mesh)));
+        }
+        let mut line = shape.as_shape::<Polyline<N, D>>()?.clone();
+        Some(line.try_set_vertices(vertices).map(|()| ShapeHandle::new(line)))
+    }
+}
+
+impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
+    fn add(
+        &mut self,
+        side: &SideArgument<'_, '_>,
+        kind: Kind,
+        options: &ObjectOptions,
+    ) -> PyResult<Vec<u64>> {
+        let query = options.query.query_type::<N>();
+        let groups = options.groups.groups().map_err(|refused| error::of_groups(&refused))?;
+        let given = side.read::<N, D>(kind)?;
+        let poses = given.poses()?;
+        let len = given.side(&*poses)?.len();
+        let mut added = Vec::with_capacity(len);
+        for element in 0..len {
+            let pose = poses.pose(if poses.len() == 1 { 0 } else { element });
+            let shape = given.shape(element).clone();
+            match self.world.add(N::isometry(&pose), shape, groups, query) {
+                Ok(handle) => added.push(handle),
+                Err(refused) => {
+                    // Nothing is left of a call that fails.
+                    let removed = self.world.remove(&added);
+                    debug_assert!(removed.is_ok(), "they were just added");
+                    return Err(error::of_row(&refused, "poses", element));
+                }
+            }
+        }
+        Ok(added.into_iter().map(|handle| self.name(handle)).collect())
+    }
+
+    fn remove(&mut self, handles: &[u64]) -> PyResult<()> {
+        let fresh = self.fresh(handles, "handles")?;
+        self.world.remove(&fresh).map_err(|refused| error::of_call(&refused))
+    }
+
+    fn set_poses(&mut self, handles: &[u64], poses: &Bound<'_, PyAny>) -> PyResult<()> {
+        let fresh = self.fresh(handles, "handles")?;
+        let given = Poses::<N, D>::of(poses, "poses")?;
+        let source = given.source()?;
+        one_or_all("poses", source.len(), fresh.len())?;
+        let at = |row| N::isometry(&source.pose(if source.len() == 1 { 0 } else { row }));
+        let moves: Vec<_> =
+            fresh.iter().enumerate().map(|(row, handle)| (*handle, at(row))).collect();
+        self.world.set_positions(&moves).map_err(|refused| error::of_call(&refused))
+    }
+
+    fn set_shapes(
+        &mut self,
+        handles: &[u64],
+        kind: Kind,
+        shapes: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let fresh = self.fresh(handles, "handles")?;
+        let given = ShapesArgument::<N, D>::of(shapes, "shapes", kind)?;
+        one_or_all("shapes", given.shapes()?.len(), fresh.len())?;
+        self.exchange(&fresh, |row| given.at(row).clone())
+    }
+
+    fn set_vertices(&mut self, handle: u64, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
+        let fresh = self.fresh(&[handle], "handle")?;
+        let rows = Vectors::<N, D>::of(vertices, "vertices")?;
+        let points: Vec<_> = rows.rows()?.iter().map(|row| Point::from(*row)).collect();
+        let object = self.world.collision_object(fresh[0]);
+        let shape = object.expect("the handle is fresh").shape();
+        let Some(deformed) = Self::deformed(shape, &points) else {
+            let message = format!("handle is {handle}: its shape is no TriMesh and no Polyline");
+            return Err(PyValueError::new_err(message));
+        };
+        let refused = |error: MeshError| PyValueError::new_err(format!("vertices: {error}"));
+        let shape = deformed.map_err(refused)?;
+        self.exchange(&fresh, |_| shape.clone())
+    }
+
+    fn set_groups(&mut self, handles: &[u64], groups: &GroupLists) -> PyResult<()> {
+        let groups = groups.groups().map_err(|refused| error::of_groups(&refused))?;
+        for handle in self.fresh(handles, "handles")? {
+            self.world.set_groups(handle, groups).map_err(|refused| error::of_call(&refused))?;
+        }
+        Ok(())
+    }
+
+    fn set_query_types(&mut self, handles: &[u64], query: &QueryOptions) -> PyResult<()> {
+        // All get the same: where it is refused, the first object refuses it.
+        for handle in self.fresh(handles, "handles")? {
+            let changed = self.world.set_query(handle, query.query_type());
+            changed.map_err(|refused| error::of_call(&refused))?;
+        }
+        Ok(())
+    }
+
+    fn update(&mut self, py: Python<'_>) {
+        py.detach(|| self.world.update());
+    }
+
+    fn record(&mut self) -> PyResult<()> {
+        self.world.record(self.margin).map_err(|refused: RecordError| error::of_call(&refused))
+    }
+
+    fn stop_recording(&mut self) -> Option<Vec<u8>> {
+        self.world.stop()
+    }
+
+    fn is_recorded(&self) -> bool {
+        self.world.is_recorded()
+    }
+
+    fn picture(&self, view: &PictureView) -> (&'static str, Vec<u8>) {
+        picture(&*self.world, view)
+    }
+
+    fn handles(&self) -> Vec<u64> {
+        self.world.collision_objects().map(|object| self.of(object.handle())).collect()
+    }
+
+    fn shapes(&self, kind: Kind, handles: &[u64]) -> PyResult<Vec<crate::shapes::Shape>> {
+        let objects = self.fresh(handles, "handles")?;
+        let objects = objects.into_iter().filter_map(|handle| self.world.collision_object(handle));
+        Ok(objects.map(|object| crate::shapes::Shape::of(kind, object.shape().clone())).collect())
+    }
+
+    fn poses<'py>(&self, py: Python<'py>, handles: &[u64]) -> PyResult<Bound<'py, PyAny>> {
+        let objects = self.fresh(handles, "handles")?;
+        let objects = objects.into_iter().filter_map(|handle| self.world.collision_object(handle));
+        crate::poses::into_array::<N, D>(py, objects.map(|object| N::pose(object.position())))
+    }
+
+    fn contact_events<'py>(&self, py: Python<'py>) -> Arrays<'py> {
+        let row = |event: &ContactEvent| {
+            let (first, second) = event.handles();
+            (u8::from(matches!(event, ContactEvent::Started(..))), self.of(first), self.of(second))
+        };
+        columns(py, self.world.contact_events().iter().map(row))
+    }
+
+    fn proximity_events<'py>(&self, py: Python<'py>) -> Arrays<'py> {
+        let rows = self.world.proximity_events().iter().map(|event| {
+            (proximity_code(event.new_status), self.of(event.collider1), self.of(event.collider2))
+        });
+        columns(py, rows)
+    }
+
+    fn contacts<'py>(&self, py: Python<'py>) -> Arrays<'py> {
+        let (mut first, mut second, mut depth) = (Vec::new(), Vec::new(), Vec::new());
+        let [mut normal, mut point1, mut point2] = [(); 3].map(|()| Vec::new());
+        let [mut part1, mut part2] = [(); 2].map(|()| Vec::new());
+        for (object1, object2, view) in self.world.contact_views() {
+            for found in view.contacts() {
+                first.push(self.of(object1.handle()));
+                second.push(self.of(object2.handle()));
+                depth.push(found.contact.depth);
+                normal.push((*found.contact.normal).into());
+                point1.push(found.contact.world1.coords.into());
+                point2.push(found.contact.world2.coords.into());
+                part1.push(found.part1);
+                part2.push(found.part2);
+            }
+        }
+        let [first, second] = [first, second].map(Column::<N, D>::Handles);
+        let [normal, point1, point2] = [normal, point1, point2].map(Column::Vectors);
+        let [part1, part2] = [part1, part2].map(Column::Indices);
+        let columns = [first, second, Column::Numbers(depth), normal, point1, point2, part1, part2];
+        columns.into_iter().map(|column| column.into_array(py)).collect()
+    }
+
+    fn proximities<'py>(&self, py: Python<'py>) -> Arrays<'py> {
+        let pairs = self.world.proximity_pairs();
+        let near = pairs.filter(|(.., pair)| pair.proximity() != Proximity::Disjoint);
+        let rows = near.map(|(object1, object2, pair)| {
+            let code = proximity_code(pair.proximity());
+            (code, self.of(object1.handle()), self.of(object2.handle()))
+        });
+        columns(py, rows)
+    }
+
+    fn queries(&self) -> &dyn WorldQueries {
+        self
+    }
+}
+
+/// An argument has a row for each handle, or one for all.
+fn one_or_all(argument: &str, rows: usize, handles: usize) -> PyResult<()> {
+    if rows == 1 || rows == handles {
+        return Ok(());
+    }
+    Err(PyValueError::new_err(format!("{argument} has {rows} for {handles} handles")))
+}
+
+/// Rows of codes and two handles as columns.
+fn columns(py: Python<'_>, rows: impl Iterator<Item = (u8, u64, u64)>) -> Arrays<'_> {
+    let (mut codes, mut first, mut second) = (Vec::new(), Vec::new(), Vec::new());
+    for (code, one, other) in rows {
+        codes.push(code);
+        first.push(one);
+        second.push(other);
+    }
+    let handles = |column| PyArray1::from_vec(py, column).into_any();
+    Ok(vec![PyArray1::from_vec(py, codes).into_any(), handles(first), handles(second)])
+}
+
+/// The number of a proximity in Python.
+const fn proximity_code(proximity: Proximity) -> u8 {
+    match proximity {
+        Proximity::Intersecting => 0,
+        Proximity::WithinMargin => 1,
+        Proximity::Disjoint => 2,
+    }
+}
