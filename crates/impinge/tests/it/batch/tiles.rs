@@ -46,7 +46,7 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         for index in 0..count {
             let size = N::lit([7.0, 70.0, 700.0][index % 3]);
             let far = Vector::<N, D>::repeat(N::lit(1000.0 * (index % 3) as f64));
-            heap.add((index % 2) as u32, random.vector::<N, D>() * size + far);
+            heap.add(u32::from(index % 2 == 1), random.vector::<N, D>() * size + far);
         }
         if odd {
             let place = heap.poses[0].translation;

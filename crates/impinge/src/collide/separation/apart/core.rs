@@ -10,7 +10,15 @@ pub(super) enum LaneCore<'a, N: Real, V> {
     /// The half extents.
     Cuboid([V; 3]),
     /// Vertices that all lanes share, in the units of the shape, and the factor to those of each pair.
-    Points { vertices: &'a [Point<N, 3>], hull: Option<&'a Polytope<N, 3>>, shrink: V },
+    Points { points: CorePoints<'a, N>, shrink: V },
+}
+
+/// The vertices of a core.
+#[derive(Clone, Copy)]
+pub(super) struct CorePoints<'a, N: Real> {
+    pub(super) vertices: &'a [Point<N, 3>],
+    /// The hull that they are of, which finds them sooner for a lone pair.
+    pub(super) hull: Option<&'a Polytope<N, 3>>,
 }
 
 /// The vertices that are as far along a direction as any, up to a tolerance.
@@ -35,12 +43,12 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                     |axis: usize| direction[axis].simd_lt(zero).select(-half[axis], half[axis]);
                 [toward(0), toward(1), toward(2)]
             }
-            Self::Points { vertices, hull, shrink } => {
-                let local = match hull {
+            Self::Points { points, shrink } => {
+                let local = match points.hull {
                     Some(hull) if <V::Mask as SimdMask<S>>::LEN == 1 => {
                         lone_support(simd, hull, direction)
                     }
-                    _ => farthest(simd, vertices, direction),
+                    _ => farthest(simd, points.vertices, direction),
                 };
                 times(&local, *shrink)
             }
@@ -69,11 +77,11 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                 }
                 LaneTies { count, along }
             }
-            Self::Points { vertices, shrink, .. } => {
+            Self::Points { points, shrink } => {
                 let best = self.support(simd, direction);
                 let highest = dot(&best, direction);
                 let (mut count, mut other) = (V::all(simd, N::ZERO), best);
-                for vertex in *vertices {
+                for vertex in points.vertices {
                     let vertex = times(&spread(simd, &vertex.coords), *shrink);
                     let is_level = (highest - dot(&vertex, direction)).simd_le(tolerance);
                     count = is_level.select(count + one, count);
@@ -113,8 +121,8 @@ fn lone_support<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     direction: &[V; 3],
 ) -> [V; 3] {
     let mut toward = Vector::<N, 3>::zeros();
-    for axis in 0..3 {
-        direction[axis].store(&mut toward.as_mut_slice()[axis..=axis]);
+    for (coordinate, number) in toward.as_mut_slice().chunks_mut(1).zip(direction) {
+        number.store(coordinate);
     }
     spread(simd, &hull.core_support(&toward).coords)
 }

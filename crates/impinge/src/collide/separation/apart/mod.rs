@@ -21,7 +21,7 @@ mod simplex;
 #[cfg(test)]
 mod tests;
 
-use self::core::LaneCore;
+use self::core::{CorePoints, LaneCore};
 pub(crate) use self::packet::distances;
 #[cfg(test)]
 use self::search::LEAST_GAP;
@@ -35,7 +35,7 @@ use crate::math::arrays::Arrays;
 use crate::math::lanes::{LanePose, minus};
 use crate::math::lone::Lone;
 use crate::math::{Point, Pose, Real, Vector, Wide};
-use crate::shape::{Kind, Polytope, SupportMap};
+use crate::shape::{Kind, SupportMap};
 
 /// How many pairs are treated at once.
 const LANES: usize = 8;
@@ -122,9 +122,9 @@ impl<'a, N: Real> FlatPair<'a, N> {
         let solids = [FlatCore::of(pair.first)?, FlatCore::of(pair.second)?];
         let [reach1, reach2] = [safe_reach(&solids[0]), safe_reach(&solids[1])];
         let units = Units::of(reach1, reach2, &pair.pose12.translation);
-        let is_small = solids
-            .iter()
-            .all(|solid| vertices(solid).is_none_or(|(all, _)| all.len() <= MAX_VERTICES));
+        let is_small = solids.iter().all(|solid| {
+            vertices(solid).is_none_or(|points| points.vertices.len() <= MAX_VERTICES)
+        });
         let is_usual = units.scale.is_finite_number() && units.shrink.is_finite_number();
         (is_small && is_usual).then(|| Self {
             middles: [
@@ -153,8 +153,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
                 LaneCore::Cuboid(lone(&(cuboid.half_extents() * shrink)))
             }
             (_, found) => {
-                let (vertices, hull) = found.expect("the others have vertices");
-                LaneCore::Points { vertices, hull, shrink: Lone(shrink) }
+                let points = found.expect("the others have vertices");
+                LaneCore::Points { points, shrink: Lone(shrink) }
             }
         }
     }
@@ -192,12 +192,14 @@ fn lone<N: Real>(v: &Vector<N, 3>) -> [Lone<N>; 3] {
 
 /// The vertices of a solid that has more than ends or half extents.
 #[inline]
-fn vertices<'a, N: Real>(
-    solid: &FlatCore<'a, N, 3>,
-) -> Option<(&'a [Point<N, 3>], Option<&'a Polytope<N, 3>>)> {
+fn vertices<'a, N: Real>(solid: &FlatCore<'a, N, 3>) -> Option<CorePoints<'a, N>> {
     match *solid {
-        FlatCore::Triangle(triangle) => Some((triangle.corners().as_slice(), None)),
-        FlatCore::Polytope(hull) => Some((hull.vertices(), Some(hull))),
+        FlatCore::Triangle(triangle) => {
+            Some(CorePoints { vertices: triangle.corners().as_slice(), hull: None })
+        }
+        FlatCore::Polytope(hull) => {
+            Some(CorePoints { vertices: hull.vertices(), hull: Some(hull) })
+        }
         _ => None,
     }
 }

@@ -103,7 +103,7 @@ impl<'a, N: Real> Packet<'a, N> {
             vertices(&first.solids[which]),
             vertices(&other.solids[which]),
         ) {
-            (Some((one, _)), Some((other, _))) => core::ptr::eq(one, other),
+            (Some(one), Some(other)) => core::ptr::eq(one.vertices, other.vertices),
             (one, other) => one.is_none() && other.is_none(),
         };
         solids.all(|other| is_same(0, other) && is_same(1, other))
@@ -134,9 +134,7 @@ impl<'a, N: Real> Packet<'a, N> {
     fn core<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, which: usize) -> LaneCore<'a, N, V> {
         let solid = self.pairs.iter().flatten().next().map(|solids| solids.solids[which]);
         match solid.as_ref().and_then(vertices) {
-            Some((vertices, _)) => {
-                LaneCore::Points { vertices, hull: None, shrink: V::load(simd, &self.shrink) }
-            }
+            Some(points) => LaneCore::Points { points, shrink: V::load(simd, &self.shrink) },
             None => LaneCore::Cuboid(load(simd, &self.half_extents[which])),
         }
     }

@@ -208,7 +208,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         for [one, two, opposite] in [[0, 1, 2], [1, 2, 0], [2, 0, 1]] {
             let normal = cross(&self.edges[one], &self.edges[two]);
             let of_origin = -dot(&normal, &self.newest.point);
-            holds = holds & is_clear(simd, &normal, of_origin, dot(&normal, &self.edges[opposite]));
+            holds &= is_clear(simd, &normal, of_origin, dot(&normal, &self.edges[opposite]));
         }
         holds
     }

@@ -22,7 +22,7 @@ fn poses<N: Real>(random: &mut Random, count: usize) -> Vec<Pose<N, 3>> {
     let pose = |round: usize| {
         let mut pose = random.turn::<N>();
         pose.translation = random.vector::<N>() * N::lit([0.5, 1.5, 3.0, 50.0][round % 4]);
-        if round % 5 == 0 {
+        if round.is_multiple_of(5) {
             pose.rotation = Pose::identity().rotation;
             pose.translation = pose.translation.map(|x| (x * N::TWO).round() / N::TWO);
         }
