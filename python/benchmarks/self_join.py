@@ -63,7 +63,7 @@ def main(given, folder):
     write(folder / "objects.parquet", given.objects)
     size = (folder / "objects.parquet").stat().st_size / 1e6
     print(f"{given.objects} objects, {size:.0f} MB of Parquet, written in {time.perf_counter() - start:.1f} s", flush=True)
-    local = LocalCluster(given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, memory_limit=0)
+    local = LocalCluster(given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0", memory_limit=0)
     with local, Client(local) as client:
         client.wait_for_workers(given.workers)
         before = client.run(memory).values()
