@@ -30,7 +30,7 @@ def objects(count, seed=1):
     heaps = max(1, count // 50_000)
     rng = np.random.default_rng(seed)
     places = rng.uniform(0, 400 * heaps ** (1 / 3), (heaps, 3))
-    sizes = 22 * 10 ** rng.uniform(0, 1, (heaps, 1))
+    sizes = 8 * 10 ** rng.uniform(0, 1, (heaps, 1))
     for start in range(0, count, ROW_GROUP):
         rng = np.random.default_rng([seed, start])
         ids = np.arange(start, min(count, start + ROW_GROUP))

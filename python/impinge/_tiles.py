@@ -107,14 +107,14 @@ def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
 
 
 def _boxes(given: ArrayLike, dim: int, dtype: str) -> NDArray[Any]:
-    array = np.require(given, dtype=dtype, requirements="CA")
+    array = np.require(given, dtype=dtype, requirements=["C", "A"])
     if array.ndim != 3 or array.shape[1:] != (2, dim):
         raise ValueError(f"boxes has the shape {array.shape}, where (n, 2, {dim}) is needed in {dim}D")
     return array
 
 
 def _column(given: ArrayLike, dtype: Any, name: str) -> NDArray[Any]:
-    array = np.require(given, dtype=dtype, requirements="CA")
+    array = np.require(given, dtype=dtype, requirements=["C", "A"])
     if array.ndim != 1:
         raise ValueError(f"{name} has the shape {array.shape}, where (n,) is needed")
     return array
