@@ -9,6 +9,7 @@ Balls, boxes and capsules in heaps of 50 000 on average, the densest a thousand 
 
 import argparse
 import resource
+import shutil
 import tempfile
 import time
 from pathlib import Path
@@ -29,7 +30,7 @@ def objects(count, seed=1):
     heaps = max(1, count // 50_000)
     rng = np.random.default_rng(seed)
     places = rng.uniform(0, 400 * heaps ** (1 / 3), (heaps, 3))
-    sizes = 22 * 10 ** rng.uniform(0, 1, (heaps, 1))
+    sizes = 8 * 10 ** rng.uniform(0, 1, (heaps, 1))
     for start in range(0, count, ROW_GROUP):
         rng = np.random.default_rng([seed, start])
         ids = np.arange(start, min(count, start + ROW_GROUP))
@@ -40,9 +41,11 @@ def objects(count, seed=1):
 
 
 def write(path, count):
-    with pq.ParquetWriter(path, objects_table([], [], np.empty((0, 4, 4))).schema) as writer:
+    unfinished = path.with_suffix(".unfinished")
+    with pq.ParquetWriter(unfinished, objects_table([], [], np.empty((0, 4, 4))).schema, compression="lz4") as writer:
         for group in objects(count):
             writer.write_table(objects_table(*group), row_group_size=ROW_GROUP)
+    unfinished.rename(path)
 
 
 def in_one(count):
@@ -59,25 +62,24 @@ def memory():
 
 
 def main(given, folder):
-    start = time.perf_counter()
-    write(folder / "objects.parquet", given.objects)
-    size = (folder / "objects.parquet").stat().st_size / 1e6
-    print(f"{given.objects} objects, {size:.0f} MB of Parquet, written in {time.perf_counter() - start:.1f} s", flush=True)
-    local = LocalCluster(given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, memory_limit=0)
+    source, output = folder / f"objects-{given.objects}.parquet", folder / f"pairs-{given.objects}"
+    if not source.exists():
+        write(source, given.objects)
+    shutil.rmtree(output, ignore_errors=True)
+    print(f"{given.objects} objects, {source.stat().st_size / 1e6:.0f} MB of Parquet", flush=True)
+    local = LocalCluster(given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0", memory_limit=0)
     with local, Client(local) as client:
         client.wait_for_workers(given.workers)
         before = client.run(memory).values()
         print(f"idle workers held {', '.join(f'{each:.0f}' for each in before)} MB", flush=True)
         start = time.perf_counter()
         shapes = impinge.Scene(SHAPES, impinge.Poses(np.zeros((len(SHAPES), 3))))
-        found = self_join(
-            folder / "objects.parquet", shapes, folder / "pairs", clearance=CLEARANCE, number_of_tiles=given.tiles
-        )
+        found = self_join(source, shapes, output, clearance=CLEARANCE, number_of_tiles=given.tiles)
         seconds = time.perf_counter() - start
         held = ", ".join(f"{each:.0f}" for each in client.run(memory).values())
     print(f"{found} pairs in {seconds:.1f} s with {given.tiles} tiles; workers held at most {held} MB", flush=True)
     if given.check:
-        pairs = pq.read_table(folder / "pairs")
+        pairs = pq.read_table(output)
         expected, seconds = in_one(given.objects)
         rows = np.stack([pairs["id1"], pairs["id2"]], axis=1)
         assert np.array_equal(rows, expected), "not the pairs of one process"
@@ -89,8 +91,11 @@ if __name__ == "__main__":
     parser.add_argument("--objects", type=int, default=1_000_000)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--tiles", type=int, default=64)
-    parser.add_argument("--folder", help="where intermediate files go; the folder for temporary files without")
+    parser.add_argument("--folder", help="keeps the objects and pairs, and uses objects again that are there")
     parser.add_argument("--check", action="store_true", help="compare with one process")
     given = parser.parse_args()
-    with tempfile.TemporaryDirectory(dir=given.folder) as folder:
-        main(given, Path(folder))
+    if given.folder:
+        main(given, Path(given.folder))
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            main(given, Path(folder))

@@ -73,8 +73,16 @@ class Tiles:
     def __hash__(self) -> int:
         return hash((self.dim, self.dtype, self.clearance, self.cuts.tobytes()))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # As plain numbers: arrays that a network brings need not be aligned in memory.
+        return (_read, (self.axes.tolist(), self.cuts.tolist(), self.clearance, self.dim, self.dtype))
+
     def __repr__(self) -> str:
         return f"<impinge.Tiles of {len(self)} tiles, {self.dim}D {self.dtype}>"
+
+
+def _read(axes: list[int], cuts: list[float], clearance: float, dim: int, dtype: str) -> Tiles:
+    return Tiles(axes, cuts, clearance=clearance, dim=dim, dtype=dtype)
 
 
 def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
@@ -99,14 +107,14 @@ def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
 
 
 def _boxes(given: ArrayLike, dim: int, dtype: str) -> NDArray[Any]:
-    array = np.ascontiguousarray(given, dtype=dtype)
+    array = np.require(given, dtype=dtype, requirements=["C", "A"])
     if array.ndim != 3 or array.shape[1:] != (2, dim):
         raise ValueError(f"boxes has the shape {array.shape}, where (n, 2, {dim}) is needed in {dim}D")
     return array
 
 
 def _column(given: ArrayLike, dtype: Any, name: str) -> NDArray[Any]:
-    array = np.ascontiguousarray(given, dtype=dtype)
+    array = np.require(given, dtype=dtype, requirements=["C", "A"])
     if array.ndim != 1:
         raise ValueError(f"{name} has the shape {array.shape}, where (n,) is needed")
     return array

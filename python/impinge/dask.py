@@ -136,6 +136,9 @@ def _world(scene: Scene) -> World:
 
 
 def _ask(block: Any, question: Question, scene: Scene) -> NDArray[Any]:
+    if isinstance(block, np.ndarray):
+        # What came over a network need not be aligned in memory.
+        block = np.require(block, requirements=["C", "A"])
     found = np.asarray(question(_world(scene), block))
     if found.shape != (len(block),):
         raise ValueError(f"the answer has the shape {found.shape}, where ({len(block)},) is needed")
