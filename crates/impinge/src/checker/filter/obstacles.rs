@@ -1,0 +1,115 @@
+//! What the bodies of a robot may meet.
+
+use super::core::Outline;
+use super::robot::{RobotFilter, shift_of, way_to};
+use super::{MAX_LENGTH, margin};
+use crate::checker::body::Obstacle;
+use crate::checker::frames::FrameTree;
+use crate::collide::Placed;
+use crate::math::order::order_of;
+use crate::math::{Pose, Real, Space};
+use crate::query::distance_between;
+use crate::shape::{Ball, Shape};
+
+/// Obstacles as the scan sees them.
+#[derive(Clone, Debug)]
+pub(in crate::checker) struct Surroundings<const D: usize> {
+    pub(super) obstacles: Vec<LaneObstacle<D>>,
+    /// For each group the obstacles, nearest first.
+    pub(super) within: Vec<Vec<InReach>>,
+    /// Bodies and obstacles that may touch, ascending.
+    pub(super) ignored: Vec<[u32; 2]>,
+}
+
+/// An obstacle.
+#[derive(Clone, Debug)]
+pub(super) struct LaneObstacle<const D: usize> {
+    pub(super) outline: Outline<D>,
+    pub(super) margin: f32,
+}
+
+/// An obstacle that a group can reach.
+#[derive(Clone, Debug)]
+pub(super) struct InReach {
+    /// How far apart they are at least, if nothing slides.
+    pub(super) gap: f32,
+    pub(super) obstacle: usize,
+}
+
+impl<const D: usize> Surroundings<D> {
+    pub(in crate::checker) fn new<N: Space<D>>(
+        tree: &FrameTree<N, D>,
+        robot: &RobotFilter<D>,
+        obstacles: &[Obstacle<N, D>],
+        ignored: &[[u32; 2]],
+    ) -> Self {
+        let mut ignored = ignored.to_vec();
+        ignored.sort_unstable();
+        let in_lanes = obstacles.iter().map(|obstacle| in_f32(tree, obstacle));
+        let mut all = Self { obstacles: in_lanes.collect(), within: Vec::new(), ignored };
+        all.within = (0..robot.groups.len())
+            .map(|group| all.in_reach(tree, robot, obstacles, group))
+            .collect();
+        all
+    }
+
+    /// The obstacles by how far they are from what a group can reach.
+    fn in_reach<N: Space<D>>(
+        &self,
+        tree: &FrameTree<N, D>,
+        robot: &RobotFilter<D>,
+        obstacles: &[Obstacle<N, D>],
+        group: usize,
+    ) -> Vec<InReach> {
+        let group = &robot.groups[group];
+        let way = way_to(tree, group.node, &group.ball);
+        let anchor = Ball::new(N::ZERO);
+        let at = Placed {
+            pose: Pose::from_translation(way.anchor),
+            shape: Shape::<N, D>::geometry(&anchor),
+        };
+        let mut all: Vec<_> = (0..obstacles.len())
+            .map(|index| {
+                let there =
+                    Placed::of_pose(&obstacles[index].pose, obstacles[index].shape.geometry());
+                let apart = distance_between(&at, &there).as_f64();
+                let margin = f64::from(self.obstacles[index].margin + group.margin);
+                let gap = N::lit(apart - way.length - margin).as_f32_below();
+                // What has no end is everywhere.
+                InReach { gap: if gap.is_nan() { -f32::INFINITY } else { gap }, obstacle: index }
+            })
+            .collect();
+        all.sort_by_key(|within| (order_of(within.gap), within.obstacle));
+        all
+    }
+}
+
+/// An obstacle in `f32`, as seen from the first joint.
+fn in_f32<N: Space<D>, const D: usize>(
+    tree: &FrameTree<N, D>,
+    obstacle: &Obstacle<N, D>,
+) -> LaneObstacle<D> {
+    let shift = shift_of(tree);
+    let pose = Pose { translation: obstacle.pose.translation - shift, ..obstacle.pose };
+    let outline = Outline::new(&*obstacle.shape, &pose);
+    let extent = obstacle.shape.geometry().extent();
+    let own = if extent.is_finite_number() { extent.as_f64() } else { size_of_box(obstacle) };
+    let near = pose.translation.norm().as_f64() + own;
+    let far = near + shift.norm().as_f64();
+    let margin = margin::<N>(0, near, far);
+    let is_usable = margin <= MAX_LENGTH && near <= f64::from(MAX_LENGTH);
+    if is_usable {
+        LaneObstacle { outline, margin }
+    } else {
+        LaneObstacle { outline: Outline::unknown(), margin: 0.0 }
+    }
+}
+
+/// How far the box of a shape reaches; nothing where it has no end, as that of a half-space.
+fn size_of_box<N: Real, const D: usize>(obstacle: &Obstacle<N, D>) -> f64 {
+    let aabb = obstacle.shape.local_aabb();
+    if !aabb.is_bounded() {
+        return 0.0;
+    }
+    (aabb.center().coords.abs() + aabb.half_extents()).norm().as_f64()
+}
