@@ -8,6 +8,7 @@
 ((1000,), 8.5)
 """
 
+from impinge._checker import NO_BODY, Checker, Frame, NearestPairs
 from impinge._native import (
     Shape,
     cast_rays,

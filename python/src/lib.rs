@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 mod answer;
+mod checker;
 mod error;
 mod functions;
 mod pairs;
@@ -30,6 +31,7 @@ use pyo3::prelude::*;
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<shapes::Shape>()?;
     module.add_class::<world::World>()?;
+    module.add_class::<checker::NativeChecker>()?;
     functions::add_to(module)?;
     scene::add_to(module)
 }

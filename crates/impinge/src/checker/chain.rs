@@ -130,16 +130,6 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         rows
     }
 
-    /// Replaces one lane.
-    pub(super) fn put(&mut self, lane: usize, pose: &Pose<N, D>) {
-        for column in 0..D {
-            for row in 0..D {
-                self.rotation[column][row][lane] = pose.rotation[(row, column)];
-            }
-            self.translation[column][lane] = pose.translation[column];
-        }
-    }
-
     /// The pose in one lane.
     pub(super) fn pose(&self, lane: usize) -> Pose<N, D> {
         Pose {

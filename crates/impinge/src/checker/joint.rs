@@ -47,6 +47,20 @@ impl<N: Real, const D: usize> Joint<N, D> {
         Self::driven(Motion::Slide(axis.into_inner()), column)
     }
 
+    /// Turns by the rotation exp(θ K) with the number θ in a column and the generator K: v ↦ axis × v of a unit axis in
+    /// 3D, a quarter turn in 2D. What is no such matrix makes no rotation.
+    ///
+    /// ```
+    /// use impinge::dim2::checker::Joint;
+    /// use impinge::dim2::math::Matrix;
+    ///
+    /// assert_eq!(Joint::turning(Matrix::new(0.0, -1.0, 1.0, 0.0), 3), Joint::<f64>::revolute(3));
+    /// ```
+    #[must_use]
+    pub const fn turning(generator: Matrix<N, D>, column: usize) -> Self {
+        Self::driven(Motion::Turn(generator), column)
+    }
+
     const fn driven(motion: Motion<N, D>, column: usize) -> Self {
         Self { motion, column, factor: N::ONE, offset: N::ZERO }
     }
@@ -92,7 +106,7 @@ impl<N: Real> Joint<N, 2> {
     #[must_use]
     pub fn revolute(column: usize) -> Self {
         let quarter = Matrix::<N, 2>::new(N::ZERO, -N::ONE, N::ONE, N::ZERO);
-        Self::driven(Motion::Turn(quarter), column)
+        Self::turning(quarter, column)
     }
 }
 
@@ -100,7 +114,7 @@ impl<N: Real> Joint<N, 3> {
     /// Turns about an axis by the radians in a column, by the rule of the right hand.
     #[must_use]
     pub fn revolute(axis: Unit<Vector<N, 3>>, column: usize) -> Self {
-        Self::driven(Motion::Turn(axis.cross_matrix()), column)
+        Self::turning(axis.cross_matrix(), column)
     }
 }
 

@@ -8,5 +8,5 @@ mod points;
 mod poses;
 mod rays;
 mod refused;
-mod scene;
+pub(crate) mod scene;
 mod within;
