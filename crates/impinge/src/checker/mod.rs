@@ -34,6 +34,8 @@ mod frames;
 mod joint;
 mod rows;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 pub use body::{Body, Obstacle};
 pub use checks::{Checker, NO_PAIR};

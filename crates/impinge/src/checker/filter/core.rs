@@ -135,8 +135,8 @@ impl<const D: usize> Core<D> {
             Self::Cuboid { axes, center, half } => {
                 let local = local(simd, axes, center, points);
                 let mut sum = zero;
-                for axis in 0..D {
-                    let over = (local[axis].abs() - V::all(simd, half[axis])).larger(zero);
+                for (place, &half) in local.iter().zip(half) {
+                    let over = (place.abs() - V::all(simd, half)).larger(zero);
                     sum += over * over;
                 }
                 sum
@@ -144,8 +144,8 @@ impl<const D: usize> Core<D> {
             Self::Cylinder { axes, center, half_height, radius } => {
                 let local = local(simd, axes, center, points);
                 let mut radial = local[0] * local[0];
-                for axis in 2..D {
-                    radial += local[axis] * local[axis];
+                for &place in &local[2..] {
+                    radial += place * place;
                 }
                 let side = (radial.sqrt() - V::all(simd, *radius)).larger(zero);
                 let cap = (local[1].abs() - V::all(simd, *half_height)).larger(zero);

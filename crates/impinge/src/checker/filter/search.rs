@@ -111,12 +111,12 @@ impl Search {
         (self.farthest, self.slide) = (0.0, 0.0);
         // The limit itself was rounded.
         let rounding = limit.min(f32::MAX) * (2.0 * f32::EPSILON);
-        for lane in 0..LANES {
-            self.slack[lane] = slides[lane] * margin + rounding;
+        for (lane, &slide) in slides.iter().enumerate() {
+            self.slack[lane] = slide * margin + rounding;
             self.outer[lane] = limit + self.slack[lane];
             self.inner[lane] = limit - self.slack[lane];
             self.farthest = max(self.outer[lane], self.farthest);
-            self.slide = max(slides[lane], self.slide);
+            self.slide = max(slide, self.slide);
         }
         self.near.clear();
     }
@@ -172,8 +172,8 @@ impl Search {
     ) {
         let mut apart = [0.0; LANES];
         distances.squared.sqrt().store(&mut apart);
-        for lane in 0..LANES {
-            let (slack, between) = (self.slack[lane], apart[lane] - distances.radius);
+        for (lane, &apart) in apart.iter().enumerate() {
+            let (slack, between) = (self.slack[lane], apart - distances.radius);
             let lower = between - distances.margin - slack;
             pairing.lower[lane] = min(lower, pairing.lower[lane]);
             if distances.is_exact {

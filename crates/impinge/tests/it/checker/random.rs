@@ -2,7 +2,7 @@
 
 use impinge::batch::Control;
 use impinge::checker::{NO_PAIR, NearestColumns};
-use impinge::math::{Real, Space};
+use impinge::math::Space;
 
 use super::brute::Brute;
 use super::robots::{Robot, robot2, robot3};

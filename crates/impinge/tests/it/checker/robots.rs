@@ -22,6 +22,9 @@ const COLUMNS: usize = 5;
 /// A random joint that turns about a random axis.
 type Turn<N, const D: usize> = fn(&mut Random, usize) -> Joint<N, D>;
 
+/// What is random in a dimension: joints that turn, and poses.
+type Draws<N, const D: usize> = (Turn<N, D>, fn(&mut Random) -> Pose<N, D>);
+
 impl<N: Space<D>, const D: usize> Robot<N, D> {
     /// How many configurations there are.
     pub(super) fn count(&self) -> usize {
@@ -31,7 +34,7 @@ impl<N: Space<D>, const D: usize> Robot<N, D> {
 
 fn robot<N: Space<D>, const D: usize>(
     table: &shape_table::Shapes<N, D>,
-    (turn, pose): (Turn<N, D>, fn(&mut Random) -> Pose<N, D>),
+    (turn, pose): Draws<N, D>,
     (seed, away): (u64, f64),
 ) -> Robot<N, D> {
     let random = &mut Random(seed, false);
@@ -100,7 +103,11 @@ fn configurations<N: Real>(random: &mut Random) -> Vec<N> {
     let mut all: Vec<N> = vec![N::ZERO; COLUMNS];
     for index in 0..90 * COLUMNS {
         let quarters = FRAC_PI_2 * (random.signed() * 4.0).round();
-        all.push(N::lit(if index / COLUMNS % 5 == 0 { quarters } else { random.signed() * 3.0 }));
+        all.push(N::lit(if (index / COLUMNS).is_multiple_of(5) {
+            quarters
+        } else {
+            random.signed() * 3.0
+        }));
     }
     for value in [f64::NAN, f64::INFINITY, 1e4, 1e6, 1e9, -1e12, 1e20, 1e30, 1e-30] {
         for column in 0..COLUMNS {
