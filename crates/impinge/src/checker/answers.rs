@@ -90,7 +90,7 @@ impl<'a, N: Space<D>, const D: usize> Sweep<'a, N, D> {
         let is_blind = self.search.blind >> lane & 1 == 1;
         if !is_blind {
             let near = self.search.near.iter();
-            return near.filter(|near| near.lanes >> lane & 1 == 1).copied().collect();
+            return near.filter(|near| self.search.may_count(near, lane)).copied().collect();
         }
         let pair =
             |(body, other)| Near { body, other, lanes: u8::MAX, certain: 0, lower: [0.0; LANES] };

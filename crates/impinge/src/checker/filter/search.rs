@@ -109,16 +109,22 @@ impl Search {
     ) {
         (self.live, self.blind, self.hits) = (lanes, 0, 0);
         (self.farthest, self.slide) = (0.0, 0.0);
-        // The limit itself was rounded.
-        let rounding = limit.min(f32::MAX) * (2.0 * f32::EPSILON);
+        // The limit itself was rounded. Without one the first is infinite, and the other NaN.
+        let rounding = limit * (2.0 * f32::EPSILON);
         for (lane, &slide) in slides.iter().enumerate() {
-            self.slack[lane] = slide * margin + rounding;
-            self.outer[lane] = limit + self.slack[lane];
-            self.inner[lane] = limit - self.slack[lane];
+            self.slack[lane] = slide * margin;
+            self.outer[lane] = limit + rounding + self.slack[lane];
+            self.inner[lane] = limit - rounding - self.slack[lane];
             self.farthest = max(self.outer[lane], self.farthest);
             self.slide = max(slide, self.slide);
         }
         self.near.clear();
+    }
+
+    /// A pair that was kept may still count in a lane: others may have turned out to be nearer.
+    pub(in crate::checker) fn may_count(&self, near: &Near, lane: usize) -> bool {
+        let is_far = self.mode == Mode::Nearest && near.lower[lane] > self.outer[lane];
+        near.lanes >> lane & 1 == 1 && !is_far
     }
 
     /// All lanes are decided.

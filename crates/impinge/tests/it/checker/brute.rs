@@ -62,6 +62,7 @@ impl<N: Real> Brute<N> {
         if !self.is_finite {
             return (N::lit(f64::NAN), NO_PAIR);
         }
+        let limit = if limit > N::ZERO { limit } else { N::ZERO };
         let mut best = (N::INFINITY, NO_PAIR);
         for (&distance, &pair) in self.distances.iter().zip(&self.pairs) {
             if distance < best.0 && distance <= limit {
