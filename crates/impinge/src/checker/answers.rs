@@ -85,16 +85,17 @@ impl<'a, N: Space<D>, const D: usize> Sweep<'a, N, D> {
         slides
     }
 
-    /// The pairs that are near in a lane; of a lane in which the filter is blind all.
-    fn candidates(&mut self, lane: usize) -> Vec<Near> {
-        let is_blind = self.search.blind >> lane & 1 == 1;
-        if !is_blind {
+    /// The pairs that are near in a lane in their order; of a lane in which the filter is blind all.
+    fn candidates(&self, lane: usize) -> Vec<Near> {
+        if self.search.blind >> lane & 1 == 0 {
             let near = self.search.near.iter();
-            return near.filter(|near| self.search.may_count(near, lane)).copied().collect();
+            return near.filter(|near| near.lane == lane).copied().collect();
         }
-        let pair =
-            |(body, other)| Near { body, other, lanes: u8::MAX, certain: 0, lower: [0.0; LANES] };
-        self.checker.pairs_in_order().map(pair).collect()
+        let all = self.checker.pairs_in_order();
+        let mut all: Vec<_> =
+            all.map(|pair| Near { lane, pair, is_certain: false, lower: 0.0 }).collect();
+        all.sort_unstable_by_key(|near| near.pair);
+        all
     }
 }
 
@@ -140,12 +141,9 @@ impl<N: Space<D>, const D: usize> Sweep<'_, N, D> {
     /// The lanes that are not free.
     fn hits(&mut self, clearance: N) -> u8 {
         let mut hits = self.search.hits;
-        for near in &self.search.near {
-            let mut open = near.lanes & !hits;
-            while open != 0 {
-                let lane = open.trailing_zeros() as usize;
-                open &= open - 1;
-                let found = self.exact.distance((near.body, near.other), lane, clearance);
+        for &Near { lane, pair, .. } in &self.search.near {
+            if hits >> lane & 1 == 0 {
+                let found = self.exact.distance(pair, lane, clearance);
                 hits |= u8::from(found.is_some()) << lane;
             }
         }
@@ -161,14 +159,10 @@ impl<N: Space<D>, const D: usize> Sweep<'_, N, D> {
 
     /// The first pair of a lane that is not farther apart than the clearance.
     fn first(&mut self, lane: usize, clearance: N) -> Option<(u32, Other)> {
-        let mut candidates = self.candidates(lane);
-        candidates.sort_unstable_by_key(|near| (near.body, near.other));
-        let found = candidates.into_iter().find(|near| {
-            let is_certain = near.certain >> lane & 1 == 1;
-            let pair = (near.body, near.other);
-            is_certain || self.exact.distance(pair, lane, clearance).is_some()
+        let found = self.candidates(lane).into_iter().find(|near| {
+            near.is_certain || self.exact.distance(near.pair, lane, clearance).is_some()
         });
-        found.map(|near| (near.body, near.other))
+        found.map(|near| near.pair)
     }
 }
 
@@ -227,11 +221,11 @@ impl<N: Space<D>, const D: usize> Sweep<'_, N, D> {
     /// The pairs are asked by their lower bounds, those that may touch in their order; so all that follow one that is
     /// nearer than their bound are farther, and of two that touch the first comes first.
     fn nearest(&mut self, lane: usize, limit: N) -> Option<(N, (u32, Other))> {
-        let bound = |near: &Near| max(near.lower[lane], 0.0);
+        let bound = |near: &Near| max(near.lower, 0.0);
         let mut candidates = self.candidates(lane);
         candidates.sort_unstable_by(|one, other| {
             let order = bound(one).total_cmp(&bound(other));
-            order.then((one.body, one.other).cmp(&(other.body, other.other)))
+            order.then(one.pair.cmp(&other.pair))
         });
         let mut best: Option<(N, (u32, Other))> = None;
         for near in &candidates {
@@ -240,7 +234,7 @@ impl<N: Space<D>, const D: usize> Sweep<'_, N, D> {
             if is_settled || f64::from(bound(near)) > so_far.as_f64() {
                 break;
             }
-            let pair = (near.body, near.other);
+            let pair = near.pair;
             let Some(found) = self.exact.distance(pair, lane, so_far) else { continue };
             let is_better = best.is_none_or(|(distance, first)| {
                 found < distance || (found == distance && pair < first)

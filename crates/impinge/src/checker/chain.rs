@@ -156,6 +156,29 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         LanePose { rotation, translation }
     }
 
+    /// The pose in one lane in all lanes.
+    #[inline(always)]
+    pub(super) fn spread<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        lane: usize,
+    ) -> LanePose<V, D> {
+        let rotation = by_axis(
+            #[inline(always)]
+            |column| {
+                by_axis(
+                    #[inline(always)]
+                    |row| V::all(simd, self.rotation[column][row][lane]),
+                )
+            },
+        );
+        let translation = by_axis(
+            #[inline(always)]
+            |row| V::all(simd, self.translation[row][lane]),
+        );
+        LanePose { rotation, translation }
+    }
+
     #[inline(always)]
     fn store<S: Simd, V: Wide<S, Scalar = N>>(&mut self, pose: &LanePose<V, D>) {
         for column in 0..D {
@@ -176,8 +199,8 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     numbers: &[Row<N>],
     rows: &mut [PoseRows<N, D>],
 ) {
-    for (index, (node, number)) in nodes.iter().zip(numbers).enumerate() {
-        let inner: LanePose<V, D> = node.moved(simd, V::load(simd, number));
+    for (index, node) in nodes.iter().enumerate() {
+        let inner: LanePose<V, D> = node.moved(simd, V::load(simd, &numbers[index]));
         let pose = if node.parent == 0 {
             inner
         } else {

@@ -281,7 +281,7 @@ pub(super) fn robot<N: Space<D>, const D: usize>(
 ) -> RobotFilter<D> {
     let placed = bodies.iter().map(|body| {
         let place = tree.frames[body.frame].then(&body.pose);
-        (body.frame, &*body.shape, place)
+        (&*body.shape, place)
     });
     RobotFilter::new(tree, placed, pairs)
 }

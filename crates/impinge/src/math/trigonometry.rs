@@ -53,12 +53,9 @@ fn reduced<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, angle: V) -> [V; 2
     let cosine = (lit::<S, N, V>(simd, 1.0) - squared * lit(simd, 0.5)) + fourth;
     // Which quarter of the turn it is: -2 and 2 are the same.
     let quarter = quarters - rounded(simd, quarters * lit(simd, 0.25)) * lit(simd, 4.0);
-    let [half, low, high] = [0.5, -1.5, 1.5].map(
-        #[inline(always)]
-        |x| lit::<S, N, V>(simd, x),
-    );
+    let (half, low): (V, V) = (lit(simd, 0.5), lit(simd, -1.5));
     let is_odd = quarter.abs().simd_eq(lit(simd, 1.0));
-    let is_below = quarter.simd_gt(high) | quarter.simd_lt(-half);
+    let is_below = quarter.simd_gt(-low) | quarter.simd_lt(-half);
     let is_left = quarter.simd_gt(half) | quarter.simd_lt(low);
     let (sine, cosine) = (is_odd.select(cosine, sine), is_odd.select(sine, cosine));
     [is_below.select(-sine, sine), is_left.select(-cosine, cosine)]

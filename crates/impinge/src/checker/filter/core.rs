@@ -1,6 +1,6 @@
 //! How far points are from an obstacle, eight points at a time.
 
-use crate::math::lanes::{by_axis, dot, lit, minus, seen_from, times};
+use crate::math::lanes::{by_axis, dot, lit, minus, norm, seen_from, times};
 use crate::math::simd::Simd;
 use crate::math::{Matrix, Point, Pose, Real, Vector, Wide};
 use crate::shape::{Kind, Shape};
@@ -134,21 +134,17 @@ impl<const D: usize> Core<D> {
             }
             Self::Cuboid { axes, center, half } => {
                 let local = local(simd, axes, center, points);
-                let mut sum = zero;
-                for (place, &half) in local.iter().zip(half) {
-                    let over = (place.abs() - V::all(simd, half)).larger(zero);
-                    sum += over * over;
-                }
-                sum
+                let over: [V; D] = by_axis(
+                    #[inline(always)]
+                    |axis| (local[axis].abs() - V::all(simd, half[axis])).larger(zero),
+                );
+                dot(&over, &over)
             }
             Self::Cylinder { axes, center, half_height, radius } => {
-                let local = local(simd, axes, center, points);
-                let mut radial = local[0] * local[0];
-                for &place in &local[2..] {
-                    radial += place * place;
-                }
-                let side = (radial.sqrt() - V::all(simd, *radius)).larger(zero);
-                let cap = (local[1].abs() - V::all(simd, *half_height)).larger(zero);
+                let mut across = local(simd, axes, center, points);
+                let cap = (across[1].abs() - V::all(simd, *half_height)).larger(zero);
+                across[1] = zero;
+                let side = (norm(&across) - V::all(simd, *radius)).larger(zero);
                 side * side + cap * cap
             }
             Self::HalfSpace { normal, origin } => {

@@ -1,12 +1,11 @@
 //! What is certain at a glance: pairs that are apart or touch by more than all rounding errors, in `f32` and in lanes.
 //!
 //! ```text
-//!   group     a ball around the balls of some bodies of one frame        group against obstacle, group against group
-//!     body      a ball, or a row of balls that hold it                   body against obstacle, body against body
-//!       ball      center and radius in the frame of a node
+//!   group     a ball around up to eight balls of one node     eight configurations at once, and where it is near
+//!     balls     a body, or a row of balls that hold it          its balls at once, in one configuration
 //! ```
 //!
-//! Each lane is a configuration. What stays within the margin for errors is undecided, and is asked of the single call.
+//! What stays within the margin for errors is undecided, and is asked of the single call.
 //! So is what is held by its balls or box alone and not known to be apart.
 //!
 //! The margin of a pair is [`ROUNDING_ERRORS`] times those of `f32` and of the scalar, of all lengths that lead from the

@@ -1,13 +1,13 @@
 //! What the bodies of a robot may meet.
 
 use super::core::Outline;
-use super::robot::{RobotFilter, shift_of, way_to};
+use super::robot::{Group, RobotFilter, shift_of, way_to};
 use super::{MAX_LENGTH, margin};
 use crate::checker::body::Obstacle;
 use crate::checker::frames::FrameTree;
 use crate::collide::Placed;
 use crate::math::order::order_of;
-use crate::math::{Pose, Real, Space};
+use crate::math::{Pose, Real, Space, Vector};
 use crate::query::distance_between;
 use crate::shape::{Ball, Shape};
 
@@ -18,7 +18,7 @@ pub(in crate::checker) struct Surroundings<const D: usize> {
     /// For each group the obstacles, nearest first.
     pub(super) within: Vec<Vec<InReach>>,
     /// Bodies and obstacles that may touch, ascending.
-    pub(super) ignored: Vec<[u32; 2]>,
+    ignored: Vec<[u32; 2]>,
 }
 
 /// An obstacle.
@@ -34,6 +34,10 @@ pub(super) struct InReach {
     /// How far apart they are at least, if nothing slides.
     pub(super) gap: f32,
     pub(super) obstacle: usize,
+    /// The user's number of it.
+    pub(super) number: u32,
+    /// The balls of the group whose bodies must not touch it.
+    pub(super) wanted: u8,
 }
 
 impl<const D: usize> Surroundings<D> {
@@ -62,26 +66,42 @@ impl<const D: usize> Surroundings<D> {
         group: usize,
     ) -> Vec<InReach> {
         let group = &robot.groups[group];
-        let way = way_to(tree, group.node, &group.ball);
-        let anchor = Ball::new(N::ZERO);
-        let at = Placed {
-            pose: Pose::from_translation(way.anchor),
-            shape: Shape::<N, D>::geometry(&anchor),
-        };
-        let mut all: Vec<_> = (0..obstacles.len())
-            .map(|index| {
-                let there =
-                    Placed::of_pose(&obstacles[index].pose, obstacles[index].shape.geometry());
-                let apart = distance_between(&at, &there).as_f64();
-                let margin = f64::from(self.obstacles[index].margin + group.margin);
-                let gap = N::lit(apart - way.length - margin).as_f32_below();
-                // What has no end is everywhere.
-                InReach { gap: if gap.is_nan() { -f32::INFINITY } else { gap }, obstacle: index }
-            })
-            .collect();
+        let way = way_to(tree, group.node, (&group.center, group.radius));
+        let mut all = Vec::new();
+        for (index, obstacle) in obstacles.iter().enumerate() {
+            let number = u32::try_from(index).expect("32 bits can number the obstacles");
+            let wanted = self.wanted(group, number);
+            if wanted == 0 {
+                continue;
+            }
+            let margin = f64::from(self.obstacles[index].margin + group.margin);
+            let gap = distance_from(&way.anchor, obstacle).as_f64() - way.length - margin;
+            let gap = N::lit(gap).as_f32_below();
+            // What has no end is everywhere.
+            let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
+            all.push(InReach { gap, obstacle: index, number, wanted });
+        }
         all.sort_by_key(|within| (order_of(within.gap), within.obstacle));
         all
     }
+
+    /// The balls of a group whose bodies must not touch an obstacle.
+    fn wanted(&self, group: &Group<D>, obstacle: u32) -> u8 {
+        let may_touch = |body| self.ignored.binary_search(&[body, obstacle]).is_ok();
+        let wanted = (0..group.count).filter(|&ball| !may_touch(group.bodies[ball]));
+        wanted.fold(0, |bits, ball| bits | 1 << ball)
+    }
+}
+
+/// How far an obstacle is from a point.
+fn distance_from<N: Space<D>, const D: usize>(
+    point: &Vector<N, D>,
+    obstacle: &Obstacle<N, D>,
+) -> N {
+    let ball = Ball::new(N::ZERO);
+    let at = Placed { pose: Pose::from_translation(*point), shape: Shape::<N, D>::geometry(&ball) };
+    let there = Placed::of_pose(&obstacle.pose, obstacle.shape.geometry());
+    distance_between(&at, &there)
 }
 
 /// An obstacle in `f32`, as seen from the first joint.

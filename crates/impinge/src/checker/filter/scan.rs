@@ -1,9 +1,12 @@
 //! The scan: eight configurations against all pairs.
+//!
+//! Groups are looked at in eight configurations at once; where one is near, its eight balls at once in each configuration
+//! in which it is.
 
 use super::MAX_LENGTH;
-use super::obstacles::{LaneObstacle, Surroundings};
-use super::robot::{Crossing, Group, HeldBody, RobotFilter};
-use super::search::{Distances, Other, Pairing, Search};
+use super::obstacles::{InReach, LaneObstacle, Surroundings};
+use super::robot::{Crossing, Group, RobotFilter};
+use super::search::{Distances, Other, Search};
 use crate::checker::chain::{LANES, PoseRows, Row, forward};
 use crate::math::Wide;
 use crate::math::lanes::{LanePose, bits, by_axis, dot, lit, load, minus, with_lanes};
@@ -14,11 +17,13 @@ use crate::math::simd::{Eight, Level, Simd};
 pub(in crate::checker) struct Scratch<const D: usize> {
     /// The number of each node.
     pub(in crate::checker) numbers: Vec<Row<f32>>,
-    pub(in crate::checker) rows: Vec<PoseRows<f32, D>>,
-    /// The centers of the groups and of the balls; those of the balls of a group when they are needed.
-    groups: Vec<[Row<f32>; D]>,
-    balls: Vec<[Row<f32>; D]>,
-    is_placed: Vec<bool>,
+    rows: Vec<PoseRows<f32, D>>,
+    /// The centers of the groups, by configurations.
+    centers: Vec<[Row<f32>; D]>,
+    /// For each group and configuration the centers of the balls, when they are needed.
+    balls: Vec<[[Row<f32>; D]; LANES]>,
+    /// The configurations in which they are there.
+    placed: Vec<u8>,
 }
 
 impl<const D: usize> Scratch<D> {
@@ -27,9 +32,9 @@ impl<const D: usize> Scratch<D> {
         Self {
             numbers: vec![[0.0; LANES]; robot.nodes.len()],
             rows: vec![PoseRows::identity(); robot.nodes.len() + 1],
-            groups: vec![nothing; robot.groups.len()],
-            balls: vec![nothing; robot.balls.len()],
-            is_placed: vec![false; robot.groups.len()],
+            centers: vec![nothing; robot.groups.len()],
+            balls: vec![[nothing; LANES]; robot.groups.len()],
+            placed: vec![0; robot.groups.len()],
         }
     }
 }
@@ -51,6 +56,7 @@ pub(in crate::checker) fn scan_at<const D: usize>(
 ) {
     let scan = Scan { robot, around };
     with_lanes!(level, simd => run(simd, scan, scratch, search));
+    search.tidy();
 }
 
 /// [`Scan::run`] with vectors of eight.
@@ -75,33 +81,33 @@ impl<const D: usize> Scan<'_, D> {
         forward::<S, f32, V, D>(simd, &self.robot.nodes, &scratch.numbers, &mut scratch.rows);
         search.blind = search.live & !usable_lanes::<S, V, D>(simd, &scratch.rows);
         search.live &= !search.blind;
-        scratch.is_placed.fill(false);
+        scratch.placed.fill(0);
         for (index, group) in self.robot.groups.iter().enumerate() {
             let pose: LanePose<V, D> = scratch.rows[group.node].load(simd);
-            put(&pose.point(&spread(simd, &group.ball.center)), &mut scratch.groups[index]);
+            put(&pose.point(&spread(simd, &group.center)), &mut scratch.centers[index]);
         }
         self.meet_obstacles::<S, V>(simd, scratch, search);
         self.meet_itself::<S, V>(simd, scratch, search);
     }
 
-    /// The balls of a group.
+    /// The centers of the balls of a group in a configuration.
     #[inline(always)]
-    fn place<S: Simd, V: Wide<S, Scalar = f32>>(
+    fn balls<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
         simd: S,
-        index: usize,
+        (index, lane): (usize, usize),
         scratch: &mut Scratch<D>,
-    ) {
-        if scratch.is_placed[index] {
-            return;
+    ) -> [V; D] {
+        let place = &mut scratch.balls[index][lane];
+        if scratch.placed[index] >> lane & 1 == 1 {
+            return load(simd, place);
         }
-        scratch.is_placed[index] = true;
+        scratch.placed[index] |= 1 << lane;
         let group = &self.robot.groups[index];
-        let pose: LanePose<V, D> = scratch.rows[group.node].load(simd);
-        for ball in group.balls.clone() {
-            let center = spread(simd, &self.robot.balls[ball].center);
-            put(&pose.point(&center), &mut scratch.balls[ball]);
-        }
+        let pose: LanePose<V, D> = scratch.rows[group.node].spread(simd, lane);
+        let centers = pose.point(&load(simd, &group.centers));
+        put(&centers, place);
+        centers
     }
 
     #[inline(always)]
@@ -112,56 +118,49 @@ impl<const D: usize> Scan<'_, D> {
         search: &mut Search,
     ) {
         for (index, group) in self.robot.groups.iter().enumerate() {
-            let center: [V; D] = load(simd, &scratch.groups[index]);
+            let center: [V; D] = load(simd, &scratch.centers[index]);
             for within in &self.around.within[index] {
                 if search.is_done() || within.gap > search.farthest + search.slide {
                     break;
                 }
-                let obstacle = &self.around.obstacles[within.obstacle];
-                let distances = Distances {
-                    squared: obstacle.outline.core.squared(simd, &center),
-                    radius: group.ball.radius + obstacle.outline.radius,
-                    margin: group.margin + obstacle.margin,
-                    is_exact: false,
-                };
-                if search.near_lanes(simd, &distances) != 0 {
-                    self.place::<S, V>(simd, index, scratch);
-                    self.meet_obstacle::<S, V>(simd, (group, within.obstacle), scratch, search);
+                let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
+                let squared = outline.core.squared(simd, &center);
+                let radius = group.radius + outline.radius + (group.margin + margin);
+                let mut near = search.near_lanes(simd, squared, radius);
+                while near != 0 {
+                    let lane = near.trailing_zeros() as usize;
+                    near &= near - 1;
+                    let balls: [V; D] = self.balls(simd, (index, lane), scratch);
+                    self.meet_obstacle::<S, V>(simd, lane, (group, &balls, within), search);
                 }
             }
         }
     }
 
-    /// The bodies of a group against an obstacle.
+    /// The balls of a group against an obstacle in a configuration.
     #[inline(always)]
     fn meet_obstacle<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
         simd: S,
-        (group, number): (&Group<D>, usize),
-        scratch: &Scratch<D>,
+        lane: usize,
+        (group, balls, within): (&Group<D>, &[V; D], &InReach),
         search: &mut Search,
     ) {
-        let LaneObstacle { outline, margin } = &self.around.obstacles[number];
-        let number = u32::try_from(number).expect("32 bits can number the obstacles");
-        for body in &self.robot.bodies[group.bodies.clone()] {
-            if self.around.is_ignored(body.number, number) {
-                continue;
-            }
-            let mut pairing = Pairing::new();
-            for ball in body.balls.clone() {
-                let center: [V; D] = load(simd, &scratch.balls[ball]);
-                let distances = Distances {
-                    squared: outline.core.squared(simd, &center),
-                    radius: self.robot.balls[ball].radius + outline.radius,
-                    margin: group.margin + margin,
-                    is_exact: body.is_ball & outline.is_exact,
-                };
-                search.add(simd, &distances, &mut pairing);
-            }
-            if pairing.lanes != 0 {
-                search.finish(body.number, Other::Obstacle(number), &pairing);
-            }
-        }
+        let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
+        let distances = Distances {
+            squared: outline.core.squared(simd, balls),
+            radius: V::load(simd, &group.radii) + V::all(simd, outline.radius),
+            margin: group.margin + margin,
+            wanted: within.wanted,
+            exact: if outline.is_exact { group.exact } else { 0 },
+        };
+        search.settle(
+            simd,
+            lane,
+            &distances,
+            #[inline(always)]
+            |ball| (group.bodies[ball], Other::Obstacle(within.number)),
+        );
     }
 
     #[inline(always)]
@@ -178,97 +177,59 @@ impl<const D: usize> Scan<'_, D> {
             if crossing.gap > search.farthest {
                 continue;
             }
-            let [one, other] = crossing.groups.map(
-                #[inline(always)]
-                |group| &self.robot.groups[group],
-            );
-            let centers: [[V; D]; 2] = crossing.groups.map(
-                #[inline(always)]
-                |group| load(simd, &scratch.groups[group]),
-            );
-            let distances = Distances {
-                squared: squared_between(&centers),
-                radius: one.ball.radius + other.ball.radius,
-                margin: one.margin + other.margin,
-                is_exact: false,
-            };
-            if search.near_lanes(simd, &distances) != 0 {
-                self.place::<S, V>(simd, crossing.groups[0], scratch);
-                self.place::<S, V>(simd, crossing.groups[1], scratch);
-                self.cross::<S, V>(simd, crossing, scratch, search);
+            let [first, second] = crossing.groups;
+            let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
+            let center: [V; D] = load(simd, &scratch.centers[first]);
+            let squared = squared_between(&center, &load(simd, &scratch.centers[second]));
+            let radius = one.radius + other.radius + (one.margin + other.margin);
+            let mut near = search.near_lanes(simd, squared, radius);
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
+                self.cross::<S, V>(simd, (crossing, lane), scratch, search);
             }
         }
     }
 
-    /// The bodies of two groups against each other.
+    /// The balls of two groups against each other in a configuration.
     #[inline(always)]
     fn cross<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
         simd: S,
-        crossing: &Crossing,
-        scratch: &Scratch<D>,
+        (crossing, lane): (&Crossing, usize),
+        scratch: &mut Scratch<D>,
         search: &mut Search,
     ) {
-        let [one, other] = crossing.groups.map(
-            #[inline(always)]
-            |group| &self.robot.groups[group],
-        );
-        let (margin, far) =
-            (one.margin + other.margin, load(simd, &scratch.groups[crossing.groups[1]]));
-        for row in &crossing.rows {
-            let body = &self.robot.bodies[row.body];
-            let mut is_near = false;
-            for ball in body.balls.clone() {
-                let distances = Distances {
-                    squared: squared_between::<S, V, D>(&[load(simd, &scratch.balls[ball]), far]),
-                    radius: self.robot.balls[ball].radius + other.ball.radius,
-                    margin,
-                    is_exact: false,
-                };
-                is_near |= search.near_lanes(simd, &distances) != 0;
-            }
-            if is_near {
-                for &partner in &self.robot.partners[row.partners.clone()] {
-                    let pair = [body, &self.robot.bodies[partner]];
-                    self.cross_bodies::<S, V>(simd, pair, margin, scratch, search);
-                }
-            }
+        let [first, second] = crossing.groups;
+        let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
+        let _: [V; D] = self.balls(simd, (first, lane), scratch);
+        let balls: [V; D] = self.balls(simd, (second, lane), scratch);
+        let radii = V::load(simd, &other.radii);
+        for ball in 0..one.count {
+            let centers = &scratch.balls[first][lane];
+            let center: [V; D] = by_axis(
+                #[inline(always)]
+                |axis| V::all(simd, centers[axis][ball]),
+            );
+            let distances = Distances {
+                squared: squared_between(&center, &balls),
+                radius: radii + V::all(simd, one.radii[ball]),
+                margin: one.margin + other.margin,
+                wanted: crossing.wanted[ball],
+                exact: if one.exact >> ball & 1 == 1 { other.exact } else { 0 },
+            };
+            let body = one.bodies[ball];
+            search.settle(
+                simd,
+                lane,
+                &distances,
+                #[inline(always)]
+                |partner| {
+                    let partner = other.bodies[partner];
+                    (body.min(partner), Other::Body(body.max(partner)))
+                },
+            );
         }
-    }
-
-    #[inline(always)]
-    fn cross_bodies<S: Simd, V: Wide<S, Scalar = f32>>(
-        self,
-        simd: S,
-        [one, other]: [&HeldBody; 2],
-        margin: f32,
-        scratch: &Scratch<D>,
-        search: &mut Search,
-    ) {
-        let mut pairing = Pairing::new();
-        for ball1 in one.balls.clone() {
-            let center1: [V; D] = load(simd, &scratch.balls[ball1]);
-            for ball2 in other.balls.clone() {
-                let distances = Distances {
-                    squared: squared_between(&[center1, load(simd, &scratch.balls[ball2])]),
-                    radius: self.robot.balls[ball1].radius + self.robot.balls[ball2].radius,
-                    margin,
-                    is_exact: one.is_ball & other.is_ball,
-                };
-                search.add(simd, &distances, &mut pairing);
-            }
-        }
-        if pairing.lanes != 0 {
-            let (low, high) = (one.number.min(other.number), one.number.max(other.number));
-            search.finish(low, Other::Body(high), &pairing);
-        }
-    }
-}
-
-impl<const D: usize> Surroundings<D> {
-    #[inline(always)]
-    fn is_ignored(&self, body: u32, obstacle: u32) -> bool {
-        !self.ignored.is_empty() && self.ignored.binary_search(&[body, obstacle]).is_ok()
     }
 }
 
@@ -291,7 +252,7 @@ fn usable_lanes<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
 }
 
 #[inline(always)]
-fn squared_between<S: Simd, V: Wide<S>, const D: usize>([one, other]: &[[V; D]; 2]) -> V {
+fn squared_between<S: Simd, V: Wide<S>, const D: usize>(one: &[V; D], other: &[V; D]) -> V {
     let way = minus(other, one);
     dot(&way, &way)
 }

@@ -16,20 +16,18 @@ pub(in crate::checker) enum Mode {
     Nearest,
 }
 
-/// A pair that is not certainly farther apart than the limit.
+/// A pair that in a configuration is not certainly farther apart than the limit.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::checker) struct Near {
-    /// The numbers of the body and of the other body or of the obstacle.
-    pub(in crate::checker) body: u32,
-    pub(in crate::checker) other: Other,
-    /// The lanes in which it is not, and those of them in which it certainly is not.
-    pub(in crate::checker) lanes: u8,
-    pub(in crate::checker) certain: u8,
-    /// How far apart they are at least, in the mode [`Mode::Nearest`].
-    pub(in crate::checker) lower: Row<f32>,
+    pub(in crate::checker) lane: usize,
+    pub(in crate::checker) pair: (u32, Other),
+    /// It certainly is not farther apart.
+    pub(in crate::checker) is_certain: bool,
+    /// How far apart it is at least, in the mode [`Mode::Nearest`].
+    pub(in crate::checker) lower: f32,
 }
 
-/// The second of a pair.
+/// The second of a pair, whose first is a body of a lower number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::checker) enum Other {
     Body(u32),
@@ -39,47 +37,36 @@ pub(in crate::checker) enum Other {
 /// A search in eight configurations.
 #[derive(Debug)]
 pub(in crate::checker) struct Search {
-    pub(super) mode: Mode,
+    mode: Mode,
     /// The lanes that are looked at.
-    pub(in crate::checker) live: u8,
+    pub(super) live: u8,
     /// The lanes in which numbers are too large for `f32`.
     pub(in crate::checker) blind: u8,
     /// The lanes in which a pair is certainly not farther apart than the limit, in the mode [`Mode::Any`].
     pub(in crate::checker) hits: u8,
     /// Farther apart than this with all margins is farther than the limit; nearer than the other is not.
-    pub(super) outer: Row<f32>,
-    pub(super) inner: Row<f32>,
+    outer: Row<f32>,
+    inner: Row<f32>,
     /// The margin for what slides.
     slack: Row<f32>,
     /// The highest number of `outer`, and how far anything slides.
     pub(super) farthest: f32,
     pub(super) slide: f32,
+    /// In order of the lanes and pairs after [`Self::tidy`].
     pub(in crate::checker) near: Vec<Near>,
 }
 
-/// What is known of a pair of balls, or of a ball and a core, in eight lanes.
+/// What is known of the distances of up to eight balls of a group from one thing.
 #[derive(Clone, Copy)]
 pub(super) struct Distances<V> {
-    /// The squares of the distances of the centers, or of the center from the core.
+    /// The squares of the distances of the centers from its center, or from its core.
     pub(super) squared: V,
-    /// The sum of the radii, and the margin.
-    pub(super) radius: f32,
+    /// The sums of the radii, and the margin.
+    pub(super) radius: V,
     pub(super) margin: f32,
-    /// The solids are within those radii, and all of that.
-    pub(super) is_exact: bool,
-}
-
-/// The pair that is looked at, and what was found.
-pub(super) struct Pairing {
-    pub(super) lanes: u8,
-    pub(super) certain: u8,
-    pub(super) lower: Row<f32>,
-}
-
-impl Pairing {
-    pub(super) const fn new() -> Self {
-        Self { lanes: 0, certain: 0, lower: [f32::INFINITY; LANES] }
-    }
+    /// The balls that are asked about, and those of which radius and distance are all.
+    pub(super) wanted: u8,
+    pub(super) exact: u8,
 }
 
 impl Search {
@@ -121,86 +108,97 @@ impl Search {
         self.near.clear();
     }
 
-    /// A pair that was kept may still count in a lane: others may have turned out to be nearer.
-    pub(in crate::checker) fn may_count(&self, near: &Near, lane: usize) -> bool {
-        let is_far = self.mode == Mode::Nearest && near.lower[lane] > self.outer[lane];
-        near.lanes >> lane & 1 == 1 && !is_far
-    }
-
     /// All lanes are decided.
     #[inline(always)]
     pub(super) const fn is_done(&self) -> bool {
         self.live == 0
     }
 
-    /// The live lanes in which solids are not certainly farther apart than the limit: NaN is not.
+    /// The live lanes in which two things with these radii and distances are not certainly farther apart than the limit:
+    /// NaN is not.
     #[inline(always)]
     pub(super) fn near_lanes<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
         simd: S,
-        distances: &Distances<V>,
+        squared: V,
+        radius: f32,
     ) -> u8 {
-        let outer = V::all(simd, distances.radius + distances.margin) + V::load(simd, &self.outer);
-        !bits(distances.squared.simd_gt(outer * outer)) & self.live
+        let reach = V::all(simd, radius) + V::load(simd, &self.outer);
+        !bits(squared.simd_gt(reach * reach)) & self.live
     }
 
-    /// Adds to what is known of a pair of bodies what two of their balls say.
+    /// Keeps the balls that are near in a configuration; `pair_of` has the pair of a ball.
     #[inline(always)]
-    pub(super) fn add<S: Simd, V: Wide<S, Scalar = f32>>(
+    pub(super) fn settle<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
         simd: S,
+        lane: usize,
         distances: &Distances<V>,
-        pairing: &mut Pairing,
+        pair_of: impl Fn(usize) -> (u32, Other),
     ) {
-        let near = self.near_lanes(simd, distances);
+        let reach = distances.radius + V::all(simd, distances.margin + self.outer[lane]);
+        let near = !bits(distances.squared.simd_gt(reach * reach)) & distances.wanted;
         if near == 0 {
             return;
         }
-        pairing.lanes |= near;
-        if self.mode == Mode::Nearest {
-            return self.bound(distances, pairing);
+        let inner = distances.radius + V::all(simd, self.inner[lane] - distances.margin);
+        let is_within = distances.squared.simd_lt(inner * inner) & inner.simd_gt(V::all(simd, 0.0));
+        let certain = bits(is_within) & near & distances.exact;
+        if certain != 0 && self.mode == Mode::Any {
+            self.hits |= 1 << lane;
+            self.live &= !(1 << lane);
+            return;
         }
-        if distances.is_exact {
-            let inner =
-                V::all(simd, distances.radius - distances.margin) + V::load(simd, &self.inner);
-            let is_certain =
-                distances.squared.simd_lt(inner * inner) & inner.simd_gt(V::all(simd, 0.0));
-            pairing.certain |= bits(is_certain) & near;
+        let lower = self.bounds(simd, lane, distances, near);
+        let mut balls = near;
+        while balls != 0 {
+            let ball = balls.trailing_zeros() as usize;
+            balls &= balls - 1;
+            let (is_certain, lower) = (certain >> ball & 1 == 1, lower[ball]);
+            self.near.push(Near { lane, pair: pair_of(ball), is_certain, lower });
         }
     }
 
-    /// Bounds of the distance: no pair is wanted that is farther apart than the upper bound of one.
+    /// How far apart the balls are at least. No pair is wanted that is farther apart than the upper bound of one.
     #[inline(always)]
-    fn bound<S: Simd, V: Wide<S, Scalar = f32>>(
+    fn bounds<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
+        simd: S,
+        lane: usize,
         distances: &Distances<V>,
-        pairing: &mut Pairing,
-    ) {
-        let mut apart = [0.0; LANES];
-        distances.squared.sqrt().store(&mut apart);
-        for (lane, &apart) in apart.iter().enumerate() {
-            let (slack, between) = (self.slack[lane], apart - distances.radius);
-            let lower = between - distances.margin - slack;
-            pairing.lower[lane] = min(lower, pairing.lower[lane]);
-            if distances.is_exact {
-                let upper = max(between + distances.margin + slack, 0.0);
-                self.outer[lane] = min(upper + slack, self.outer[lane]);
-            }
+        near: u8,
+    ) -> Row<f32> {
+        let mut bounds = [0.0; LANES];
+        if self.mode != Mode::Nearest {
+            return bounds;
         }
+        let slack = self.slack[lane];
+        let lower =
+            distances.squared.sqrt() - distances.radius - V::all(simd, distances.margin + slack);
+        lower.store(&mut bounds);
+        let exact = (0..LANES).filter(|ball| (near & distances.exact) >> ball & 1 == 1);
+        let upper = exact.fold(f32::INFINITY, |upper, ball| min(bounds[ball], upper));
+        // Twice the margin above the lower bound, and once for what slides; no distance is negative.
+        let upper = max(upper + 2.0 * (distances.margin + slack), 0.0) + slack;
+        self.outer[lane] = min(upper, self.outer[lane]);
         self.farthest = self.outer.iter().fold(0.0, |most, &outer| max(outer, most));
+        bounds
     }
 
-    /// Keeps a pair that is near in some lanes.
-    #[inline(always)]
-    pub(super) fn finish(&mut self, body: u32, other: Other, pairing: &Pairing) {
-        let Pairing { mut lanes, certain, lower } = *pairing;
-        if self.mode == Mode::Any {
-            self.hits |= certain;
-            self.live &= !certain;
-            lanes &= !certain;
+    /// Puts what was kept in order, each pair once, without what turned out to be farther than others.
+    pub(in crate::checker) fn tidy(&mut self) {
+        if self.mode == Mode::Nearest {
+            let outer = self.outer;
+            self.near.retain(|near| near.lower <= outer[near.lane]);
         }
-        if lanes != 0 {
-            self.near.push(Near { body, other, lanes, certain, lower });
-        }
+        self.near.sort_unstable_by(|one, other| {
+            let order = (one.lane, one.pair).cmp(&(other.lane, other.pair));
+            order.then(one.lower.total_cmp(&other.lower))
+        });
+        self.near.dedup_by(|later, kept| {
+            let is_same = (later.lane, later.pair) == (kept.lane, kept.pair);
+            kept.is_certain |= is_same && later.is_certain;
+            is_same
+        });
     }
 }
