@@ -2,9 +2,9 @@
 
 use core::ops::Range;
 
-use super::chain::{LANES, Row};
+use super::chain::{LANES, LaneRow};
 use super::exact::Exact;
-use super::filter::{Mode, Near, Other, Scratch, Search, scan_at};
+use super::filter::{NearPair, Other, PairSearch, ScanScratch, SearchMode, scan_at};
 use super::{Checker, NO_PAIR, NearestColumns};
 use crate::batch::{BatchError, Control, Progress};
 use crate::math::simd::Level;
@@ -15,23 +15,23 @@ const NEAR_ANGLE: f64 = 4.0;
 const FAR_ANGLE: f64 = 1e8;
 
 /// What treats eight configurations after the other.
-struct Sweep<'a, N: Space<D>, const D: usize> {
+struct EightByEight<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],
     exact: Exact<'a, N, D>,
-    scratch: Scratch<D>,
-    search: Search,
+    scratch: ScanScratch<D>,
+    search: PairSearch,
     level: Level,
 }
 
-impl<'a, N: Space<D>, const D: usize> Sweep<'a, N, D> {
-    fn new(checker: &'a Checker<N, D>, configurations: &'a [N], mode: Mode) -> Self {
+impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
+    fn new(checker: &'a Checker<N, D>, configurations: &'a [N], mode: SearchMode) -> Self {
         Self {
             checker,
             configurations,
             exact: Exact::new(checker, configurations),
-            scratch: Scratch::new(&checker.robot),
-            search: Search::new(mode),
+            scratch: ScanScratch::new(&checker.robot),
+            search: PairSearch::new(mode),
             level: Level::new(),
         }
     }
@@ -63,7 +63,7 @@ impl<'a, N: Space<D>, const D: usize> Sweep<'a, N, D> {
     }
 
     /// The numbers of the nodes in `f32`; returns how far things slide in each lane.
-    fn read_numbers(&mut self, eight: &Range<usize>) -> Row<f32> {
+    fn read_numbers(&mut self, eight: &Range<usize>) -> LaneRow<f32> {
         let tree = &self.checker.tree;
         let mut slides = [0.0; LANES];
         for (index, joint) in tree.joints.iter().enumerate() {
@@ -86,14 +86,14 @@ impl<'a, N: Space<D>, const D: usize> Sweep<'a, N, D> {
     }
 
     /// The pairs that are near in a lane in their order; of a lane in which the filter is blind all.
-    fn candidates(&self, lane: usize) -> Vec<Near> {
+    fn candidates(&self, lane: usize) -> Vec<NearPair> {
         if self.search.blind >> lane & 1 == 0 {
             let near = self.search.near.iter();
             return near.filter(|near| near.lane == lane).copied().collect();
         }
         let all = self.checker.pairs_in_order();
         let mut all: Vec<_> =
-            all.map(|pair| Near { lane, pair, is_certain: false, lower: 0.0 }).collect();
+            all.map(|pair| NearPair { lane, pair, is_certain: false, lower: 0.0 }).collect();
         all.sort_unstable_by_key(|near| near.pair);
         all
     }
@@ -126,7 +126,7 @@ pub(super) fn are_free<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     let clearance = max(clearance, N::ZERO);
     Progress::new(control).run(out.len(), out, |range, out: &mut [bool]| {
-        let mut sweep = Sweep::new(checker, configurations, Mode::Any);
+        let mut sweep = EightByEight::new(checker, configurations, SearchMode::Any);
         let first = range.start;
         sweep.each(range, clearance, |sweep, eight| {
             let hits = sweep.hits(clearance);
@@ -137,11 +137,11 @@ pub(super) fn are_free<N: Space<D>, const D: usize>(
     })
 }
 
-impl<N: Space<D>, const D: usize> Sweep<'_, N, D> {
+impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
     /// The lanes that are not free.
     fn hits(&mut self, clearance: N) -> u8 {
         let mut hits = self.search.hits;
-        for &Near { lane, pair, .. } in &self.search.near {
+        for &NearPair { lane, pair, .. } in &self.search.near {
             if hits >> lane & 1 == 0 {
                 let found = self.exact.distance(pair, lane, clearance);
                 hits |= u8::from(found.is_some()) << lane;
@@ -175,7 +175,7 @@ pub(super) fn first_pairs<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     let clearance = max(clearance, N::ZERO);
     Progress::new(control).run(out.len(), out, |range, out: &mut [[u32; 2]]| {
-        let mut sweep = Sweep::new(checker, configurations, Mode::All);
+        let mut sweep = EightByEight::new(checker, configurations, SearchMode::All);
         let first = range.start;
         sweep.each(range, clearance, |sweep, eight| {
             for (lane, index) in eight.enumerate() {
@@ -197,7 +197,7 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     let limit = max(limit, N::ZERO);
     Progress::new(control).run(count, out, |range, mut out: NearestColumns<'_, N>| {
-        let mut sweep = Sweep::new(checker, configurations, Mode::Nearest);
+        let mut sweep = EightByEight::new(checker, configurations, SearchMode::Nearest);
         let first = range.start;
         sweep.each(range, limit, |sweep, eight| {
             for (lane, index) in eight.enumerate() {
@@ -215,13 +215,13 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
     })
 }
 
-impl<N: Space<D>, const D: usize> Sweep<'_, N, D> {
+impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
     /// The nearest pair of a lane up to a limit, of equally near ones the first.
     ///
     /// The pairs are asked by their lower bounds, those that may touch in their order; so all that follow one that is
     /// nearer than their bound are farther, and of two that touch the first comes first.
     fn nearest(&mut self, lane: usize, limit: N) -> Option<(N, (u32, Other))> {
-        let bound = |near: &Near| max(near.lower, 0.0);
+        let bound = |near: &NearPair| max(near.lower, 0.0);
         let mut candidates = self.candidates(lane);
         candidates.sort_unstable_by(|one, other| {
             let order = bound(one).total_cmp(&bound(other));

@@ -9,7 +9,7 @@
 //! The rotation by an angle θ with the generator K is I + sin θ K + (1 - cos θ) K² (O. Rodrigues), in 2D as in 3D. So
 //! a joint's rotation in its parent is A + sin θ B + cos θ C with constant matrices.
 
-use super::joint::{Frame, Motion};
+use super::joint::{Frame, JointMotion};
 use crate::math::lanes::{LanePose, by_axis, plus, times};
 use crate::math::simd::Simd;
 use crate::math::trigonometry::sine_cosine;
@@ -19,14 +19,14 @@ use crate::math::{Matrix, Pose, Real, Vector, Wide};
 pub(super) const LANES: usize = 8;
 
 /// A number for each of eight configurations.
-pub(super) type Row<N> = [N; LANES];
+pub(super) type LaneRow<N> = [N; LANES];
 
 /// Poses in eight lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseRows<N, const D: usize> {
     /// By columns of the matrix.
-    rotation: [[Row<N>; D]; D],
-    translation: [Row<N>; D],
+    rotation: [[LaneRow<N>; D]; D],
+    translation: [LaneRow<N>; D],
 }
 
 /// A frame that moves, on another or on the world.
@@ -53,9 +53,9 @@ impl<N: Real, const D: usize> Node<N, D> {
     pub(super) fn new(parent: usize, origin: &Pose<N, D>, frame: &Frame<N, D>) -> Option<Self> {
         let turned = origin.rotation;
         let rotation = match frame.joint.motion {
-            Motion::Fixed => return None,
-            Motion::Slide(axis) => Swing::Slide(turned, turned * axis),
-            Motion::Turn(generator) => {
+            JointMotion::Fixed => return None,
+            JointMotion::Slide(axis) => Swing::Slide(turned, turned * axis),
+            JointMotion::Turn(generator) => {
                 let squared = generator * generator;
                 let still = turned * (Matrix::<N, D>::identity() + squared);
                 Swing::Turn([still, turned * generator, turned * -squared])
@@ -196,7 +196,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
 pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     nodes: &[Node<N, D>],
-    numbers: &[Row<N>],
+    numbers: &[LaneRow<N>],
     rows: &mut [PoseRows<N, D>],
 ) {
     for (index, node) in nodes.iter().enumerate() {

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::Checker;
-use super::chain::{LANES, PoseRows, Row};
+use super::chain::{LANES, LaneRow, PoseRows};
 use super::filter::Other;
 use crate::collide::Placed;
 use crate::math::Space;
@@ -14,7 +14,7 @@ pub(super) struct Exact<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],
     range: Range<usize>,
-    numbers: Vec<Row<N>>,
+    numbers: Vec<LaneRow<N>>,
     rows: Vec<PoseRows<N, D>>,
     is_placed: bool,
 }

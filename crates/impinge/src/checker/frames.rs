@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::CheckerError;
-use super::chain::{LANES, Node, PoseRows, Row, forward};
+use super::chain::{LANES, LaneRow, Node, PoseRows, forward};
 use super::joint::{Frame, Joint};
 use super::rows::RowsOf;
 use crate::batch::{BatchError, Control, Progress};
@@ -170,7 +170,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         &self,
         configurations: &[N],
         range: &Range<usize>,
-        numbers: &mut [Row<N>],
+        numbers: &mut [LaneRow<N>],
     ) {
         for (joint, row) in self.joints.iter().zip(numbers) {
             let column = joint.column().expect("a node has a joint that moves");
@@ -182,7 +182,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
     }
 
     /// The poses of all nodes by their numbers.
-    pub(super) fn forward(&self, numbers: &[Row<N>], rows: &mut [PoseRows<N, D>]) {
+    pub(super) fn forward(&self, numbers: &[LaneRow<N>], rows: &mut [PoseRows<N, D>]) {
         let (level, nodes) = (Level::new(), &*self.nodes);
         with_lanes!(level, simd => forward::<_, N, N::Lanes<_>, D>(simd, nodes, numbers, rows));
     }

@@ -18,7 +18,7 @@ use crate::math::{Matrix, Pose, Real, Unit, Vector};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint<N: Real, const D: usize> {
-    pub(super) motion: Motion<N, D>,
+    pub(super) motion: JointMotion<N, D>,
     column: usize,
     factor: N,
     offset: N,
@@ -26,7 +26,7 @@ pub struct Joint<N: Real, const D: usize> {
 
 /// What a joint does with its number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Motion<N: Real, const D: usize> {
+pub(super) enum JointMotion<N: Real, const D: usize> {
     Fixed,
     /// Turns by the rotation whose generator this is: v ↦ axis × v, in 2D a quarter turn.
     Turn(Matrix<N, D>),
@@ -38,13 +38,13 @@ impl<N: Real, const D: usize> Joint<N, D> {
     /// No motion.
     #[must_use]
     pub fn fixed() -> Self {
-        Self::driven(Motion::Fixed, 0)
+        Self::driven(JointMotion::Fixed, 0)
     }
 
     /// Shifts along an axis by the number in a column.
     #[must_use]
     pub fn prismatic(axis: Unit<Vector<N, D>>, column: usize) -> Self {
-        Self::driven(Motion::Slide(axis.into_inner()), column)
+        Self::driven(JointMotion::Slide(axis.into_inner()), column)
     }
 
     /// Turns by the rotation exp(θ K) with the number θ in a column and the generator K: v ↦ axis × v of a unit axis in
@@ -58,10 +58,10 @@ impl<N: Real, const D: usize> Joint<N, D> {
     /// ```
     #[must_use]
     pub const fn turning(generator: Matrix<N, D>, column: usize) -> Self {
-        Self::driven(Motion::Turn(generator), column)
+        Self::driven(JointMotion::Turn(generator), column)
     }
 
-    const fn driven(motion: Motion<N, D>, column: usize) -> Self {
+    const fn driven(motion: JointMotion<N, D>, column: usize) -> Self {
         Self { motion, column, factor: N::ONE, offset: N::ZERO }
     }
 
@@ -80,7 +80,7 @@ impl<N: Real, const D: usize> Joint<N, D> {
     /// The column of the configuration that moves it; `None` of a fixed joint.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
-        (self.motion != Motion::Fixed).then_some(self.column)
+        (self.motion != JointMotion::Fixed).then_some(self.column)
     }
 
     /// What a number in its column means for it: radians or a length.
@@ -93,9 +93,9 @@ impl<N: Real, const D: usize> Joint<N, D> {
     /// All its numbers are finite.
     pub(super) fn is_finite(&self) -> bool {
         let of_motion = match &self.motion {
-            Motion::Fixed => true,
-            Motion::Turn(generator) => generator.iter().all(|x| x.is_finite_number()),
-            Motion::Slide(axis) => axis.iter().all(|x| x.is_finite_number()),
+            JointMotion::Fixed => true,
+            JointMotion::Turn(generator) => generator.iter().all(|x| x.is_finite_number()),
+            JointMotion::Slide(axis) => axis.iter().all(|x| x.is_finite_number()),
         };
         of_motion && self.factor.is_finite_number() && self.offset.is_finite_number()
     }

@@ -1,7 +1,7 @@
 //! Every instruction set finds the same.
 
-use super::chain::{LANES, Row};
-use super::filter::{Mode, Scratch, Search, scan_at};
+use super::chain::{LANES, LaneRow};
+use super::filter::{PairSearch, ScanScratch, SearchMode, scan_at};
 use super::{Body, Checker, Frame, FrameTree, Joint, Obstacle};
 use crate::collide::separation::hulls::tests::Random;
 use crate::math::simd::Level;
@@ -48,13 +48,13 @@ fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N
 
 /// All that a search has found, as a text.
 fn found<N: Space<D>, const D: usize>(
-    (level, mode): (Level, Mode),
+    (level, mode): (Level, SearchMode),
     checker: &Checker<N, D>,
-    numbers: &[Row<f32>],
+    numbers: &[LaneRow<f32>],
 ) -> (String, u32) {
-    let mut scratch = Scratch::new(&checker.robot);
+    let mut scratch = ScanScratch::new(&checker.robot);
     scratch.numbers.copy_from_slice(numbers);
-    let mut search = Search::new(mode);
+    let mut search = PairSearch::new(mode);
     search.begin(u8::MAX, 0.05, (&[0.5; LANES], checker.robot.slide_margin()));
     scan_at(level, &checker.robot, &checker.surroundings, &mut scratch, &mut search);
     (format!("{search:?}"), search.hits.count_ones())
@@ -66,7 +66,7 @@ fn agree<N: Space<D>, const D: usize>(checker: &Checker<N, D>) {
     for round in 0..200 {
         let mut numbers = [(); 6].map(|()| [(); LANES].map(|()| random.vector::<f32>().x * 3.0));
         numbers[round % 6][round % LANES] = [f32::NAN, f32::INFINITY, 1e20, 0.0][round % 4];
-        for mode in [Mode::Any, Mode::All, Mode::Nearest] {
+        for mode in [SearchMode::Any, SearchMode::All, SearchMode::Nearest] {
             let mut all = Level::available().into_iter();
             let expected = found((all.next().expect("the best"), mode), checker, &numbers);
             for level in all {

@@ -37,14 +37,14 @@ pub(super) enum Core<const D: usize> {
 
 /// A core with its radius.
 #[derive(Clone, Debug)]
-pub(super) struct Outline<const D: usize> {
+pub(super) struct RoundedCore<const D: usize> {
     pub(super) core: Core<D>,
     pub(super) radius: f32,
     /// The solid is all that is within the radius of the core, and not only inside of that.
     pub(super) is_exact: bool,
 }
 
-impl<const D: usize> Outline<D> {
+impl<const D: usize> RoundedCore<D> {
     /// That of a shape at a pose; the box of the shape, where there is no closed form.
     pub(super) fn new<N: Real>(shape: &dyn Shape<N, D>, pose: &Pose<N, D>) -> Self {
         let exact = |core, radius: N| Self { core, radius: radius.as_f32(), is_exact: true };

@@ -23,8 +23,8 @@ mod search;
 
 pub(super) use self::obstacles::Surroundings;
 pub(super) use self::robot::RobotFilter;
-pub(super) use self::scan::{Scratch, scan_at};
-pub(super) use self::search::{Mode, Near, Other, Search};
+pub(super) use self::scan::{ScanScratch, scan_at};
+pub(super) use self::search::{NearPair, Other, PairSearch, SearchMode};
 
 use crate::math::Real;
 

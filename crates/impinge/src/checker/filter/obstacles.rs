@@ -1,7 +1,7 @@
 //! What the bodies of a robot may meet.
 
-use super::core::Outline;
-use super::robot::{Group, RobotFilter, shift_of, way_to};
+use super::core::RoundedCore;
+use super::robot::{BallGroup, RobotFilter, shift_of, way_to};
 use super::{MAX_LENGTH, margin};
 use crate::checker::body::Obstacle;
 use crate::checker::frames::FrameTree;
@@ -24,7 +24,7 @@ pub(in crate::checker) struct Surroundings<const D: usize> {
 /// An obstacle.
 #[derive(Clone, Debug)]
 pub(super) struct LaneObstacle<const D: usize> {
-    pub(super) outline: Outline<D>,
+    pub(super) outline: RoundedCore<D>,
     pub(super) margin: f32,
 }
 
@@ -86,7 +86,7 @@ impl<const D: usize> Surroundings<D> {
     }
 
     /// The balls of a group whose bodies must not touch an obstacle.
-    fn wanted(&self, group: &Group<D>, obstacle: u32) -> u8 {
+    fn wanted(&self, group: &BallGroup<D>, obstacle: u32) -> u8 {
         let may_touch = |body| self.ignored.binary_search(&[body, obstacle]).is_ok();
         let wanted = (0..group.count).filter(|&ball| !may_touch(group.bodies[ball]));
         wanted.fold(0, |bits, ball| bits | 1 << ball)
@@ -111,7 +111,7 @@ fn in_f32<N: Space<D>, const D: usize>(
 ) -> LaneObstacle<D> {
     let shift = shift_of(tree);
     let pose = Pose { translation: obstacle.pose.translation - shift, ..obstacle.pose };
-    let outline = Outline::new(&*obstacle.shape, &pose);
+    let outline = RoundedCore::new(&*obstacle.shape, &pose);
     let extent = obstacle.shape.geometry().extent();
     let own = if extent.is_finite_number() { extent.as_f64() } else { size_of_box(obstacle) };
     let near = pose.translation.norm().as_f64() + own;
@@ -121,7 +121,7 @@ fn in_f32<N: Space<D>, const D: usize>(
     if is_usable {
         LaneObstacle { outline, margin }
     } else {
-        LaneObstacle { outline: Outline::unknown(), margin: 0.0 }
+        LaneObstacle { outline: RoundedCore::unknown(), margin: 0.0 }
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::core::numbers;
 use super::cover::{CoverBall, around, cover};
 use super::{MAX_LENGTH, margin};
-use crate::checker::chain::{LANES, Node, Row};
+use crate::checker::chain::{LANES, LaneRow, Node};
 use crate::checker::frames::{FrameTree, OnNode};
 use crate::math::order::order_of;
 use crate::math::{Pose, Real, Space, Vector};
@@ -15,22 +15,22 @@ use crate::shape::Shape;
 #[derive(Clone, Debug)]
 pub(in crate::checker) struct RobotFilter<const D: usize> {
     pub(super) nodes: Vec<Node<f32, D>>,
-    pub(super) groups: Vec<Group<D>>,
-    pub(super) crossings: Vec<Crossing>,
+    pub(super) groups: Vec<BallGroup<D>>,
+    pub(super) crossings: Vec<GroupPair>,
     /// The margin for a unit of length of all that slides.
     slide_margin: f32,
 }
 
 /// Up to eight balls on one node that are near each other: one body, or several.
 #[derive(Clone, Debug)]
-pub(super) struct Group<const D: usize> {
+pub(super) struct BallGroup<const D: usize> {
     pub(super) node: usize,
     /// Around all its balls.
     pub(super) center: [f32; D],
     pub(super) radius: f32,
     /// The balls in lanes: those that there are not are never asked for.
-    pub(super) centers: [Row<f32>; D],
-    pub(super) radii: Row<f32>,
+    pub(super) centers: [LaneRow<f32>; D],
+    pub(super) radii: LaneRow<f32>,
     /// The user's numbers of the bodies that the balls hold.
     pub(super) bodies: [u32; LANES],
     /// How many balls there are, and a bit for each that is its body.
@@ -41,7 +41,7 @@ pub(super) struct Group<const D: usize> {
 
 /// Two groups with bodies that must not touch.
 #[derive(Clone, Debug)]
-pub(super) struct Crossing {
+pub(super) struct GroupPair {
     pub(super) groups: [usize; 2],
     /// How far apart all pairs are at least at all times.
     pub(super) gap: f32,
@@ -158,7 +158,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     fn add_group(&mut self, bodies: &[&Covered<N, D>]) {
         let node = bodies[0].node;
         let shift = if node == 0 { self.shift } else { Vector::<N, D>::zeros() };
-        let mut group = Group::empty(node);
+        let mut group = BallGroup::empty(node);
         let mut all = Vec::new();
         for body in bodies {
             let from = group.count;
@@ -192,7 +192,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         }
         for (groups, wanted) in by_groups {
             let gap = self.gap_between(groups, &wanted);
-            self.filter.crossings.push(Crossing { groups, gap, wanted });
+            self.filter.crossings.push(GroupPair { groups, gap, wanted });
         }
     }
 
@@ -213,7 +213,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     }
 }
 
-impl<const D: usize> Group<D> {
+impl<const D: usize> BallGroup<D> {
     const fn empty(node: usize) -> Self {
         Self {
             node,

@@ -5,28 +5,28 @@
 
 use super::MAX_LENGTH;
 use super::obstacles::{InReach, LaneObstacle, Surroundings};
-use super::robot::{Crossing, Group, RobotFilter};
-use super::search::{Distances, Other, Search};
-use crate::checker::chain::{LANES, PoseRows, Row, forward};
+use super::robot::{BallGroup, GroupPair, RobotFilter};
+use super::search::{Distances, Other, PairSearch};
+use crate::checker::chain::{LANES, LaneRow, PoseRows, forward};
 use crate::math::Wide;
 use crate::math::lanes::{LanePose, bits, by_axis, dot, lit, load, minus, with_lanes};
 use crate::math::simd::{Eight, Level, Simd};
 
 /// Where everything is in eight configurations.
 #[derive(Debug)]
-pub(in crate::checker) struct Scratch<const D: usize> {
+pub(in crate::checker) struct ScanScratch<const D: usize> {
     /// The number of each node.
-    pub(in crate::checker) numbers: Vec<Row<f32>>,
+    pub(in crate::checker) numbers: Vec<LaneRow<f32>>,
     rows: Vec<PoseRows<f32, D>>,
     /// The centers of the groups, by configurations.
-    centers: Vec<[Row<f32>; D]>,
+    centers: Vec<[LaneRow<f32>; D]>,
     /// For each group and configuration the centers of the balls, when they are needed.
-    balls: Vec<[[Row<f32>; D]; LANES]>,
+    balls: Vec<[[LaneRow<f32>; D]; LANES]>,
     /// The configurations in which they are there.
     placed: Vec<u8>,
 }
 
-impl<const D: usize> Scratch<D> {
+impl<const D: usize> ScanScratch<D> {
     pub(in crate::checker) fn new(robot: &RobotFilter<D>) -> Self {
         let nothing = [[0.0; LANES]; D];
         Self {
@@ -51,8 +51,8 @@ pub(in crate::checker) fn scan_at<const D: usize>(
     level: Level,
     robot: &RobotFilter<D>,
     around: &Surroundings<D>,
-    scratch: &mut Scratch<D>,
-    search: &mut Search,
+    scratch: &mut ScanScratch<D>,
+    search: &mut PairSearch,
 ) {
     let scan = Scan { robot, around };
     with_lanes!(level, simd => run(simd, scan, scratch, search));
@@ -64,8 +64,8 @@ pub(in crate::checker) fn scan_at<const D: usize>(
 fn run<S: Simd, const D: usize>(
     simd: S,
     scan: Scan<'_, D>,
-    scratch: &mut Scratch<D>,
-    search: &mut Search,
+    scratch: &mut ScanScratch<D>,
+    search: &mut PairSearch,
 ) {
     scan.run::<S, <f32 as Eight>::Lanes<S>>(simd, scratch, search);
 }
@@ -75,8 +75,8 @@ impl<const D: usize> Scan<'_, D> {
     fn run<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
         simd: S,
-        scratch: &mut Scratch<D>,
-        search: &mut Search,
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
     ) {
         forward::<S, f32, V, D>(simd, &self.robot.nodes, &scratch.numbers, &mut scratch.rows);
         search.blind = search.live & !usable_lanes::<S, V, D>(simd, &scratch.rows);
@@ -96,7 +96,7 @@ impl<const D: usize> Scan<'_, D> {
         self,
         simd: S,
         (index, lane): (usize, usize),
-        scratch: &mut Scratch<D>,
+        scratch: &mut ScanScratch<D>,
     ) -> [V; D] {
         let place = &mut scratch.balls[index][lane];
         if scratch.placed[index] >> lane & 1 == 1 {
@@ -114,8 +114,8 @@ impl<const D: usize> Scan<'_, D> {
     fn meet_obstacles<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
         simd: S,
-        scratch: &mut Scratch<D>,
-        search: &mut Search,
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
     ) {
         for (index, group) in self.robot.groups.iter().enumerate() {
             let center: [V; D] = load(simd, &scratch.centers[index]);
@@ -143,8 +143,8 @@ impl<const D: usize> Scan<'_, D> {
         self,
         simd: S,
         lane: usize,
-        (group, balls, within): (&Group<D>, &[V; D], &InReach),
-        search: &mut Search,
+        (group, balls, within): (&BallGroup<D>, &[V; D], &InReach),
+        search: &mut PairSearch,
     ) {
         let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
         let distances = Distances {
@@ -167,8 +167,8 @@ impl<const D: usize> Scan<'_, D> {
     fn meet_itself<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
         simd: S,
-        scratch: &mut Scratch<D>,
-        search: &mut Search,
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
     ) {
         for crossing in &self.robot.crossings {
             if search.is_done() {
@@ -196,9 +196,9 @@ impl<const D: usize> Scan<'_, D> {
     fn cross<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
         simd: S,
-        (crossing, lane): (&Crossing, usize),
-        scratch: &mut Scratch<D>,
-        search: &mut Search,
+        (crossing, lane): (&GroupPair, usize),
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
     ) {
         let [first, second] = crossing.groups;
         let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
@@ -266,7 +266,10 @@ fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; 
 }
 
 #[inline(always)]
-fn put<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(from: &[V; D], to: &mut [Row<f32>; D]) {
+fn put<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
+    from: &[V; D],
+    to: &mut [LaneRow<f32>; D],
+) {
     for axis in 0..D {
         from[axis].store(&mut to[axis]);
     }

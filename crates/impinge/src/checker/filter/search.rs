@@ -1,13 +1,13 @@
 //! What a scan looks for, and what it found.
 
-use crate::checker::chain::{LANES, Row};
+use crate::checker::chain::{LANES, LaneRow};
 use crate::math::lanes::bits;
 use crate::math::simd::Simd;
 use crate::math::{Wide, max, min};
 
 /// What is asked of eight configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::checker) enum Mode {
+pub(in crate::checker) enum SearchMode {
     /// Whether there is any pair: what is decided needs no more.
     Any,
     /// All pairs.
@@ -18,12 +18,12 @@ pub(in crate::checker) enum Mode {
 
 /// A pair that in a configuration is not certainly farther apart than the limit.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::checker) struct Near {
+pub(in crate::checker) struct NearPair {
     pub(in crate::checker) lane: usize,
     pub(in crate::checker) pair: (u32, Other),
     /// It certainly is not farther apart.
     pub(in crate::checker) is_certain: bool,
-    /// How far apart it is at least, in the mode [`Mode::Nearest`].
+    /// How far apart it is at least, in the mode [`SearchMode::Nearest`].
     pub(in crate::checker) lower: f32,
 }
 
@@ -36,24 +36,24 @@ pub(in crate::checker) enum Other {
 
 /// A search in eight configurations.
 #[derive(Debug)]
-pub(in crate::checker) struct Search {
-    mode: Mode,
+pub(in crate::checker) struct PairSearch {
+    mode: SearchMode,
     /// The lanes that are looked at.
     pub(super) live: u8,
     /// The lanes in which numbers are too large for `f32`.
     pub(in crate::checker) blind: u8,
-    /// The lanes in which a pair is certainly not farther apart than the limit, in the mode [`Mode::Any`].
+    /// The lanes in which a pair is certainly not farther apart than the limit, in the mode [`SearchMode::Any`].
     pub(in crate::checker) hits: u8,
     /// Farther apart than this with all margins is farther than the limit; nearer than the other is not.
-    outer: Row<f32>,
-    inner: Row<f32>,
+    outer: LaneRow<f32>,
+    inner: LaneRow<f32>,
     /// The margin for what slides.
-    slack: Row<f32>,
+    slack: LaneRow<f32>,
     /// The highest number of `outer`, and how far anything slides.
     pub(super) farthest: f32,
     pub(super) slide: f32,
     /// In order of the lanes and pairs after [`Self::tidy`].
-    pub(in crate::checker) near: Vec<Near>,
+    pub(in crate::checker) near: Vec<NearPair>,
 }
 
 /// What is known of the distances of up to eight balls of a group from one thing.
@@ -69,8 +69,8 @@ pub(super) struct Distances<V> {
     pub(super) exact: u8,
 }
 
-impl Search {
-    pub(in crate::checker) fn new(mode: Mode) -> Self {
+impl PairSearch {
+    pub(in crate::checker) fn new(mode: SearchMode) -> Self {
         let zero = [0.0; LANES];
         Self {
             mode,
@@ -92,7 +92,7 @@ impl Search {
         &mut self,
         lanes: u8,
         limit: f32,
-        (slides, margin): (&Row<f32>, f32),
+        (slides, margin): (&LaneRow<f32>, f32),
     ) {
         (self.live, self.blind, self.hits) = (lanes, 0, 0);
         (self.farthest, self.slide) = (0.0, 0.0);
@@ -144,7 +144,7 @@ impl Search {
         let inner = distances.radius + V::all(simd, self.inner[lane] - distances.margin);
         let is_within = distances.squared.simd_lt(inner * inner) & inner.simd_gt(V::all(simd, 0.0));
         let certain = bits(is_within) & near & distances.exact;
-        if certain != 0 && self.mode == Mode::Any {
+        if certain != 0 && self.mode == SearchMode::Any {
             self.hits |= 1 << lane;
             self.live &= !(1 << lane);
             return;
@@ -155,7 +155,7 @@ impl Search {
             let ball = balls.trailing_zeros() as usize;
             balls &= balls - 1;
             let (is_certain, lower) = (certain >> ball & 1 == 1, lower[ball]);
-            self.near.push(Near { lane, pair: pair_of(ball), is_certain, lower });
+            self.near.push(NearPair { lane, pair: pair_of(ball), is_certain, lower });
         }
     }
 
@@ -167,9 +167,9 @@ impl Search {
         lane: usize,
         distances: &Distances<V>,
         near: u8,
-    ) -> Row<f32> {
+    ) -> LaneRow<f32> {
         let mut bounds = [0.0; LANES];
-        if self.mode != Mode::Nearest {
+        if self.mode != SearchMode::Nearest {
             return bounds;
         }
         let slack = self.slack[lane];
@@ -187,7 +187,7 @@ impl Search {
 
     /// Puts what was kept in order, each pair once, without what turned out to be farther than others.
     pub(in crate::checker) fn tidy(&mut self) {
-        if self.mode == Mode::Nearest {
+        if self.mode == SearchMode::Nearest {
             let outer = self.outer;
             self.near.retain(|near| near.lower <= outer[near.lane]);
         }
