@@ -79,8 +79,7 @@ impl<const D: usize> Scan<'_, D> {
         search: &mut PairSearch,
     ) {
         forward::<S, f32, V, D>(simd, &self.robot.nodes, &scratch.numbers, &mut scratch.rows);
-        search.blind = search.live & !usable_lanes::<S, V, D>(simd, &scratch.rows);
-        search.live &= !search.blind;
+        search.leave_out(usable_lanes::<S, V, D>(simd, &scratch.rows));
         scratch.placed.fill(0);
         for (index, group) in self.robot.groups.iter().enumerate() {
             let pose: LanePose<V, D> = scratch.rows[group.node].load(simd);
@@ -206,6 +205,9 @@ impl<const D: usize> Scan<'_, D> {
         let balls: [V; D] = self.balls(simd, (second, lane), scratch);
         let radii = V::load(simd, &other.radii);
         for ball in 0..one.count {
+            if !search.is_live(lane) {
+                return;
+            }
             let centers = &scratch.balls[first][lane];
             let center: [V; D] = by_axis(
                 #[inline(always)]

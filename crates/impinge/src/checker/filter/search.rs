@@ -39,7 +39,7 @@ pub(in crate::checker) enum Other {
 pub(in crate::checker) struct PairSearch {
     mode: SearchMode,
     /// The lanes that are looked at.
-    pub(super) live: u8,
+    live: u8,
     /// The lanes in which numbers are too large for `f32`.
     pub(in crate::checker) blind: u8,
     /// The lanes in which a pair is certainly not farther apart than the limit, in the mode [`SearchMode::Any`].
@@ -95,17 +95,33 @@ impl PairSearch {
         (slides, margin): (&LaneRow<f32>, f32),
     ) {
         (self.live, self.blind, self.hits) = (lanes, 0, 0);
-        (self.farthest, self.slide) = (0.0, 0.0);
+        self.slide = 0.0;
         // The limit itself was rounded. Without one the first is infinite, and the other NaN.
         let rounding = limit * (2.0 * f32::EPSILON);
         for (lane, &slide) in slides.iter().enumerate() {
             self.slack[lane] = slide * margin;
             self.outer[lane] = limit + rounding + self.slack[lane];
             self.inner[lane] = limit - rounding - self.slack[lane];
-            self.farthest = max(self.outer[lane], self.farthest);
             self.slide = max(slide, self.slide);
         }
         self.near.clear();
+    }
+
+    /// Leaves out the lanes in which numbers are too large; no limit of a lane that is left out counts.
+    pub(super) fn leave_out(&mut self, usable: u8) {
+        self.blind = self.live & !usable;
+        self.live &= usable;
+        self.farthest = 0.0;
+        for lane in 0..LANES {
+            self.outer[lane] = if self.is_live(lane) { self.outer[lane] } else { 0.0 };
+            self.farthest = max(self.outer[lane], self.farthest);
+        }
+    }
+
+    /// A lane is looked at.
+    #[inline(always)]
+    pub(super) const fn is_live(&self, lane: usize) -> bool {
+        self.live >> lane & 1 == 1
     }
 
     /// All lanes are decided.
