@@ -8,6 +8,7 @@
 ((1000,), 8.5)
 """
 
+from impinge._checker import NO_BODY, Checker, Frame, NearestPairs
 from impinge._native import (
     Shape,
     boxes,
@@ -78,6 +79,7 @@ from impinge._world_results import (
 __all__ = [
     "Ball",
     "Capsule",
+    "Checker",
     "ClosestPoints",
     "Compound",
     "Cone",
@@ -87,15 +89,18 @@ __all__ = [
     "Cylinder",
     "Ellipsoid",
     "Filter",
+    "Frame",
     "HalfSpace",
     "HeightField",
     "HitRows",
     "Impact",
     "ImpactRows",
     "Manifolds",
+    "NO_BODY",
     "NO_OBJECT",
     "NearRows",
     "Nearest",
+    "NearestPairs",
     "Picked",
     "Picture",
     "Polyline",

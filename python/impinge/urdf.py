@@ -6,7 +6,7 @@ Files are read by yourdfpy, meshes by trimesh. Lengths are as in the file (metre
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from impinge._native import Shape, distance, proximity
-from impinge._results import Proximity
+from impinge._checker import Checker, Frame
+from impinge._native import Shape
 from impinge._shapes import Ball, ConvexHull, Cuboid, Cylinder, TriMesh
 
 if TYPE_CHECKING:
@@ -46,20 +46,6 @@ class NearestBodies(NamedTuple):
     body2: NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class _Joint:
-    """A joint: which link it moves on which, and by which column of the configuration."""
-
-    parent: int
-    child: int
-    origin: Frames
-    axis: NDArray[np.float64]
-    kind: str
-    column: int
-    # The value is that of the column times the first, plus the second.
-    factor: tuple[float, float]
-
-
 class Robot:
     """Links, joints and the bodies of the links.
 
@@ -74,7 +60,9 @@ class Robot:
         self.joints = [joint.name for joint in moving]
         self.limits = np.array([_limits(joint) for joint in moving]).reshape(-1, 2)
         numbers = {name: number for number, name in enumerate(self.links)}
-        self._joints = _in_order([_joint(joint, numbers, self.joints) for joint in robot.joints])
+        self._frames = [Frame()] * len(self.links)
+        for joint in robot.joints:
+            self._frames[numbers[joint.child]] = _frame(joint, numbers, self.joints)
         self.bodies = [
             body
             for link in robot.links
@@ -92,23 +80,18 @@ class Robot:
 
     def frames(self, configurations: ArrayLike) -> Frames:
         """The poses of all links: (n, links, 4, 4) of configurations (n, joints), (links, 4, 4) of one."""
-        given = self._checked(configurations)
-        rows = np.atleast_2d(given)
-        frames = np.tile(np.eye(4), (len(rows), len(self.links), 1, 1))
-        for joint in self._joints:
-            value = None if joint.column < 0 else joint.factor[0] * rows[:, joint.column] + joint.factor[1]
-            moved = joint.origin if value is None else joint.origin @ _motion(joint, value)
-            frames[:, joint.child] = frames[:, joint.parent] @ moved
-        if given.ndim == 1:
-            frames = frames[0]
-        return frames
+        return self.checker([]).frames(self._checked(configurations))
 
     def poses(self, configurations: ArrayLike) -> Frames:
         """The poses of all bodies: (n, bodies, 4, 4), or (bodies, 4, 4)."""
-        frames = self.frames(configurations)
+        return self.checker([]).poses(self._checked(configurations))
+
+    def checker(self, pairs: ArrayLike | None = None) -> Checker:
+        """A checker of the robot with these pairs of bodies that must not touch, or with `pairs`; without obstacles."""
+        shapes, on = [body.shape for body in self.bodies], [body.link for body in self.bodies]
         local = np.array([body.pose for body in self.bodies]).reshape(-1, 4, 4)
-        poses: Frames = frames[..., [body.link for body in self.bodies], :, :] @ local
-        return poses
+        wanted = self.pairs if pairs is None else pairs
+        return Checker(self._frames, len(self.joints), shapes, on, local, wanted)
 
     def allow(self, link1: str, link2: str) -> None:
         """Lets two links touch: their bodies are no longer among `pairs`."""
@@ -120,56 +103,38 @@ class Robot:
 
     def allow_touching_at(self, configurations: ArrayLike) -> None:
         """Lets those bodies touch that do in one of these configurations, as setup assistants do."""
-        poses = self.poses(np.atleast_2d(self._checked(configurations)))
-        touching = [self._touches(pair, poses).any() for pair in self.pairs]
+        rows = np.atleast_2d(self._checked(configurations))
+        touching = [not self.checker([pair]).is_free(rows).all() for pair in self.pairs]
         self.pairs = self.pairs[~np.array(touching, dtype=bool)]
 
     def self_collides(self, configurations: ArrayLike) -> NDArray[np.bool_]:
         """Whether two bodies touch, for each configuration (n, joints)."""
-        poses = self.poses(np.atleast_2d(self._checked(configurations)))
-        found = np.zeros(len(poses), dtype=bool)
-        for pair in self.pairs:
-            free = ~found
-            found[free] = self._touches(pair, poses[free])
-        return found
+        return ~self.checker().is_free(np.atleast_2d(self._checked(configurations)))
 
     def self_distance(self, configurations: ArrayLike) -> NearestBodies:
-        """The nearest two bodies for each configuration (n, joints): zero if they touch."""
-        poses = self.poses(np.atleast_2d(self._checked(configurations)))
-
-        def between(pair: NDArray[np.int64]) -> Any:
-            one, two = (int(body) for body in pair)
-            return distance(self.bodies[one].shape, poses[:, one], self.bodies[two].shape, poses[:, two])
-
-        return _least(self.pairs, len(poses), between)
+        """The nearest two bodies for each configuration (n, joints): zero if they touch; infinite and -1 without pairs."""
+        return self._nearest(self.checker(), configurations, 0)
 
     def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NDArray[np.bool_]:
         """Whether a body touches one of the shapes that stand at these poses (m, 4, 4)."""
-        poses = self.poses(np.atleast_2d(self._checked(configurations)))
-        found = np.zeros(len(poses), dtype=bool)
-        for body, obstacle in np.ndindex(len(self.bodies), len(shapes)):
-            free = ~found
-            there = proximity(
-                self.bodies[body].shape, poses[free, body], shapes[obstacle], np.asarray(obstacles)[obstacle]
-            )
-            found[free] = there == Proximity.INTERSECTING
-        return found
+        return ~self._among(shapes, obstacles).is_free(np.atleast_2d(self._checked(configurations)))
 
     def distance(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NearestBodies:
         """The body and the shape that are nearest for each configuration: zero if they touch."""
-        poses = self.poses(np.atleast_2d(self._checked(configurations)))
+        return self._nearest(self._among(shapes, obstacles), configurations, len(self.bodies))
 
-        def between(pair: NDArray[np.int64]) -> Any:
-            body, obstacle = (int(number) for number in pair)
-            return distance(self.bodies[body].shape, poses[:, body], shapes[obstacle], np.asarray(obstacles)[obstacle])
+    def _among(self, shapes: Sequence[Shape], obstacles: Any) -> Checker:
+        """A checker with obstacles, and without pairs of bodies."""
+        checker = self.checker([])
+        checker.set_obstacles(shapes, obstacles)
+        return checker
 
-        pairs = np.array(list(np.ndindex(len(self.bodies), len(shapes))), dtype=np.int64).reshape(-1, 2)
-        return _least(pairs, len(poses), between)
-
-    def _touches(self, pair: NDArray[np.int64], poses: Frames) -> NDArray[np.bool_]:
-        one, two = (int(body) for body in pair)
-        found = proximity(self.bodies[one].shape, poses[:, one], self.bodies[two].shape, poses[:, two])
-        return np.asarray(found == Proximity.INTERSECTING)
+    def _nearest(self, checker: Checker, configurations: ArrayLike, first: int) -> NearestBodies:
+        """The second numbers begin with the first."""
+        distance, pair = checker.nearest(np.atleast_2d(self._checked(configurations)))
+        body1, body2 = pair.astype(np.int64).T
+        is_none = np.isinf(distance)
+        return NearestBodies(distance, np.where(is_none, -1, body1), np.where(is_none, -1, body2 - first))
 
     def _checked(self, configurations: ArrayLike) -> NDArray[np.float64]:
         array = np.asarray(configurations, dtype=np.float64)
@@ -184,7 +149,7 @@ class Robot:
 
     def _separate_pairs(self) -> NDArray[np.int64]:
         """The pairs of bodies of links that are neither one nor joined."""
-        joined = {frozenset((joint.parent, joint.child)) for joint in self._joints}
+        joined = {frozenset((frame.parent, child)) for child, frame in enumerate(self._frames)}
 
         def is_separate(one: Body, two: Body) -> bool:
             return one.link != two.link and frozenset((one.link, two.link)) not in joined
@@ -198,17 +163,6 @@ class Robot:
         return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
 
-def _least(pairs: NDArray[np.int64], count: int, between: Callable[[NDArray[np.int64]], Any]) -> NearestBodies:
-    """The pair with the least distance of each of so many configurations; -1 without pairs."""
-    best = NearestBodies(np.full(count, np.inf), np.full(count, -1), np.full(count, -1))
-    for pair in pairs:
-        apart = np.asarray(between(pair))
-        nearer = apart < best.distance
-        best.distance[nearer] = apart[nearer]
-        best.body1[nearer], best.body2[nearer] = pair
-    return best
-
-
 def _limits(joint: Any) -> tuple[float, float]:
     if joint.type == "continuous" or joint.limit is None:
         return -math.inf, math.inf
@@ -216,51 +170,24 @@ def _limits(joint: Any) -> tuple[float, float]:
     return (-math.inf if lower is None else lower), (math.inf if upper is None else upper)
 
 
-def _joint(joint: Any, links: dict[str, int], columns: list[str]) -> _Joint:
+def _frame(joint: Any, links: dict[str, int], columns: list[str]) -> Frame:
+    """The frame of the child of a joint."""
     if joint.type not in ("fixed", "revolute", "continuous", "prismatic"):
         raise ValueError(
             f"joint {joint.name} is {joint.type}: fixed, revolute, continuous and prismatic joints are known"
         )
-    origin = np.eye(4) if joint.origin is None else np.asarray(joint.origin, dtype=np.float64)
+    parent, origin = links[joint.parent], joint.origin
+    if joint.type == "fixed":
+        return Frame(parent, origin)
     axis = np.array([1.0, 0, 0]) if joint.axis is None else np.asarray(joint.axis, dtype=np.float64)
-    length = np.linalg.norm(axis)
-    if joint.type != "fixed" and not (np.isfinite(length) and length > 0):
+    if not (np.isfinite(axis).all() and axis.any()):
         raise ValueError(f"joint {joint.name} has the axis {axis.tolist()}")
-    factor, driver = (1.0, 0.0), joint.name
-    if joint.mimic is not None:
-        driver = joint.mimic.joint
-        multiplier, offset = joint.mimic.multiplier, joint.mimic.offset
-        factor = (1.0 if multiplier is None else multiplier, 0.0 if offset is None else offset)
-    column = -1 if joint.type == "fixed" else columns.index(driver)
-    unit = axis / length if length > 0 else axis
-    return _Joint(links[joint.parent], links[joint.child], origin, unit, joint.type, column, factor)
-
-
-def _in_order(joints: list[_Joint]) -> list[_Joint]:
-    """Parents before children."""
-    children = {joint.child for joint in joints}
-    known = {joint.parent for joint in joints} - children
-    ordered: list[_Joint] = []
-    while len(ordered) < len(joints):
-        ready = [joint for joint in joints if joint.parent in known and joint.child not in known]
-        if not ready:
-            raise ValueError("the joints have a loop")
-        ordered += ready
-        known |= {joint.child for joint in ready}
-    return ordered
-
-
-def _motion(joint: _Joint, value: NDArray[np.float64]) -> Frames:
-    """The motions (n, 4, 4) of a joint by these values."""
-    motion = np.tile(np.eye(4), (len(value), 1, 1))
-    if joint.kind == "prismatic":
-        motion[:, :3, 3] = value[:, None] * joint.axis
-        return motion
-    x, y, z = joint.axis
-    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    sine, cosine = np.sin(value)[:, None, None], np.cos(value)[:, None, None]
-    motion[:, :3, :3] = np.eye(3) + sine * cross + (1 - cosine) * (cross @ cross)
-    return motion
+    kind: Literal["revolute", "prismatic"] = "prismatic" if joint.type == "prismatic" else "revolute"
+    if joint.mimic is None:
+        return Frame(parent, origin, kind, axis, columns.index(joint.name))
+    multiplier = 1.0 if joint.mimic.multiplier is None else joint.mimic.multiplier
+    offset = 0.0 if joint.mimic.offset is None else joint.mimic.offset
+    return Frame(parent, origin, kind, axis, columns.index(joint.mimic.joint), multiplier, offset)
 
 
 def _bodies(model: yourdfpy.URDF, link: int, name: str, collision: Any, meshes: str) -> list[Body]:

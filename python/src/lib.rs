@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 mod answer;
+mod checker;
 mod error;
 mod functions;
 mod kept_world;
@@ -37,6 +38,7 @@ use pyo3::prelude::*;
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<shapes::Shape>()?;
     module.add_class::<world::World>()?;
+    module.add_class::<checker::NativeChecker>()?;
     functions::add_to(module)?;
     tiles::add_to(module)?;
     module.add_function(wrap_pyfunction!(pictures::picture_of, module)?)?;

@@ -32,6 +32,7 @@
 //! * [`world::CollisionWorld`] is all that most programs use. Its parts work alone too:
 //!   [`broad_phase`] on boxes, [`narrow_phase`] on one pair, [`query`] on two placed shapes.
 //! * [`batch`] asks one question about very many placed shapes in one call, with the answers in arrays.
+//! * [`checker`] answers for many configurations of a robot at once whether they are free.
 //! * [`shape`] has the solids, and the meshes, height fields and compounds made of them. Positions are
 //!   isometries; `dim2::math` and `dim3::math` have them, vectors and points under one name in both, and
 //!   `na` is all of nalgebra, whose types they are.
@@ -65,6 +66,7 @@ pub mod batch;
 pub mod bounding_volume;
 pub mod broad_phase;
 mod bvh;
+pub mod checker;
 pub(crate) mod chunks;
 mod collide;
 pub(crate) mod convex;

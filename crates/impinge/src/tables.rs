@@ -10,6 +10,7 @@ use core::fmt;
 use crate::batch::{BatchTables, SolidGroup, update_group2, update_group3};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
+use crate::checker::CheckerTables;
 use crate::collide::far::{Apart, are_beyond};
 use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
 use crate::collide::packet::{GapVisitor, TiledParts};
@@ -100,6 +101,7 @@ pub struct Tables<N: Space<D>, const D: usize> {
     /// The same of pairs of a batch.
     pub(crate) update_group: UpdateGroupFn<N, D>,
     pub(crate) batch: BatchTables<N, D>,
+    pub(crate) checker: CheckerTables<N, D>,
     /// Two directions across a normal; the second is zero in 2D.
     pub(crate) tangents: fn(&Vector<N, D>) -> [Vector<N, D>; 2],
     pub(crate) update_contacts: fn(&mut ContactState<N, D>, &Posed<'_, N, D>, &ManifoldRequest<N>),
@@ -370,6 +372,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             update_lanes: particular.update_lanes,
             update_group: particular.update_group,
             batch: BatchTables::new(),
+            checker: CheckerTables::new(),
             tangents: particular.tangents,
             update_contacts: ContactState::update,
             public_manifold: ContactState::manifolds,

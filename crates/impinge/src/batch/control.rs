@@ -64,7 +64,7 @@ impl fmt::Debug for Control<'_> {
 }
 
 /// How far a batch is.
-pub(super) struct Progress<'a> {
+pub(crate) struct Progress<'a> {
     report: Option<Report<'a>>,
     /// What the callback was told last. It is locked while the callback runs.
     done: Mutex<usize>,
@@ -72,13 +72,13 @@ pub(super) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    pub(super) const fn new(control: &Control<'a>) -> Self {
+    pub(crate) const fn new(control: &Control<'a>) -> Self {
         let is_cancelled = AtomicBool::new(false);
         Self { report: control.report, done: Mutex::new(0), is_cancelled }
     }
 
     /// Does a whole batch, chunk by chunk.
-    pub(super) fn run<C: Cut>(
+    pub(crate) fn run<C: Cut>(
         &self,
         count: usize,
         columns: C,
@@ -88,7 +88,7 @@ impl<'a> Progress<'a> {
     }
 
     /// Does a whole batch whose chunks yield lists, and hands these on in order.
-    pub(super) fn collect<T: Default + Send>(
+    pub(crate) fn collect<T: Default + Send>(
         &self,
         count: usize,
         work: impl Fn(Range<usize>, &mut T) + Sync,

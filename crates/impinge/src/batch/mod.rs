@@ -57,6 +57,7 @@ pub use columns::{
     WitnessColumns,
 };
 pub use control::Control;
+pub(crate) use control::Progress;
 pub use error::{BatchError, MatrixError};
 pub(crate) use manifolds::{SolidGroup, update_group2, update_group3};
 pub use matrices::Matrices;

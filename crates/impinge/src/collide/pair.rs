@@ -53,6 +53,23 @@ pub(crate) trait Placing<'a, N: Real, const D: usize> {
     fn placed(&self) -> Placed<'a, N, D>;
 }
 
+impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
+    #[inline]
+    fn shape(&self) -> Geometry<'a, N, D> {
+        self.shape
+    }
+
+    #[inline]
+    fn translation(&self) -> Vector<N, D> {
+        self.pose.translation
+    }
+
+    #[inline]
+    fn placed(&self) -> Self {
+        *self
+    }
+}
+
 /// The pair in an order that does not depend on the order of the arguments, and whether that order
 /// is the opposite of theirs.
 ///

@@ -93,6 +93,24 @@ pub mod batch {
     pub type ManifoldRows<N> = crate::batch::ManifoldRows<N, 2>;
 }
 
+/// Which of many configurations of a robot are free.
+pub mod checker {
+    pub use crate::checker::{CheckerError, NO_PAIR, NearestColumns};
+
+    /// Bodies on moving frames, and obstacles.
+    pub type Checker<N> = crate::checker::Checker<N, 2>;
+    /// A tree of frames.
+    pub type FrameTree<N> = crate::checker::FrameTree<N, 2>;
+    /// A frame on its parent.
+    pub type Frame<N> = crate::checker::Frame<N, 2>;
+    /// How a frame moves.
+    pub type Joint<N> = crate::checker::Joint<N, 2>;
+    /// A shape fixed to a frame.
+    pub type Body<N> = crate::checker::Body<N, 2>;
+    /// A shape that stands in the world.
+    pub type Obstacle<N> = crate::checker::Obstacle<N, 2>;
+}
+
 /// Which objects may touch: pairs whose bounding volumes overlap.
 pub mod broad_phase {
     pub use super::filter::BroadPhasePairFilter;

@@ -25,6 +25,7 @@ mod pose;
 mod real;
 pub(crate) mod simd;
 mod space;
+pub(crate) mod trigonometry;
 mod vector;
 
 pub use nalgebra as na;

@@ -30,6 +30,10 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled + Eight {
     const MIN_POSITIVE: Self;
     /// Positive infinity.
     const INFINITY: Self;
+    /// π/2 as a sum, the largest first: integers up to 2¹⁶ times the first two are exact (W. J. Cody and W. Waite,
+    /// "Software Manual for the Elementary Functions", 1980).
+    #[doc(hidden)]
+    const QUARTER_TURN: [Self; 3];
 
     /// The scalar nearest to a literal.
     fn lit(value: f64) -> Self;
@@ -63,6 +67,7 @@ impl Real for f32 {
     const MAX: Self = Self::MAX;
     const MIN_POSITIVE: Self = Self::MIN_POSITIVE;
     const INFINITY: Self = Self::INFINITY;
+    const QUARTER_TURN: [Self; 3] = [1.570_312_5, 4.825_592e-4, 1.267_590_8e-6];
 
     #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, as documented")]
     #[inline]
@@ -117,6 +122,8 @@ impl Real for f64 {
     const MAX: Self = Self::MAX;
     const MIN_POSITIVE: Self = Self::MIN_POSITIVE;
     const INFINITY: Self = Self::INFINITY;
+    const QUARTER_TURN: [Self; 3] =
+        [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
     #[inline]
     fn lit(value: f64) -> Self {

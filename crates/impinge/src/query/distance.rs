@@ -1,6 +1,6 @@
 //! How far apart two solids are.
 
-use crate::collide::{Placed, Placing};
+use crate::collide::{AtIsometry, Placed, Placing};
 use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
 
@@ -28,8 +28,16 @@ pub fn distance<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m2: &Isometry<N, R, D>,
     g2: &dyn Shape<N, D>,
 ) -> N {
-    let (placed1, placed2) = (Placed::new(m1, g1), Placed::new(m2, g2));
-    let found = (N::tables().distance_in_world)(&placed1, &placed2, N::INFINITY);
+    distance_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2))
+}
+
+/// [`distance`] of shapes that are placed in any way.
+#[inline]
+pub(crate) fn distance_between<'a, N: Space<D>, const D: usize>(
+    one: &impl Placing<'a, N, D>,
+    other: &impl Placing<'a, N, D>,
+) -> N {
+    let found = (N::tables().distance_in_world)(&one.placed(), &other.placed(), N::INFINITY);
     found.map_or(N::INFINITY, |distance| max(distance, N::ZERO))
 }
 

@@ -19,7 +19,7 @@ pub use closest_points::{ClosestPoints, closest_points};
 pub(crate) use contact::contact_between;
 pub use contact::{Contact, contact};
 pub use distance::distance;
-pub(crate) use distance::distance_within;
+pub(crate) use distance::{distance_between, distance_within};
 pub use impact::{
     ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, impact,
     nonlinear_time_of_impact, time_of_impact,

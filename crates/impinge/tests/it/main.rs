@@ -9,6 +9,7 @@ mod api;
 mod batch;
 mod broad_phase;
 mod cases;
+mod checker;
 mod composites;
 mod contacts;
 mod queries;

@@ -18,7 +18,7 @@ const FLOORS: [&[&str]; 13] = [
     &["query"],
     &["broad_phase", "narrow_phase"],
     &["batch"],
-    &["world"],
+    &["checker", "world"],
     &["debug_render"],
     &["dim2", "dim3"],
 ];

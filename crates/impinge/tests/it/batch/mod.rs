@@ -8,6 +8,6 @@ mod points;
 mod poses;
 mod rays;
 mod refused;
-mod scene;
+pub(crate) mod scene;
 mod tiles;
 mod within;

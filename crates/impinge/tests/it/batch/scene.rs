@@ -92,7 +92,7 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> Scene<N, R, 
 }
 
 /// Runs on a pool of so many threads; they share the chunks of a batch if the library is parallel.
-pub(super) fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.expect("threads").install(run)
 }
@@ -115,6 +115,6 @@ pub(super) fn assert_point<N: Real, const D: usize>(
 
 /// The same number to the bit.
 #[track_caller]
-pub(super) fn assert_number<N: Real>(found: N, expected: N, what: &str) {
+pub(crate) fn assert_number<N: Real>(found: N, expected: N, what: &str) {
     assert_eq!(found.bits(), expected.bits(), "{what}: {found} and {expected}");
 }

@@ -1,0 +1,318 @@
+//! The checker.
+
+use super::filter::{Other, RobotFilter, Surroundings};
+use super::frames::OnNode;
+use super::rows::RowsOf;
+use super::{Body, CheckerError, FrameTree, NearestColumns, Obstacle};
+use crate::batch::{BatchError, Control};
+use crate::math::{Pose, Real, Space};
+
+/// The pair of a configuration that has none.
+pub const NO_PAIR: [u32; 2] = [u32::MAX; 2];
+
+/// Bodies on moving frames, pairs of them that must not touch, and obstacles.
+///
+/// Bodies and obstacles have numbers in common: those of the obstacles begin with the number of bodies. Pairs come in
+/// the order of their numbers, the lower of the two first: those of body 0 with other bodies, then with obstacles, then
+/// those of body 1.
+///
+/// A configuration is free if no pair touches, with a clearance if all are farther apart than that. If a frame has a pose
+/// that is not finite, the configuration is not free, has no pair, and the distance NaN.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control};
+/// use impinge::dim2::checker::{Body, Checker, Frame, FrameTree, Joint, NearestColumns, Obstacle};
+/// use impinge::dim2::math::{Pose, Vector};
+/// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
+///
+/// // An arm of two links of length 1, a ball at the end of each, and a wall above x = 2.5.
+/// let at = |x: f64, y: f64| Pose::from_translation(Vector::new(x, y));
+/// let frames = [
+///     Frame { parent: None, origin: Pose::identity(), joint: Joint::revolute(0) },
+///     Frame { parent: Some(0), origin: at(1.0, 0.0), joint: Joint::revolute(1) },
+/// ];
+/// let ball = ShapeHandle::new(Ball::new(0.25));
+/// let bodies = [0, 1].map(|frame| Body { frame, shape: ball.clone(), pose: at(1.0, 0.0) });
+/// let mut arm = Checker::try_new(FrameTree::try_new(&frames, 2)?, bodies.into(), &[[0, 1]])?;
+/// let wall = ShapeHandle::new(Cuboid::new(Vector::new(0.5, 4.0)));
+/// arm.try_set_obstacles(vec![Obstacle { shape: wall, pose: at(3.0, 0.0) }], &[])?;
+///
+/// // Stretched along x, along y, and folded back onto itself.
+/// let half = std::f64::consts::PI;
+/// let configurations = [0.0, 0.0, half / 2.0, 0.0, half / 2.0, half];
+/// let mut free = [false; 3];
+/// arm.are_free(&configurations, 0.0, &Control::new(), &mut free)?;
+/// assert_eq!(free, [true, true, true]);
+/// arm.are_free(&configurations, 0.3, &Control::new(), &mut free)?;
+/// assert_eq!(free, [false, true, true], "the wall is 0.25 away");
+///
+/// let (mut distance, mut pair) = ([0.0; 3], [[0; 2]; 3]);
+/// let out = NearestColumns { distance: &mut distance, pair: &mut pair };
+/// arm.nearest(&configurations, f64::INFINITY, &Control::new(), out)?;
+/// assert_eq!((distance[0], pair[0]), (0.25, [1, 2]), "the second ball and the wall");
+/// assert_eq!(pair[1], [0, 1], "the two balls");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Checker<N: Real, const D: usize> {
+    pub(super) tree: FrameTree<N, D>,
+    pub(super) bodies: Vec<Body<N, D>>,
+    /// Where each body is on the node that moves it.
+    pub(super) places: Vec<OnNode<N, D>>,
+    /// Ascending, the lower number first.
+    pairs: Vec<[u32; 2]>,
+    pub(super) obstacles: Vec<Obstacle<N, D>>,
+    pub(super) robot: RobotFilter<D>,
+    pub(super) surroundings: Surroundings<D>,
+    /// Bodies and obstacles that may touch, ascending.
+    ignored: Vec<[u32; 2]>,
+}
+
+impl<N: Space<D>, const D: usize> Checker<N, D> {
+    /// Bodies on the frames of a tree, and the pairs of bodies that must not touch, in any order; without obstacles.
+    ///
+    /// Cost: O(n log n) for n bodies and pairs.
+    ///
+    /// # Errors
+    /// [`CheckerError::BodyFrame`], [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`],
+    /// for the first that is wrong.
+    pub fn try_new(
+        tree: FrameTree<N, D>,
+        bodies: Vec<Body<N, D>>,
+        pairs: &[[u32; 2]],
+    ) -> Result<Self, CheckerError> {
+        check_bodies(&bodies, tree.len())?;
+        let is_pair =
+            |&[one, other]: &[u32; 2]| one != other && (one.max(other) as usize) < bodies.len();
+        check_pairs("pairs", pairs, is_pair)?;
+        let mut pairs: Vec<_> = pairs.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        let places = bodies.iter().map(|body| tree.frames[body.frame].then(&body.pose)).collect();
+        let tables = &N::tables().checker;
+        let robot = (tables.robot)(&tree, &bodies, &pairs);
+        let surroundings = (tables.surroundings)(&tree, &robot, &[], &[]);
+        Ok(Self {
+            tree,
+            bodies,
+            places,
+            pairs,
+            obstacles: Vec::new(),
+            robot,
+            surroundings,
+            ignored: Vec::new(),
+        })
+    }
+
+    /// Replaces all obstacles; `ignored` has pairs `[body, obstacle]`, each from zero, that may touch.
+    ///
+    /// Cost: the distance of each obstacle from a point for each link.
+    ///
+    /// # Errors
+    /// [`CheckerError::NotFinite`], [`CheckerError::Pair`] or [`CheckerError::TooMany`], for the first that is wrong;
+    /// then nothing is replaced.
+    pub fn try_set_obstacles(
+        &mut self,
+        obstacles: Vec<Obstacle<N, D>>,
+        ignored: &[[u32; 2]],
+    ) -> Result<(), CheckerError> {
+        let given = self.bodies.len() + obstacles.len();
+        if u32::try_from(given).is_err() {
+            return Err(CheckerError::TooMany { given });
+        }
+        if let Some(index) = obstacles.iter().position(|obstacle| !obstacle.pose.is_finite()) {
+            return Err(CheckerError::NotFinite { argument: "obstacles", index });
+        }
+        let is_pair = |&[body, obstacle]: &[u32; 2]| {
+            (body as usize) < self.bodies.len() && (obstacle as usize) < obstacles.len()
+        };
+        check_pairs("ignored", ignored, is_pair)?;
+        let tables = &N::tables().checker;
+        self.surroundings = (tables.surroundings)(&self.tree, &self.robot, &obstacles, ignored);
+        self.obstacles = obstacles;
+        self.ignored = ignored.to_vec();
+        self.ignored.sort_unstable();
+        Ok(())
+    }
+
+    /// The frames.
+    #[must_use]
+    pub const fn frames(&self) -> &FrameTree<N, D> {
+        &self.tree
+    }
+
+    /// The bodies.
+    #[must_use]
+    pub fn bodies(&self) -> &[Body<N, D>] {
+        &self.bodies
+    }
+
+    /// The pairs of bodies that must not touch, ascending, the lower number first.
+    #[must_use]
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        &self.pairs
+    }
+
+    /// The obstacles.
+    #[must_use]
+    pub fn obstacles(&self) -> &[Obstacle<N, D>] {
+        &self.obstacles
+    }
+
+    /// The poses of all bodies for each configuration, row by row, as [`FrameTree::place`] gives those of frames.
+    ///
+    /// # Errors
+    /// As [`FrameTree::place`].
+    pub fn place_bodies(
+        &self,
+        configurations: &[N],
+        control: &Control<'_>,
+        poses: &mut [Pose<N, D>],
+    ) -> Result<(), BatchError> {
+        let width = self.bodies.len();
+        let count = self.tree.count_of(configurations, poses.len().checked_div(width))?;
+        let needed = count * width;
+        if poses.len() != needed {
+            return Err(BatchError::Length { argument: "poses", given: poses.len(), needed });
+        }
+        (N::tables().checker.place)(
+            (&self.tree, &self.places),
+            configurations,
+            control,
+            RowsOf::new(poses, width),
+        )
+    }
+
+    /// Whether each configuration is free: all pairs are farther apart than `clearance`, or with zero do not touch.
+    ///
+    /// `configurations` has a number for each column of the tree, row by row. A `clearance` that is negative or NaN
+    /// counts as zero.
+    ///
+    /// Cost: some microseconds for eight configurations of a robot of some fifty balls among ten obstacles.
+    ///
+    /// # Errors
+    /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` has not as many rows as `out` has slots,
+    /// [`BatchError::Cancelled`].
+    pub fn are_free(
+        &self,
+        configurations: &[N],
+        clearance: N,
+        control: &Control<'_>,
+        out: &mut [bool],
+    ) -> Result<(), BatchError> {
+        self.check("out", configurations, out.len())?;
+        (N::tables().checker.are_free)(self, (configurations, clearance), control, out)
+    }
+
+    /// The first pair of each configuration that is not farther apart than `clearance`; [`NO_PAIR`] if it is free.
+    ///
+    /// # Errors
+    /// As [`Self::are_free`].
+    pub fn first_pairs(
+        &self,
+        configurations: &[N],
+        clearance: N,
+        control: &Control<'_>,
+        out: &mut [[u32; 2]],
+    ) -> Result<(), BatchError> {
+        self.check("out", configurations, out.len())?;
+        (N::tables().checker.first_pairs)(self, (configurations, clearance), control, out)
+    }
+
+    /// The distance of the nearest pair of each configuration up to `limit`, and that pair: of several the first.
+    ///
+    /// A `limit` that is negative or NaN counts as zero. It never changes a distance, only whether there is one; a low one
+    /// saves time.
+    ///
+    /// # Errors
+    /// [`BatchError::PartialRow`] or [`BatchError::Length`] if `configurations` has not as many rows as each column that is
+    /// not empty has slots, [`BatchError::Cancelled`].
+    pub fn nearest(
+        &self,
+        configurations: &[N],
+        limit: N,
+        control: &Control<'_>,
+        out: NearestColumns<'_, N>,
+    ) -> Result<(), BatchError> {
+        let count = out.distance.len().max(out.pair.len());
+        out.check(count)?;
+        self.check("distance", configurations, count)?;
+        (N::tables().checker.nearest)(self, (configurations, limit, count), control, out)
+    }
+
+    /// There are as many configurations as slots.
+    fn check(
+        &self,
+        argument: &'static str,
+        configurations: &[N],
+        given: usize,
+    ) -> Result<(), BatchError> {
+        let needed = self.tree.count_of(configurations, Some(given))?;
+        if given == needed { Ok(()) } else { Err(BatchError::Length { argument, given, needed }) }
+    }
+
+    /// A pair by the numbers that bodies and obstacles have in common.
+    pub(super) fn numbers_of(&self, (body, other): (u32, Other)) -> [u32; 2] {
+        let bodies = u32::try_from(self.bodies.len()).expect("32 bits can number the bodies");
+        match other {
+            Other::Body(other) => [body, other],
+            Other::Obstacle(obstacle) => [body, bodies + obstacle],
+        }
+    }
+
+    /// All pairs in their order.
+    pub(super) fn pairs_in_order(&self) -> impl Iterator<Item = (u32, Other)> + '_ {
+        let pairs = self.pairs.iter().map(|&[one, other]| (one, Other::Body(other)));
+        let bodies = 0..u32::try_from(self.bodies.len()).expect("32 bits can number the bodies");
+        let obstacles =
+            0..u32::try_from(self.obstacles.len()).expect("32 bits can number the obstacles");
+        let beside =
+            bodies.flat_map(move |body| obstacles.clone().map(move |obstacle| [body, obstacle]));
+        let beside = beside.filter(|pair| self.ignored.binary_search(pair).is_err());
+        pairs.chain(beside.map(|[body, obstacle]| (body, Other::Obstacle(obstacle))))
+    }
+}
+
+/// See [`Checker::try_new`].
+pub(super) fn robot<N: Space<D>, const D: usize>(
+    tree: &FrameTree<N, D>,
+    bodies: &[Body<N, D>],
+    pairs: &[[u32; 2]],
+) -> RobotFilter<D> {
+    let placed = bodies.iter().map(|body| {
+        let place = tree.frames[body.frame].then(&body.pose);
+        (&*body.shape, place)
+    });
+    RobotFilter::new(tree, placed, pairs)
+}
+
+/// Bodies are on frames and have poses.
+fn check_bodies<N: Real, const D: usize>(
+    bodies: &[Body<N, D>],
+    frames: usize,
+) -> Result<(), CheckerError> {
+    let given = bodies.len();
+    if u32::try_from(given).is_err() {
+        return Err(CheckerError::TooMany { given });
+    }
+    for (index, body) in bodies.iter().enumerate() {
+        if body.frame >= frames {
+            return Err(CheckerError::BodyFrame { body: index, frame: body.frame, frames });
+        }
+        if !body.pose.is_finite() {
+            return Err(CheckerError::NotFinite { argument: "bodies", index });
+        }
+    }
+    Ok(())
+}
+
+fn check_pairs(
+    argument: &'static str,
+    pairs: &[[u32; 2]],
+    is_pair: impl Fn(&[u32; 2]) -> bool,
+) -> Result<(), CheckerError> {
+    match pairs.iter().position(|pair| !is_pair(pair)) {
+        None => Ok(()),
+        Some(index) => Err(CheckerError::Pair { argument, index, pair: pairs[index] }),
+    }
+}

@@ -1,0 +1,54 @@
+//! Where the distances go.
+
+use crate::batch::BatchError;
+use crate::chunks::Cut;
+use crate::math::Real;
+
+/// Slots for the answers of [`Checker::nearest`](super::Checker::nearest).
+///
+/// ```
+/// use impinge::checker::NearestColumns;
+///
+/// let mut distance = [0.0_f64; 100];
+/// let wanted = NearestColumns { distance: &mut distance, ..Default::default() };
+/// assert!(wanted.pair.is_empty(), "not wanted");
+/// ```
+#[derive(Debug, Default)]
+pub struct NearestColumns<'a, N: Real> {
+    /// How far apart the nearest pair is: zero if it touches, infinite without a pair within the limit, NaN for a
+    /// configuration that is not finite.
+    pub distance: &'a mut [N],
+    /// That pair, numbered as by [`Checker::first_pairs`](super::Checker::first_pairs).
+    pub pair: &'a mut [[u32; 2]],
+}
+
+impl<N: Real> NearestColumns<'_, N> {
+    /// Each column has so many slots, or none.
+    pub(super) const fn check(&self, needed: usize) -> Result<(), BatchError> {
+        let (distances, pairs) = (self.distance.len(), self.pair.len());
+        if distances != 0 && distances != needed {
+            return Err(BatchError::Length { argument: "distance", given: distances, needed });
+        }
+        if pairs != 0 && pairs != needed {
+            return Err(BatchError::Length { argument: "pair", given: pairs, needed });
+        }
+        Ok(())
+    }
+
+    pub(super) fn put(&mut self, slot: usize, distance: N, pair: [u32; 2]) {
+        if let Some(place) = self.distance.get_mut(slot) {
+            *place = distance;
+        }
+        if let Some(place) = self.pair.get_mut(slot) {
+            *place = pair;
+        }
+    }
+}
+
+impl<N: Real> Cut for NearestColumns<'_, N> {
+    fn cut(self, at: usize) -> (Self, Self) {
+        let (distance, pair) = (self.distance.cut(at), self.pair.cut(at));
+        let front = Self { distance: distance.0, pair: pair.0 };
+        (front, Self { distance: distance.1, pair: pair.1 })
+    }
+}

@@ -1,0 +1,100 @@
+//! Why there is no checker.
+
+use core::fmt;
+
+/// Why frames, bodies, pairs or obstacles were refused.
+///
+/// ```
+/// use impinge::dim2::checker::{CheckerError, Frame, FrameTree, Joint};
+/// use impinge::dim2::math::Pose;
+///
+/// let lost: Frame<f64> = Frame { parent: Some(4), origin: Pose::identity(), joint: Joint::fixed() };
+/// let refused = FrameTree::try_new(&[lost], 0).expect_err("there is no frame 4");
+/// assert_eq!(refused, CheckerError::Parent { frame: 0, parent: 4, frames: 1 });
+/// assert_eq!(refused.to_string(), "frame 0 has the parent 4 of 1 frames");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CheckerError {
+    /// A frame moves on one that there is not.
+    Parent {
+        /// The frame.
+        frame: usize,
+        /// What it moves on.
+        parent: usize,
+        /// How many frames there are.
+        frames: usize,
+    },
+    /// A frame moves on itself by way of its parents.
+    Loop {
+        /// The frame.
+        frame: usize,
+    },
+    /// A joint is driven by a column that there is not.
+    Column {
+        /// The frame of the joint.
+        frame: usize,
+        /// The column.
+        column: usize,
+        /// How many columns there are.
+        columns: usize,
+    },
+    /// A pose or a joint has a number that is infinite or NaN.
+    NotFinite {
+        /// What it is a pose of: `frames`, `bodies` or `obstacles`.
+        argument: &'static str,
+        /// The index of what has it.
+        index: usize,
+    },
+    /// A body is on a frame that there is not.
+    BodyFrame {
+        /// The body.
+        body: usize,
+        /// The frame.
+        frame: usize,
+        /// How many frames there are.
+        frames: usize,
+    },
+    /// A pair of bodies, or of a body and an obstacle, names one that there is not, or a body twice.
+    Pair {
+        /// What the list of pairs is called: `pairs` or `ignored`.
+        argument: &'static str,
+        /// The index of the pair.
+        index: usize,
+        /// The pair.
+        pair: [u32; 2],
+    },
+    /// There are more bodies and obstacles than 32 bits can number.
+    TooMany {
+        /// How many were given.
+        given: usize,
+    },
+}
+
+impl fmt::Display for CheckerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Parent { frame, parent, frames } => {
+                write!(f, "frame {frame} has the parent {parent} of {frames} frames")
+            }
+            Self::Loop { frame } => write!(f, "the parents of frame {frame} have a loop"),
+            Self::Column { frame, column, columns } => {
+                write!(f, "the joint of frame {frame} is driven by column {column} of {columns}")
+            }
+            Self::NotFinite { argument, index } => {
+                write!(f, "`{argument}[{index}]` has a number that is not finite")
+            }
+            Self::BodyFrame { body, frame, frames } => {
+                write!(f, "body {body} is on frame {frame} of {frames}")
+            }
+            Self::Pair { argument, index, pair: [one, other] } => {
+                write!(f, "`{argument}[{index}]` is {one} and {other}, which are no pair")
+            }
+            Self::TooMany { given } => {
+                write!(f, "{given} bodies and obstacles are more than 32 bits can number")
+            }
+        }
+    }
+}
+
+impl core::error::Error for CheckerError {}

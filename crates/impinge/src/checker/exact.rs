@@ -1,0 +1,78 @@
+//! The single calls that decide what the filter leaves open.
+
+use core::ops::Range;
+
+use super::Checker;
+use super::chain::{LANES, LaneRow, PoseRows};
+use super::filter::Other;
+use crate::collide::Placed;
+use crate::math::Space;
+use crate::query::distance_within;
+
+/// The poses of up to eight configurations in the scalar, computed when the first is needed.
+pub(super) struct Exact<'a, N: Space<D>, const D: usize> {
+    checker: &'a Checker<N, D>,
+    configurations: &'a [N],
+    range: Range<usize>,
+    numbers: Vec<LaneRow<N>>,
+    rows: Vec<PoseRows<N, D>>,
+    is_placed: bool,
+}
+
+impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
+    pub(super) fn new(checker: &'a Checker<N, D>, configurations: &'a [N]) -> Self {
+        let nodes = checker.tree.nodes.len();
+        Self {
+            checker,
+            configurations,
+            range: 0..0,
+            numbers: vec![[N::ZERO; LANES]; nodes],
+            rows: vec![PoseRows::identity(); nodes + 1],
+            is_placed: false,
+        }
+    }
+
+    /// Turns to other configurations.
+    pub(super) const fn begin(&mut self, range: Range<usize>) {
+        self.range = range;
+        self.is_placed = false;
+    }
+
+    /// The poses of all nodes.
+    fn rows(&mut self) -> &[PoseRows<N, D>] {
+        if !self.is_placed {
+            let tree = &self.checker.tree;
+            tree.numbers(self.configurations, &self.range, &mut self.numbers);
+            tree.forward(&self.numbers, &mut self.rows);
+            self.is_placed = true;
+        }
+        &self.rows
+    }
+
+    /// The frames of a configuration have poses.
+    pub(super) fn is_finite(&mut self, lane: usize) -> bool {
+        let frames = &self.checker.tree.frames;
+        let rows = self.rows();
+        frames.iter().all(|frame| frame.at(rows, lane).is_finite())
+    }
+
+    /// The distance of a pair in a configuration; `None` beyond a limit.
+    pub(super) fn distance(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
+        let checker = self.checker;
+        let rows = self.rows();
+        let body = |number: u32| {
+            let number = number as usize;
+            let pose = checker.places[number].at(rows, lane);
+            Placed::of_pose(&pose, checker.bodies[number].shape.geometry())
+        };
+        let one = body(pair.0);
+        let other = match pair.1 {
+            Other::Body(other) => body(other),
+            Other::Obstacle(other) => {
+                let obstacle = &checker.obstacles[other as usize];
+                Placed::of_pose(&obstacle.pose, obstacle.shape.geometry())
+            }
+        };
+        distance_within(&one, &other, limit)
+    }
+}

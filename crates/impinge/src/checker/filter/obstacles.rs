@@ -1,0 +1,135 @@
+//! What the bodies of a robot may meet.
+
+use super::core::RoundedCore;
+use super::robot::{BallGroup, RobotFilter, shift_of, way_to};
+use super::{MAX_LENGTH, margin};
+use crate::checker::body::Obstacle;
+use crate::checker::frames::FrameTree;
+use crate::collide::Placed;
+use crate::math::order::order_of;
+use crate::math::{Pose, Real, Space, Vector};
+use crate::query::distance_between;
+use crate::shape::{Ball, Shape};
+
+/// Obstacles as the scan sees them.
+#[derive(Clone, Debug)]
+pub(in crate::checker) struct Surroundings<const D: usize> {
+    pub(super) obstacles: Vec<LaneObstacle<D>>,
+    /// For each group the obstacles, nearest first.
+    pub(super) within: Vec<Vec<InReach>>,
+    /// Bodies and obstacles that may touch, ascending.
+    ignored: Vec<[u32; 2]>,
+}
+
+/// An obstacle.
+#[derive(Clone, Debug)]
+pub(super) struct LaneObstacle<const D: usize> {
+    pub(super) outline: RoundedCore<D>,
+    pub(super) margin: f32,
+}
+
+/// An obstacle that a group can reach.
+#[derive(Clone, Debug)]
+pub(super) struct InReach {
+    /// How far apart they are at least, if nothing slides.
+    pub(super) gap: f32,
+    pub(super) obstacle: usize,
+    /// The user's number of it.
+    pub(super) number: u32,
+    /// The balls of the group whose bodies must not touch it.
+    pub(super) wanted: u8,
+}
+
+impl<const D: usize> Surroundings<D> {
+    pub(in crate::checker) fn new<N: Space<D>>(
+        tree: &FrameTree<N, D>,
+        robot: &RobotFilter<D>,
+        obstacles: &[Obstacle<N, D>],
+        ignored: &[[u32; 2]],
+    ) -> Self {
+        let mut ignored = ignored.to_vec();
+        ignored.sort_unstable();
+        let in_lanes = obstacles.iter().map(|obstacle| in_f32(tree, obstacle));
+        let mut all = Self { obstacles: in_lanes.collect(), within: Vec::new(), ignored };
+        all.within = (0..robot.groups.len())
+            .map(|group| all.in_reach(tree, robot, obstacles, group))
+            .collect();
+        all
+    }
+
+    /// The obstacles by how far they are from what a group can reach.
+    fn in_reach<N: Space<D>>(
+        &self,
+        tree: &FrameTree<N, D>,
+        robot: &RobotFilter<D>,
+        obstacles: &[Obstacle<N, D>],
+        group: usize,
+    ) -> Vec<InReach> {
+        let group = &robot.groups[group];
+        let way = way_to(tree, group.node, (&group.center, group.radius));
+        let mut all = Vec::new();
+        for (index, obstacle) in obstacles.iter().enumerate() {
+            let number = u32::try_from(index).expect("32 bits can number the obstacles");
+            let wanted = self.wanted(group, number);
+            if wanted == 0 {
+                continue;
+            }
+            let margin = f64::from(self.obstacles[index].margin + group.margin);
+            let gap = distance_from(&way.anchor, obstacle).as_f64() - way.length - margin;
+            let gap = N::lit(gap).as_f32_below();
+            // What has no end is everywhere.
+            let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
+            all.push(InReach { gap, obstacle: index, number, wanted });
+        }
+        all.sort_by_key(|within| (order_of(within.gap), within.obstacle));
+        all
+    }
+
+    /// The balls of a group whose bodies must not touch an obstacle.
+    fn wanted(&self, group: &BallGroup<D>, obstacle: u32) -> u8 {
+        let may_touch = |body| self.ignored.binary_search(&[body, obstacle]).is_ok();
+        let wanted = (0..group.count).filter(|&ball| !may_touch(group.bodies[ball]));
+        wanted.fold(0, |bits, ball| bits | 1 << ball)
+    }
+}
+
+/// How far an obstacle is from a point.
+fn distance_from<N: Space<D>, const D: usize>(
+    point: &Vector<N, D>,
+    obstacle: &Obstacle<N, D>,
+) -> N {
+    let ball = Ball::new(N::ZERO);
+    let at = Placed { pose: Pose::from_translation(*point), shape: Shape::<N, D>::geometry(&ball) };
+    let there = Placed::of_pose(&obstacle.pose, obstacle.shape.geometry());
+    distance_between(&at, &there)
+}
+
+/// An obstacle in `f32`, as seen from the first joint.
+fn in_f32<N: Space<D>, const D: usize>(
+    tree: &FrameTree<N, D>,
+    obstacle: &Obstacle<N, D>,
+) -> LaneObstacle<D> {
+    let shift = shift_of(tree);
+    let pose = Pose { translation: obstacle.pose.translation - shift, ..obstacle.pose };
+    let outline = RoundedCore::new(&*obstacle.shape, &pose);
+    let extent = obstacle.shape.geometry().extent();
+    let own = if extent.is_finite_number() { extent.as_f64() } else { size_of_box(obstacle) };
+    let near = pose.translation.norm().as_f64() + own;
+    let far = near + shift.norm().as_f64();
+    let margin = margin::<N>(0, near, far);
+    let is_usable = margin <= MAX_LENGTH && near <= f64::from(MAX_LENGTH);
+    if is_usable {
+        LaneObstacle { outline, margin }
+    } else {
+        LaneObstacle { outline: RoundedCore::unknown(), margin: 0.0 }
+    }
+}
+
+/// How far the box of a shape reaches; nothing where it has no end, as that of a half-space.
+fn size_of_box<N: Real, const D: usize>(obstacle: &Obstacle<N, D>) -> f64 {
+    let aabb = obstacle.shape.local_aabb();
+    if !aabb.is_bounded() {
+        return 0.0;
+    }
+    (aabb.center().coords.abs() + aabb.half_extents()).norm().as_f64()
+}

@@ -1,0 +1,263 @@
+//! The bodies of a robot as groups of balls.
+
+use std::collections::BTreeMap;
+
+use super::core::numbers;
+use super::cover::{CoverBall, around, cover};
+use super::{MAX_LENGTH, margin};
+use crate::checker::chain::{LANES, LaneRow, Node};
+use crate::checker::frames::{FrameTree, OnNode};
+use crate::math::order::order_of;
+use crate::math::{Pose, Real, Space, Vector};
+use crate::shape::Shape;
+
+/// A robot as the scan sees it.
+#[derive(Clone, Debug)]
+pub(in crate::checker) struct RobotFilter<const D: usize> {
+    pub(super) nodes: Vec<Node<f32, D>>,
+    pub(super) groups: Vec<BallGroup<D>>,
+    pub(super) crossings: Vec<GroupPair>,
+    /// The margin for a unit of length of all that slides.
+    slide_margin: f32,
+}
+
+/// Up to eight balls on one node that are near each other: one body, or several.
+#[derive(Clone, Debug)]
+pub(super) struct BallGroup<const D: usize> {
+    pub(super) node: usize,
+    /// Around all its balls.
+    pub(super) center: [f32; D],
+    pub(super) radius: f32,
+    /// The balls in lanes: those that there are not are never asked for.
+    pub(super) centers: [LaneRow<f32>; D],
+    pub(super) radii: LaneRow<f32>,
+    /// The user's numbers of the bodies that the balls hold.
+    pub(super) bodies: [u32; LANES],
+    /// How many balls there are, and a bit for each that is its body.
+    pub(super) count: usize,
+    pub(super) exact: u8,
+    pub(super) margin: f32,
+}
+
+/// Two groups with bodies that must not touch.
+#[derive(Clone, Debug)]
+pub(super) struct GroupPair {
+    pub(super) groups: [usize; 2],
+    /// How far apart all pairs are at least at all times.
+    pub(super) gap: f32,
+    /// For each ball of the first group the balls of the second that must not touch it.
+    pub(super) wanted: [u8; LANES],
+}
+
+/// A body with its balls before it has a group.
+struct Covered<N: Real, const D: usize> {
+    number: usize,
+    node: usize,
+    balls: Vec<CoverBall<N, D>>,
+    is_ball: bool,
+}
+
+/// How long the way to a group is.
+pub(super) struct Way<N: Real, const D: usize> {
+    /// The first joint, or the center of what does not move.
+    pub(super) anchor: Vector<N, D>,
+    /// Of the group's ball from there, but for what slides: its center and its radius.
+    pub(super) length: f64,
+    joints: usize,
+}
+
+/// What builds a filter.
+struct Builder<'a, N: Real, const D: usize> {
+    tree: &'a FrameTree<N, D>,
+    shift: Vector<N, D>,
+    filter: RobotFilter<D>,
+    /// The group and the balls, by bits, of each body of the user's.
+    places: Vec<(usize, u8)>,
+}
+
+impl<const D: usize> RobotFilter<D> {
+    /// That of bodies, each at a place on its node, of which pairs must not touch.
+    pub(in crate::checker) fn new<'s, N: Space<D>>(
+        tree: &FrameTree<N, D>,
+        bodies: impl Iterator<Item = (&'s dyn Shape<N, D>, OnNode<N, D>)>,
+        pairs: &[[u32; 2]],
+    ) -> Self {
+        let covered = bodies.enumerate().map(|(number, (shape, place))| {
+            let pose = place.pose.unwrap_or_else(Pose::identity);
+            let (balls, is_ball) = cover(shape, &pose);
+            Covered { number, node: place.node, balls, is_ball }
+        });
+        let covered: Vec<_> = covered.collect();
+        let mut builder = Builder::new(tree, covered.len());
+        for node in 0..=tree.nodes.len() {
+            let on_node: Vec<_> = covered.iter().filter(|body| body.node == node).collect();
+            if !on_node.is_empty() {
+                builder.divide(on_node);
+            }
+        }
+        builder.cross(pairs);
+        builder.filter
+    }
+
+    pub(in crate::checker) const fn slide_margin(&self) -> f32 {
+        self.slide_margin
+    }
+}
+
+/// Where lengths are counted from: the first joint on the world.
+pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vector<N, D> {
+    let first = tree.nodes.iter().find(|node| node.parent == 0);
+    first.map_or_else(Vector::<N, D>::zeros, |node| node.origin)
+}
+
+/// The way to a ball on a node, whose center is counted from [`shift_of`] on the world.
+pub(super) fn way_to<N: Real, const D: usize>(
+    tree: &FrameTree<N, D>,
+    node: usize,
+    (center, radius): (&[f32; D], f32),
+) -> Way<N, D> {
+    let center = Vector::<N, D>::from_fn(|axis, _| N::lit(f64::from(center[axis])));
+    let own = f64::from(radius);
+    if node == 0 {
+        return Way { anchor: center + shift_of(tree), length: own, joints: 0 };
+    }
+    let (mut length, mut joints, mut at) = (own + center.norm().as_f64(), 1, node);
+    while tree.nodes[at - 1].parent != 0 {
+        length += tree.nodes[at - 1].origin.norm().as_f64();
+        joints += 1;
+        at = tree.nodes[at - 1].parent;
+    }
+    Way { anchor: tree.nodes[at - 1].origin, length, joints }
+}
+
+impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
+    fn new(tree: &'a FrameTree<N, D>, bodies: usize) -> Self {
+        let shift = shift_of(tree);
+        let filter = RobotFilter {
+            nodes: tree.nodes.iter().map(|node| node.in_f32(&shift)).collect(),
+            groups: Vec::new(),
+            crossings: Vec::new(),
+            slide_margin: margin::<N>(tree.nodes.len(), 1.0, 1.0),
+        };
+        Self { tree, shift, filter, places: vec![(0, 0); bodies] }
+    }
+
+    /// Makes groups of bodies of one node: one, or those of its halves along the longest side.
+    fn divide(&mut self, mut bodies: Vec<&Covered<N, D>>) {
+        let count: usize = bodies.iter().map(|body| body.balls.len()).sum();
+        if bodies.len() < 2 || count <= LANES {
+            return self.add_group(&bodies);
+        }
+        let axis = longest_axis(&bodies);
+        bodies.sort_by_key(|body| (order_of(body.balls[0].center[axis]), body.number));
+        let back = bodies.split_off(bodies.len() / 2);
+        self.divide(bodies);
+        self.divide(back);
+    }
+
+    fn add_group(&mut self, bodies: &[&Covered<N, D>]) {
+        let node = bodies[0].node;
+        let shift = if node == 0 { self.shift } else { Vector::<N, D>::zeros() };
+        let mut group = BallGroup::empty(node);
+        let mut all = Vec::new();
+        for body in bodies {
+            let from = group.count;
+            for ball in &body.balls {
+                let ball = CoverBall { center: ball.center - shift, ..*ball };
+                group.push(body, in_f32(&ball));
+                all.push(ball);
+            }
+            let bits = (from..group.count).fold(0, |bits, ball| bits | 1 << ball);
+            self.places[body.number] = (self.filter.groups.len(), bits);
+        }
+        (group.center, group.radius) = in_f32(&around(&all));
+        let way = way_to(self.tree, node, (&group.center, group.radius));
+        let near = way.length + (way.anchor - self.shift).norm().as_f64();
+        let far = near + self.shift.norm().as_f64();
+        group.margin = margin::<N>(way.joints, near, far);
+        self.filter.groups.push(group);
+    }
+
+    /// Puts pairs of bodies in order of their groups.
+    fn cross(&mut self, pairs: &[[u32; 2]]) {
+        let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
+        for pair in pairs {
+            let mut places = pair.map(|body| self.places[body as usize]);
+            places.sort_unstable();
+            let [(group1, balls1), (group2, balls2)] = places;
+            let wanted = by_groups.entry([group1, group2]).or_default();
+            for (ball, others) in wanted.iter_mut().enumerate() {
+                *others |= if balls1 >> ball & 1 == 1 { balls2 } else { 0 };
+            }
+        }
+        for (groups, wanted) in by_groups {
+            let gap = self.gap_between(groups, &wanted);
+            self.filter.crossings.push(GroupPair { groups, gap, wanted });
+        }
+    }
+
+    /// How far apart balls on one node are at least; nothing is known of others.
+    fn gap_between(&self, groups: [usize; 2], wanted: &[u8; LANES]) -> f32 {
+        let [one, other] = groups.map(|group| &self.filter.groups[group]);
+        if one.node != other.node {
+            return -f32::INFINITY;
+        }
+        let mut least = f32::INFINITY;
+        for (ball1, others) in wanted.iter().enumerate() {
+            for ball2 in (0..LANES).filter(|ball| others >> ball & 1 == 1) {
+                let way = one.center_of(ball1) - other.center_of(ball2);
+                least = least.min(way.norm() - one.radii[ball1] - other.radii[ball2]);
+            }
+        }
+        least - one.margin - other.margin
+    }
+}
+
+impl<const D: usize> BallGroup<D> {
+    const fn empty(node: usize) -> Self {
+        Self {
+            node,
+            center: [0.0; D],
+            radius: 0.0,
+            centers: [[0.0; LANES]; D],
+            radii: [0.0; LANES],
+            bodies: [u32::MAX; LANES],
+            count: 0,
+            exact: 0,
+            margin: 0.0,
+        }
+    }
+
+    fn push<N: Real>(&mut self, body: &Covered<N, D>, (center, radius): ([f32; D], f32)) {
+        let lane = self.count;
+        for (row, x) in self.centers.iter_mut().zip(center) {
+            row[lane] = x;
+        }
+        self.radii[lane] = radius;
+        self.bodies[lane] = u32::try_from(body.number).expect("32 bits can number the bodies");
+        self.exact |= u8::from(body.is_ball) << lane;
+        self.count += 1;
+    }
+
+    fn center_of(&self, ball: usize) -> Vector<f32, D> {
+        Vector::<f32, D>::from_fn(|axis, _| self.centers[axis][ball])
+    }
+}
+
+/// Along which the centers are spread farthest.
+fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
+    let spread = |axis: usize| {
+        let places = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
+        let (low, high) = places
+            .fold((f64::INFINITY, -f64::INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        high - low
+    };
+    (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best })
+}
+
+/// Center and radius; without an end, where these have no squares.
+fn in_f32<N: Real, const D: usize>(ball: &CoverBall<N, D>) -> ([f32; D], f32) {
+    let (center, radius) = (numbers(&ball.center), ball.radius.as_f32_above());
+    let is_usable = radius <= MAX_LENGTH && center.iter().all(|x: &f32| x.abs() <= MAX_LENGTH);
+    if is_usable { (center, radius) } else { ([0.0; D], f32::INFINITY) }
+}

@@ -1,0 +1,278 @@
+//! The scan: eight configurations against all pairs.
+//!
+//! Groups are looked at in eight configurations at once; where one is near, its eight balls at once in each configuration
+//! in which it is.
+
+use super::MAX_LENGTH;
+use super::obstacles::{InReach, LaneObstacle, Surroundings};
+use super::robot::{BallGroup, GroupPair, RobotFilter};
+use super::search::{Distances, Other, PairSearch};
+use crate::checker::chain::{LANES, LaneRow, PoseRows, forward};
+use crate::math::Wide;
+use crate::math::lanes::{LanePose, bits, by_axis, dot, lit, load, minus, with_lanes};
+use crate::math::simd::{Eight, Level, Simd};
+
+/// Where everything is in eight configurations.
+#[derive(Debug)]
+pub(in crate::checker) struct ScanScratch<const D: usize> {
+    /// The number of each node.
+    pub(in crate::checker) numbers: Vec<LaneRow<f32>>,
+    rows: Vec<PoseRows<f32, D>>,
+    /// The centers of the groups, by configurations.
+    centers: Vec<[LaneRow<f32>; D]>,
+    /// For each group and configuration the centers of the balls, when they are needed.
+    balls: Vec<[[LaneRow<f32>; D]; LANES]>,
+    /// The configurations in which they are there.
+    placed: Vec<u8>,
+}
+
+impl<const D: usize> ScanScratch<D> {
+    pub(in crate::checker) fn new(robot: &RobotFilter<D>) -> Self {
+        let nothing = [[0.0; LANES]; D];
+        Self {
+            numbers: vec![[0.0; LANES]; robot.nodes.len()],
+            rows: vec![PoseRows::identity(); robot.nodes.len() + 1],
+            centers: vec![nothing; robot.groups.len()],
+            balls: vec![[nothing; LANES]; robot.groups.len()],
+            placed: vec![0; robot.groups.len()],
+        }
+    }
+}
+
+/// What is scanned.
+#[derive(Clone, Copy)]
+struct Scan<'a, const D: usize> {
+    robot: &'a RobotFilter<D>,
+    around: &'a Surroundings<D>,
+}
+
+/// Finds the pairs of eight configurations, of which `scratch` has the numbers.
+pub(in crate::checker) fn scan_at<const D: usize>(
+    level: Level,
+    robot: &RobotFilter<D>,
+    around: &Surroundings<D>,
+    scratch: &mut ScanScratch<D>,
+    search: &mut PairSearch,
+) {
+    let scan = Scan { robot, around };
+    with_lanes!(level, simd => run(simd, scan, scratch, search));
+    search.tidy();
+}
+
+/// [`Scan::run`] with vectors of eight.
+#[inline(always)]
+fn run<S: Simd, const D: usize>(
+    simd: S,
+    scan: Scan<'_, D>,
+    scratch: &mut ScanScratch<D>,
+    search: &mut PairSearch,
+) {
+    scan.run::<S, <f32 as Eight>::Lanes<S>>(simd, scratch, search);
+}
+
+impl<const D: usize> Scan<'_, D> {
+    #[inline(always)]
+    fn run<S: Simd, V: Wide<S, Scalar = f32>>(
+        self,
+        simd: S,
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
+    ) {
+        forward::<S, f32, V, D>(simd, &self.robot.nodes, &scratch.numbers, &mut scratch.rows);
+        search.leave_out(usable_lanes::<S, V, D>(simd, &scratch.rows));
+        scratch.placed.fill(0);
+        for (index, group) in self.robot.groups.iter().enumerate() {
+            let pose: LanePose<V, D> = scratch.rows[group.node].load(simd);
+            put(&pose.point(&spread(simd, &group.center)), &mut scratch.centers[index]);
+        }
+        self.meet_obstacles::<S, V>(simd, scratch, search);
+        self.meet_itself::<S, V>(simd, scratch, search);
+    }
+
+    /// The centers of the balls of a group in a configuration.
+    #[inline(always)]
+    fn balls<S: Simd, V: Wide<S, Scalar = f32>>(
+        self,
+        simd: S,
+        (index, lane): (usize, usize),
+        scratch: &mut ScanScratch<D>,
+    ) -> [V; D] {
+        let place = &mut scratch.balls[index][lane];
+        if scratch.placed[index] >> lane & 1 == 1 {
+            return load(simd, place);
+        }
+        scratch.placed[index] |= 1 << lane;
+        let group = &self.robot.groups[index];
+        let pose: LanePose<V, D> = scratch.rows[group.node].spread(simd, lane);
+        let centers = pose.point(&load(simd, &group.centers));
+        put(&centers, place);
+        centers
+    }
+
+    #[inline(always)]
+    fn meet_obstacles<S: Simd, V: Wide<S, Scalar = f32>>(
+        self,
+        simd: S,
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
+    ) {
+        for (index, group) in self.robot.groups.iter().enumerate() {
+            let center: [V; D] = load(simd, &scratch.centers[index]);
+            for within in &self.around.within[index] {
+                if search.is_done() || within.gap > search.farthest + search.slide {
+                    break;
+                }
+                let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
+                let squared = outline.core.squared(simd, &center);
+                let radius = group.radius + outline.radius + (group.margin + margin);
+                let mut near = search.near_lanes(simd, squared, radius);
+                while near != 0 {
+                    let lane = near.trailing_zeros() as usize;
+                    near &= near - 1;
+                    let balls: [V; D] = self.balls(simd, (index, lane), scratch);
+                    self.meet_obstacle::<S, V>(simd, lane, (group, &balls, within), search);
+                }
+            }
+        }
+    }
+
+    /// The balls of a group against an obstacle in a configuration.
+    #[inline(always)]
+    fn meet_obstacle<S: Simd, V: Wide<S, Scalar = f32>>(
+        self,
+        simd: S,
+        lane: usize,
+        (group, balls, within): (&BallGroup<D>, &[V; D], &InReach),
+        search: &mut PairSearch,
+    ) {
+        let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
+        let distances = Distances {
+            squared: outline.core.squared(simd, balls),
+            radius: V::load(simd, &group.radii) + V::all(simd, outline.radius),
+            margin: group.margin + margin,
+            wanted: within.wanted,
+            exact: if outline.is_exact { group.exact } else { 0 },
+        };
+        search.settle(
+            simd,
+            lane,
+            &distances,
+            #[inline(always)]
+            |ball| (group.bodies[ball], Other::Obstacle(within.number)),
+        );
+    }
+
+    #[inline(always)]
+    fn meet_itself<S: Simd, V: Wide<S, Scalar = f32>>(
+        self,
+        simd: S,
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
+    ) {
+        for crossing in &self.robot.crossings {
+            if search.is_done() {
+                return;
+            }
+            if crossing.gap > search.farthest {
+                continue;
+            }
+            let [first, second] = crossing.groups;
+            let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
+            let center: [V; D] = load(simd, &scratch.centers[first]);
+            let squared = squared_between(&center, &load(simd, &scratch.centers[second]));
+            let radius = one.radius + other.radius + (one.margin + other.margin);
+            let mut near = search.near_lanes(simd, squared, radius);
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
+                self.cross::<S, V>(simd, (crossing, lane), scratch, search);
+            }
+        }
+    }
+
+    /// The balls of two groups against each other in a configuration.
+    #[inline(always)]
+    fn cross<S: Simd, V: Wide<S, Scalar = f32>>(
+        self,
+        simd: S,
+        (crossing, lane): (&GroupPair, usize),
+        scratch: &mut ScanScratch<D>,
+        search: &mut PairSearch,
+    ) {
+        let [first, second] = crossing.groups;
+        let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
+        let _: [V; D] = self.balls(simd, (first, lane), scratch);
+        let balls: [V; D] = self.balls(simd, (second, lane), scratch);
+        let radii = V::load(simd, &other.radii);
+        for ball in 0..one.count {
+            if !search.is_live(lane) {
+                return;
+            }
+            let centers = &scratch.balls[first][lane];
+            let center: [V; D] = by_axis(
+                #[inline(always)]
+                |axis| V::all(simd, centers[axis][ball]),
+            );
+            let distances = Distances {
+                squared: squared_between(&center, &balls),
+                radius: radii + V::all(simd, one.radii[ball]),
+                margin: one.margin + other.margin,
+                wanted: crossing.wanted[ball],
+                exact: if one.exact >> ball & 1 == 1 { other.exact } else { 0 },
+            };
+            let body = one.bodies[ball];
+            search.settle(
+                simd,
+                lane,
+                &distances,
+                #[inline(always)]
+                |partner| {
+                    let partner = other.bodies[partner];
+                    (body.min(partner), Other::Body(body.max(partner)))
+                },
+            );
+        }
+    }
+}
+
+/// The lanes in which all numbers are finite and have squares.
+#[inline(always)]
+fn usable_lanes<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
+    simd: S,
+    rows: &[PoseRows<f32, D>],
+) -> u8 {
+    let most: V = V::all(simd, MAX_LENGTH);
+    let mut usable = lit::<S, f32, V>(simd, 0.0).simd_le(most);
+    for block in rows {
+        let pose: LanePose<V, D> = block.load(simd);
+        usable &= pose.rotation[0][0].abs().simd_le(most);
+        for axis in 0..D {
+            usable &= pose.translation[axis].abs().simd_le(most);
+        }
+    }
+    bits(usable)
+}
+
+#[inline(always)]
+fn squared_between<S: Simd, V: Wide<S>, const D: usize>(one: &[V; D], other: &[V; D]) -> V {
+    let way = minus(other, one);
+    dot(&way, &way)
+}
+
+#[inline(always)]
+fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; D]) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| V::all(simd, v[axis]),
+    )
+}
+
+#[inline(always)]
+fn put<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
+    from: &[V; D],
+    to: &mut [LaneRow<f32>; D],
+) {
+    for axis in 0..D {
+        from[axis].store(&mut to[axis]);
+    }
+}

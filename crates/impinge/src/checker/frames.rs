@@ -1,0 +1,249 @@
+//! A tree of frames, and where they are.
+
+use core::ops::Range;
+
+use super::CheckerError;
+use super::chain::{LANES, LaneRow, Node, PoseRows, forward};
+use super::joint::{Frame, Joint};
+use super::rows::RowsOf;
+use crate::batch::{BatchError, Control, Progress};
+use crate::math::lanes::with_lanes;
+use crate::math::simd::Level;
+use crate::math::{Pose, Real, Space};
+
+/// Frames that move on each other, by the numbers of a configuration.
+///
+/// A configuration is a row of `columns` numbers: radians or lengths, as the joints have it. Frames are numbered as
+/// they are given, in any order; a parent may come after its child.
+///
+/// Sines and cosines are polynomials of the library's own: they have the same bits on every machine, and are off by
+/// at most two units of the last place of 1.
+///
+/// ```
+/// use impinge::dim2::batch::{BatchError, Control};
+/// use impinge::dim2::checker::{Frame, FrameTree, Joint};
+/// use impinge::dim2::math::{Pose, Vector};
+///
+/// let ahead = Pose::from_translation(Vector::new(1.0_f64, 0.0));
+/// let arm = [
+///     Frame { parent: None, origin: Pose::identity(), joint: Joint::revolute(0) },
+///     Frame { parent: Some(0), origin: ahead, joint: Joint::revolute(1) },
+///     Frame { parent: Some(1), origin: ahead, joint: Joint::fixed() },
+/// ];
+/// let arm = FrameTree::try_new(&arm, 2).expect("a chain");
+/// let quarter = std::f64::consts::FRAC_PI_2;
+/// let mut poses = [Pose::identity(); 6];
+/// arm.place(&[0.0, 0.0, quarter, -quarter], &Control::new(), &mut poses)?;
+/// assert_eq!(poses[2].translation, Vector::new(2.0, 0.0), "stretched");
+/// assert!((poses[5].translation - Vector::new(1.0, 1.0)).norm() < 1e-15, "up and to the right");
+/// # Ok::<(), BatchError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FrameTree<N: Real, const D: usize> {
+    /// Parents before children.
+    pub(super) nodes: Vec<Node<N, D>>,
+    /// The joint of each node.
+    pub(super) joints: Vec<Joint<N, D>>,
+    /// Where each frame is.
+    pub(super) frames: Vec<OnNode<N, D>>,
+    columns: usize,
+}
+
+/// A constant pose on a node: on the world for 0, else on the node of the index that is one less.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct OnNode<N: Real, const D: usize> {
+    pub(super) node: usize,
+    /// `None` for the node itself.
+    pub(super) pose: Option<Pose<N, D>>,
+}
+
+impl<N: Real, const D: usize> OnNode<N, D> {
+    /// What stands at a constant pose on this.
+    pub(super) fn then(&self, inner: &Pose<N, D>) -> Self {
+        let pose = self.pose.map_or(*inner, |outer| outer.compose(inner));
+        Self { node: self.node, pose: Some(pose) }
+    }
+
+    /// Where it is in a lane.
+    pub(super) fn at(&self, rows: &[PoseRows<N, D>], lane: usize) -> Pose<N, D> {
+        let on_world = self.node == 0;
+        match (&self.pose, on_world) {
+            (Some(pose), true) => *pose,
+            (Some(pose), false) => rows[self.node].pose(lane).compose(pose),
+            (None, _) => rows[self.node].pose(lane),
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> FrameTree<N, D> {
+    /// The tree of these frames, moved by configurations of so many columns. No joint needs to use a column.
+    ///
+    /// # Errors
+    /// [`CheckerError::Parent`], [`CheckerError::Loop`], [`CheckerError::Column`], and [`CheckerError::NotFinite`] of
+    /// an origin or a joint, each for the first frame that has it.
+    pub fn try_new(frames: &[Frame<N, D>], columns: usize) -> Result<Self, CheckerError> {
+        for (index, frame) in frames.iter().enumerate() {
+            check(index, frame, [frames.len(), columns])?;
+        }
+        let world = OnNode { node: 0, pose: None };
+        let mut tree = Self {
+            nodes: Vec::new(),
+            joints: Vec::new(),
+            frames: vec![world; frames.len()],
+            columns,
+        };
+        for index in parents_first(frames)? {
+            let frame = &frames[index];
+            let parent = frame.parent.map_or(world, |parent| tree.frames[parent]);
+            tree.frames[index] = tree.with_frame(&parent.then(&frame.origin), frame);
+        }
+        Ok(tree)
+    }
+
+    /// Adds a node for a frame that moves, `origin` being where its joint is.
+    fn with_frame(&mut self, origin: &OnNode<N, D>, frame: &Frame<N, D>) -> OnNode<N, D> {
+        let at = origin.pose.unwrap_or_else(Pose::identity);
+        let Some(node) = Node::new(origin.node, &at, frame) else { return *origin };
+        self.nodes.push(node);
+        self.joints.push(frame.joint);
+        OnNode { node: self.nodes.len(), pose: None }
+    }
+
+    /// How many frames there are.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// There is no frame.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.frames.is_empty()
+    }
+
+    /// How many numbers a configuration has.
+    #[must_use]
+    pub const fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// The poses of all frames for each configuration, row by row: `poses[configuration * len + frame]`.
+    ///
+    /// `configurations` has [`Self::columns`] numbers for each configuration, row by row. Numbers that are not finite
+    /// give poses that are not.
+    ///
+    /// # Errors
+    /// [`BatchError::PartialRow`] if `configurations` ends within a row, or has numbers where there are no columns,
+    /// [`BatchError::Length`] if there is not a pose for each, [`BatchError::Cancelled`].
+    pub fn place(
+        &self,
+        configurations: &[N],
+        control: &Control<'_>,
+        poses: &mut [Pose<N, D>],
+    ) -> Result<(), BatchError> {
+        let count = self.count_of(configurations, poses.len().checked_div(self.len()))?;
+        let needed = count * self.len();
+        if poses.len() != needed {
+            return Err(BatchError::Length { argument: "poses", given: poses.len(), needed });
+        }
+        let rows = RowsOf::new(poses, self.len());
+        (N::tables().checker.place)((self, &self.frames), configurations, control, rows)
+    }
+
+    /// How many configurations these are; without columns as many as are wanted.
+    pub(super) fn count_of(
+        &self,
+        configurations: &[N],
+        wanted: Option<usize>,
+    ) -> Result<usize, BatchError> {
+        let (given, width) = (configurations.len(), self.columns);
+        match (given.checked_div(width), wanted) {
+            (None, Some(count)) if given == 0 => Ok(count),
+            (None, None) if given == 0 => Ok(0),
+            (Some(count), _) if count * width == given => Ok(count),
+            _ => Err(BatchError::PartialRow { argument: "configurations", given, width }),
+        }
+    }
+
+    /// The numbers of all nodes for up to eight configurations; the last one fills what is left.
+    pub(super) fn numbers(
+        &self,
+        configurations: &[N],
+        range: &Range<usize>,
+        numbers: &mut [LaneRow<N>],
+    ) {
+        for (joint, row) in self.joints.iter().zip(numbers) {
+            let column = joint.column().expect("a node has a joint that moves");
+            for (lane, number) in row.iter_mut().enumerate() {
+                let index = (range.start + lane).min(range.end - 1);
+                *number = joint.value_at(configurations[index * self.columns + column]);
+            }
+        }
+    }
+
+    /// The poses of all nodes by their numbers.
+    pub(super) fn forward(&self, numbers: &[LaneRow<N>], rows: &mut [PoseRows<N, D>]) {
+        let (level, nodes) = (Level::new(), &*self.nodes);
+        with_lanes!(level, simd => forward::<_, N, N::Lanes<_>, D>(simd, nodes, numbers, rows));
+    }
+}
+
+/// See [`FrameTree::place`]: the poses of what is on the nodes of a tree.
+pub(super) fn place<N: Space<D>, const D: usize>(
+    (tree, placed): (&FrameTree<N, D>, &[OnNode<N, D>]),
+    configurations: &[N],
+    control: &Control<'_>,
+    poses: RowsOf<'_, Pose<N, D>>,
+) -> Result<(), BatchError> {
+    let (count, width) = (poses.rows(), placed.len());
+    let work = |range: Range<usize>, poses: RowsOf<'_, Pose<N, D>>| {
+        let mut numbers = vec![[N::ZERO; LANES]; tree.nodes.len()];
+        let mut rows = vec![PoseRows::identity(); tree.nodes.len() + 1];
+        for (batch, slots) in poses.into_slice().chunks_mut(LANES * width).enumerate() {
+            let start = range.start + batch * LANES;
+            let eight = start..range.end.min(start + LANES);
+            tree.numbers(configurations, &eight, &mut numbers);
+            tree.forward(&numbers, &mut rows);
+            for (index, slot) in slots.iter_mut().enumerate() {
+                *slot = placed[index % width].at(&rows, index / width);
+            }
+        }
+    };
+    Progress::new(control).run(count, poses, work)
+}
+
+fn check<N: Real, const D: usize>(
+    index: usize,
+    frame: &Frame<N, D>,
+    [frames, columns]: [usize; 2],
+) -> Result<(), CheckerError> {
+    if let Some(parent) = frame.parent.filter(|&parent| parent >= frames) {
+        return Err(CheckerError::Parent { frame: index, parent, frames });
+    }
+    if let Some(column) = frame.joint.column().filter(|&column| column >= columns) {
+        return Err(CheckerError::Column { frame: index, column, columns });
+    }
+    if !frame.origin.is_finite() || !frame.joint.is_finite() {
+        return Err(CheckerError::NotFinite { argument: "frames", index });
+    }
+    Ok(())
+}
+
+/// The numbers of the frames by how many parents they have, then by themselves.
+fn parents_first<N: Real, const D: usize>(
+    frames: &[Frame<N, D>],
+) -> Result<Vec<usize>, CheckerError> {
+    let depth = |frame: usize| {
+        let mut above = frames[frame].parent;
+        // A way that is longer than there are frames has a loop.
+        for depth in 0..frames.len() {
+            let Some(parent) = above else { return Ok(depth) };
+            above = frames[parent].parent;
+        }
+        Err(CheckerError::Loop { frame })
+    };
+    let depths = (0..frames.len()).map(depth).collect::<Result<Vec<_>, _>>()?;
+    let mut order: Vec<usize> = (0..frames.len()).collect();
+    order.sort_by_key(|&frame| depths[frame]);
+    Ok(order)
+}

@@ -1,0 +1,32 @@
+//! Slots for several answers about each configuration.
+
+use crate::chunks::Cut;
+
+/// A slice whose rows belong to configurations.
+pub(super) struct RowsOf<'a, T> {
+    slots: &'a mut [T],
+    width: usize,
+}
+
+impl<'a, T> RowsOf<'a, T> {
+    pub(super) const fn new(slots: &'a mut [T], width: usize) -> Self {
+        Self { slots, width }
+    }
+
+    /// How many rows there are.
+    pub(super) fn rows(&self) -> usize {
+        self.slots.len().checked_div(self.width).unwrap_or(0)
+    }
+
+    pub(super) const fn into_slice(self) -> &'a mut [T] {
+        self.slots
+    }
+}
+
+impl<T: Send> Cut for RowsOf<'_, T> {
+    fn cut(self, at: usize) -> (Self, Self) {
+        let at = (at * self.width).min(self.slots.len());
+        let (front, back) = self.slots.split_at_mut(at);
+        (Self::new(front, self.width), Self::new(back, self.width))
+    }
+}

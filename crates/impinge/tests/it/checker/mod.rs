@@ -1,0 +1,7 @@
+//! The configuration checker against single calls, and what it refuses.
+
+mod aligned;
+mod brute;
+mod random;
+mod refused;
+mod robots;

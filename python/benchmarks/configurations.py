@@ -1,0 +1,168 @@
+"""How many configurations of a robot are checked in a second: the scenes of MotionBenchMaker, robots as spheres.
+
+    python benchmarks/configurations.py FOLDER [--scenes 70] [--count 4096] [--threads 1]
+
+FOLDER has `vamp_panda.json` and `vamp_panda.npz`, and those of ur5 and fetch: the spherised robots of vamp (W. Thomason, Z.
+Kingston, L. E. Kavraki, 2024) and the problems of MotionBenchMaker (C. Chamzas et al., 2021). Configurations are random
+within the joint limits. Links may touch that are joined, touch at the start, or do so in nearly all configurations; the
+links that do not move may touch obstacles. A sample is compared with all pairs, one by one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+import impinge
+import numpy as np
+
+TARGET = 2e6
+# Turns y, along which impinge lays cylinders, into z.
+Y_TO_Z = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
+
+
+class Robot:
+    """A robot of a file, its pairs, and its scenes."""
+
+    def __init__(self, folder: Path, name: str, dtype: str) -> None:
+        self.data = json.loads((folder / f"vamp_{name}.json").read_text())
+        self.scenes = np.load(folder / f"vamp_{name}.npz")
+        self.dtype = dtype
+        self.joints = self.data["joint_names"]
+        limits = {joint["name"]: joint["limit"] for joint in self.data["joints"]}
+        self.limits = np.array([limits[name] for name in self.joints])
+        self.spheres, self.link = np.array(self.data["spheres"]), np.array(self.data["link_of"])
+        self.frames = self._frames()
+        self.pairs = self._pairs()
+        self.checker = self._checker(self.pairs)
+        self.starts = np.concatenate([[0], np.cumsum(self.scenes["counts"])])
+
+    def _frames(self) -> list[impinge.Frame]:
+        frames = [impinge.Frame()] * len(self.data["links"])
+        for joint in self.data["joints"]:
+            origin = np.array(joint["origin"]).reshape(4, 4)
+            frame = impinge.Frame(joint["parent"], origin)
+            if joint["name"] in self.joints:
+                kind = "prismatic" if joint["type"] == "prismatic" else "revolute"
+                frame = frame._replace(joint=kind, axis=joint["axis"], column=self.joints.index(joint["name"]))
+            frames[joint["child"]] = frame
+        return frames
+
+    def _checker(self, pairs: Any) -> impinge.Checker:
+        shapes = [impinge.Ball(radius, dtype=self.dtype) for radius in self.spheres[:, 3]]
+        return impinge.Checker(
+            self.frames, len(self.joints), shapes, self.link, impinge.Poses(self.spheres[:, :3]), pairs
+        )
+
+    def random(self, generator: np.random.Generator, count: int) -> Any:
+        low, high = self.limits.T
+        return generator.uniform(low, high, (count, len(low))).astype(self.dtype)
+
+    def _pairs(self) -> Any:
+        rows = np.vstack([self.scenes["starts"][:1], self.random(np.random.default_rng(1), 300)])
+        poses = self._checker([]).poses(rows)[..., :3, 3]
+        joined = {frozenset((frame.parent, child)) for child, frame in enumerate(self.frames)}
+        wanted = []
+        for one, two in np.argwhere(np.triu(np.ones((len(self.data["links"]),) * 2, dtype=bool), 1)):
+            first, second = np.flatnonzero(self.link == one), np.flatnonzero(self.link == two)
+            if frozenset((one, two)) in joined or not (len(first) and len(second)):
+                continue
+            apart = np.linalg.norm(poses[:, first, None] - poses[:, None, second], axis=-1)
+            radii = self.spheres[first, None, 3] + self.spheres[None, second, 3]
+            touching = (apart <= radii).any(axis=(1, 2))
+            if not touching[0] and touching.mean() < 0.95:
+                wanted += [(i, j) for i in first for j in second]
+        return np.sort(np.array(wanted), axis=1)
+
+    def still(self) -> Any:
+        """The spheres that no joint moves."""
+        moves = [frame.joint != "fixed" for frame in self.frames]
+
+        def is_still(link: int | None) -> bool:
+            return link is None or (not moves[link] and is_still(self.frames[link].parent))
+
+        return [body for body, link in enumerate(self.link) if is_still(int(link))]
+
+    def set_scene(self, number: int) -> tuple[list[Any], Any]:
+        rows = range(self.starts[number], self.starts[number + 1])
+        shapes, poses = [], np.tile(np.eye(4), (len(rows), 1, 1))
+        for place, row in enumerate(rows):
+            size, pose = self.scenes["sizes"][row], self.scenes["poses"][row]
+            poses[place] = matrix(pose)
+            if self.scenes["kinds"][row] == 1:
+                shapes.append(impinge.Cuboid(size, dtype=self.dtype))
+            else:
+                shapes.append(impinge.Cylinder(size[0], size[1], dtype=self.dtype))
+                poses[place] @= Y_TO_Z
+        ignored = [(body, obstacle) for body in self.still() for obstacle in range(len(rows))]
+        self.checker.set_obstacles(shapes, poses, ignored)
+        return shapes, poses
+
+
+def matrix(pose: Any) -> Any:
+    """A place and a quaternion w, x, y, z as a matrix."""
+    w, x, y, z = pose[3:] / np.linalg.norm(pose[3:])
+    found = np.eye(4)
+    found[:3, :3] = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    found[:3, 3] = pose[:3]
+    return found
+
+
+def by_pairs(robot: Robot, rows: Any, shapes: list[Any], obstacles: Any) -> Any:
+    """Which configurations are free, by a single call for each pair."""
+    poses, still = robot.checker.poses(rows), set(robot.still())
+    balls = [impinge.Ball(radius, dtype=robot.dtype) for radius in robot.spheres[:, 3]]
+    free = np.ones(len(rows), dtype=bool)
+    for one, two in robot.pairs:
+        free &= impinge.proximity(balls[one], poses[:, one], balls[two], poses[:, two]) != 0
+    for body in range(len(balls)):
+        for shape, pose in zip(shapes, obstacles, strict=True) if body not in still else ():
+            free &= impinge.proximity(balls[body], poses[:, body], shape, pose) != 0
+    return free
+
+
+def measure(robot: Robot, arguments: argparse.Namespace) -> tuple[float, float, int]:
+    """Configurations a second, the share that is not free, and how many answers differ from those by pairs."""
+    generator, seconds, hits, wrong = np.random.default_rng(7), 0.0, 0, 0
+    numbers = np.linspace(0, len(robot.scenes["counts"]) - 1, arguments.scenes).astype(int)
+    for index, number in enumerate(numbers):
+        shapes, obstacles = robot.set_scene(number)
+        rows = robot.random(generator, arguments.count)
+        times = []
+        for _ in range(3):
+            start = time.perf_counter()
+            free = robot.checker.is_free(rows, threads=arguments.threads)
+            times.append(time.perf_counter() - start)
+        seconds += min(times)
+        hits += int((~free).sum())
+        if index % 10 == 0:
+            wrong += int((free[:256] != by_pairs(robot, rows[:256], shapes, obstacles)).sum())
+    checked = len(numbers) * arguments.count
+    return checked / seconds, hits / checked, wrong
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--scenes", type=int, default=70)
+    parser.add_argument("--count", type=int, default=4096)
+    parser.add_argument("--threads", type=int, default=1)
+    arguments = parser.parse_args()
+    print("robot  scalar   spheres  pairs  not free  million a second  of the target  differing")
+    for name in ("panda", "ur5", "fetch"):
+        for dtype in ("float32", "float64"):
+            robot = Robot(arguments.folder, name, dtype)
+            rate, hits, wrong = measure(robot, arguments)
+            sizes = f"{len(robot.spheres):7}  {len(robot.pairs):5}"
+            print(f"{name:6} {dtype}  {sizes}  {hits:8.3f}  {rate / 1e6:16.2f}  {rate / TARGET:13.2f}  {wrong:9}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,238 @@
+"""The configuration checker: bodies on moving frames, obstacles, and many configurations in one call."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from impinge._native import NativeChecker
+from impinge._poses import matrices
+
+if TYPE_CHECKING:
+    from impinge._native import PosesLike, Progress, Shape
+
+NO_BODY = 4294967295
+"""The numbers of a pair that there is not."""
+
+
+class Frame(NamedTuple):
+    """A frame on a joint: it stands at `parent @ origin @ motion`.
+
+    `parent` is the number of a frame, `None` for the world, and `origin` a matrix (D+1, D+1), `None` for the identity.
+    A revolute joint turns by radians about `axis` (D,), in 2D counter-clockwise without one; a prismatic joint shifts
+    along it. The value is that in `column` of the configuration times `factor`, plus `offset`.
+    """
+
+    parent: int | None = None
+    origin: Any = None
+    joint: Literal["fixed", "revolute", "prismatic"] = "fixed"
+    axis: ArrayLike | None = None
+    column: int = 0
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+class NearestPairs(NamedTuple):
+    """For each configuration the least distance (n,) and its pair (n, 2); infinite and `NO_BODY` beyond the limit."""
+
+    distance: NDArray[Any]
+    pair: NDArray[np.uint32]
+
+
+class Checker:
+    """Which of many configurations of a robot are free: of collisions with itself and with obstacles.
+
+    frames: a sequence of `Frame`. columns: how many numbers a configuration has.
+    shapes: the bodies, a sequence of b `Shape`; on: the frame of each (b,); poses: where they are on these,
+    (b, D+1, D+1), or `None` for their origins. pairs (m, 2): the bodies that must not touch.
+
+    Configurations are arrays (n, columns), or (columns,) of one; their answers have a row for each. Pairs are numbers of
+    bodies, and of obstacles beginning with b; the lower one comes first, and of several pairs the first is given. What
+    is not finite is not free, has the distance NaN and no pair.
+
+    >>> import impinge, numpy as np
+    >>> arm = [impinge.Frame(joint="revolute", axis=[0, 0, 1], column=0),
+    ...        impinge.Frame(0, impinge.Poses([1, 0, 0]), "revolute", [0, 0, 1], column=1)]
+    >>> ends = impinge.Poses([[1, 0, 0], [1, 0, 0]])
+    >>> checker = impinge.Checker(arm, 2, [impinge.Ball(0.25)] * 2, [0, 1], ends, pairs=[[0, 1]])
+    >>> checker.set_obstacles([impinge.Cuboid([0.5, 4, 4])], impinge.Poses([[3, 0, 0]]))
+    >>> configurations = [[0, 0], [np.pi / 2, 0], [0, np.pi / 2]]
+    >>> checker.is_free(configurations, clearance=0.3).tolist()
+    [False, True, True]
+    >>> checker.first_pair(configurations, clearance=0.3)[0].tolist()
+    [1, 2]
+    >>> round(float(checker.nearest(configurations[0]).distance[0]), 6)
+    0.25
+    """
+
+    def __init__(
+        self,
+        frames: Sequence[Frame],
+        columns: int,
+        shapes: Sequence[Shape] = (),
+        on: Iterable[int] = (),
+        poses: PosesLike = None,
+        pairs: ArrayLike = (),
+    ) -> None:
+        bodies = list(shapes)
+        self.dim = bodies[0].dim if bodies else 3
+        self.dtype = bodies[0].dtype if bodies else "float64"
+        self.columns = columns
+        frame_of = [int(frame) for frame in on]
+        if len(frame_of) != len(bodies):
+            raise ValueError(f"on has {len(frame_of)} elements, where {len(bodies)} are needed")
+        self._counts = (len(frames), len(bodies))
+        self._native = NativeChecker(
+            self.dim,
+            self.dtype,
+            _columns(frames, self.dim, self.dtype),
+            columns,
+            (bodies, frame_of, self._poses(poses, len(bodies), "poses")),
+            _pairs(pairs, "pairs"),
+        )
+
+    def set_obstacles(self, shapes: Sequence[Shape], poses: PosesLike = None, ignored: ArrayLike = ()) -> None:
+        """Replaces all obstacles by shapes (o,) at poses (o, D+1, D+1); `ignored` (m, 2) are bodies and obstacles, each
+        from zero, that may touch."""
+        obstacles = list(shapes)
+        placed = self._poses(poses, len(obstacles), "poses")
+        self._native.set_obstacles(obstacles, placed, _pairs(ignored, "ignored"))
+
+    def frames(self, configurations: ArrayLike) -> NDArray[Any]:
+        """The poses of all frames: (n, frames, D+1, D+1), or (frames, D+1, D+1)."""
+        return self._placed(configurations, False)
+
+    def poses(self, configurations: ArrayLike) -> NDArray[Any]:
+        """The poses of all bodies: (n, b, D+1, D+1), or (b, D+1, D+1)."""
+        return self._placed(configurations, True)
+
+    def is_free(
+        self,
+        configurations: ArrayLike,
+        clearance: float = 0.0,
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> NDArray[np.bool_]:
+        """Whether all pairs are farther apart than the clearance, or do not touch: (n,)."""
+        free: NDArray[np.bool_] = self._ask("free", configurations, clearance, threads, progress)[0]
+        return free
+
+    def first_pair(
+        self,
+        configurations: ArrayLike,
+        clearance: float = 0.0,
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> NDArray[np.uint32]:
+        """The first pair that is not farther apart than the clearance: (n, 2), `NO_BODY` twice where it is free."""
+        pair: NDArray[np.uint32] = self._ask("pair", configurations, clearance, threads, progress)[1].reshape(-1, 2)
+        return pair
+
+    def nearest(
+        self,
+        configurations: ArrayLike,
+        limit: float = math.inf,
+        *,
+        threads: int | None = None,
+        progress: Progress | None = None,
+    ) -> NearestPairs:
+        """The distance of the nearest pair up to a limit, zero if it touches: `NearestPairs(distance, pair)`."""
+        _, pair, distance = self._ask("nearest", configurations, limit, threads, progress)
+        return NearestPairs(distance, pair.reshape(-1, 2))
+
+    def _ask(
+        self,
+        question: str,
+        configurations: ArrayLike,
+        limit: float,
+        threads: int | None,
+        progress: Progress | None,
+    ) -> list[NDArray[Any]]:
+        rows = np.atleast_2d(self._rows(configurations))
+        return self._native.ask(question, rows.reshape(-1), limit, len(rows), threads, progress)
+
+    def _placed(self, configurations: ArrayLike, of_bodies: bool) -> NDArray[Any]:
+        rows = self._rows(configurations)
+        size = self.dim + 1
+        count = self._counts[of_bodies]
+        if self.columns:
+            poses = self._native.place(rows.reshape(-1), of_bodies)
+        else:
+            # One pose for each, whatever the configuration.
+            poses = np.tile(self._native.place(rows.reshape(-1), of_bodies), (math.prod(rows.shape[:-1]), 1, 1))
+        return poses.reshape(*rows.shape[:-1], count, size, size)
+
+    def _rows(self, configurations: ArrayLike) -> NDArray[Any]:
+        rows = np.ascontiguousarray(configurations, dtype=self.dtype)
+        if rows.ndim not in (1, 2) or rows.shape[-1] != self.columns:
+            need = f"({self.columns},) or (n, {self.columns})"
+            raise ValueError(f"configurations has the shape {rows.shape}, where {need} is needed")
+        return rows
+
+    def _poses(self, poses: PosesLike, count: int, name: str) -> NDArray[Any]:
+        size = self.dim + 1
+        if poses is None:
+            return np.tile(np.eye(size, dtype=self.dtype), (count, 1, 1))
+        array = np.asarray(matrices(poses, self.dim, self.dtype, name)).reshape(-1, size, size)
+        if len(array) != count:
+            raise ValueError(f"{name} has {len(array)} elements, where {count} are needed")
+        return array
+
+
+def _pairs(pairs: ArrayLike, name: str) -> NDArray[np.uint32]:
+    array = np.asarray(pairs)
+    if array.size == 0:
+        return np.zeros((0, 2), dtype=np.uint32)
+    if array.ndim != 2 or array.shape[1] != 2:
+        raise ValueError(f"{name} has the shape {array.shape}, where (m, 2) is needed")
+    if array.min() < 0:
+        raise ValueError(f"{name} has the negative number {array.min()}")
+    return np.ascontiguousarray(array, dtype=np.uint32)
+
+
+def _columns(frames: Sequence[Frame], dim: int, dtype: str) -> tuple[Any, ...]:
+    """The frames as the native class takes them."""
+    count, size = len(frames), dim + 1
+    origins = np.tile(np.eye(size, dtype=dtype), (count, 1, 1))
+    generators, axes, factors = np.zeros((count, dim * dim)), np.zeros((count, dim)), np.zeros((count, 2))
+    parents, columns = [], []
+    for number, frame in enumerate(frames):
+        parents.append(-1 if frame.parent is None else int(frame.parent))
+        if frame.parent is not None and frame.parent < 0:
+            raise ValueError(f"frames[{number}] has the parent {frame.parent}")
+        columns.append(-1 if frame.joint == "fixed" else int(frame.column))
+        if frame.joint != "fixed" and frame.column < 0:
+            raise ValueError(f"frames[{number}] has the column {frame.column}")
+        if frame.origin is not None:
+            origins[number] = np.asarray(matrices(frame.origin, dim, dtype, f"frames[{number}].origin")).reshape(size, size)
+        factors[number] = frame.factor, frame.offset
+        if frame.joint == "prismatic":
+            axes[number] = _unit(frame, number, dim)
+        elif frame.joint == "revolute":
+            generators[number] = _generator(frame, number, dim)
+        elif frame.joint != "fixed":
+            raise ValueError(f"frames[{number}] has the joint {frame.joint!r}")
+    return parents, origins, columns, generators, axes, factors
+
+
+def _generator(frame: Frame, number: int, dim: int) -> NDArray[np.float64]:
+    """The matrix of axis x v, row by row."""
+    if dim == 2:
+        return np.array([0.0, -1.0, 1.0, 0.0])
+    x, y, z = _unit(frame, number, dim)
+    return np.array([0.0, -z, y, z, 0.0, -x, -y, x, 0.0])
+
+
+def _unit(frame: Frame, number: int, dim: int) -> NDArray[np.float64]:
+    axis = np.zeros(0) if frame.axis is None else np.asarray(frame.axis, dtype=np.float64)
+    length = float(np.linalg.norm(axis))
+    if axis.shape != (dim,) or not (math.isfinite(length) and length > 0):
+        raise ValueError(f"frames[{number}] has the axis {axis.tolist()}")
+    unit: NDArray[np.float64] = axis / length
+    return unit

@@ -1,0 +1,99 @@
+"""The configuration checker against single calls on its own poses."""
+
+import impinge
+import numpy as np
+import pytest
+from impinge import Checker, Frame, Poses
+
+NONE = [impinge.NO_BODY, impinge.NO_BODY]
+
+
+def arm(dim, dtype):
+    """Three joints, bodies of three kinds, and three obstacles."""
+    axis = [0, 0, 1] if dim == 3 else None
+    ahead = np.eye(dim + 1)
+    ahead[0, dim] = 1
+    side = np.eye(dim)[1]
+    frames = [
+        Frame(1, ahead, "revolute", axis, column=1, factor=-1.0, offset=0.25),
+        Frame(None, None, "revolute", axis, column=0),
+        Frame(0, ahead, "prismatic", side, column=2),
+        Frame(2),
+    ]
+    shapes = [
+        impinge.Ball(0.25, dim=dim, dtype=dtype),
+        impinge.Cuboid([0.3] * dim, dtype=dtype),
+        impinge.Capsule(0.2, 0.1, dim=dim, dtype=dtype),
+        impinge.Ball(0.1, dim=dim, dtype=dtype),
+    ]
+    checker = Checker(frames, 3, shapes, [1, 0, 2, 3], None, [(0, 2), (3, 0), (1, 3)])
+    poses = np.tile(np.eye(dim + 1), (3, 1, 1))
+    poses[:, :2, dim] = [[1.5, 1.0], [-1.2, 0.4], [0.0, -2.0]]
+    obstacles = [shapes[0], shapes[1], impinge.HalfSpace(side, dtype=dtype)]
+    checker.set_obstacles(obstacles, poses, ignored=[(0, 1)])
+    return checker, shapes, obstacles, poses
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_answers_are_those_of_single_calls(dim, dtype):
+    checker, shapes, obstacles, places = arm(dim, dtype)
+    configurations = np.random.default_rng(dim).uniform(-2, 2, (500, 3)).astype(dtype)
+    configurations[7, 1] = np.nan
+    finite = np.arange(500) != 7
+    poses = checker.poses(configurations)
+    assert poses.shape == (500, 4, dim + 1, dim + 1) and poses.dtype == dtype
+    pairs = [(one, two) for one in range(4) for two in range(4, 7) if (one, two) != (0, 5)] + [(0, 2), (0, 3), (1, 3)]
+    pairs.sort()
+
+    def between(one, two):
+        if two < 4:
+            return impinge.distance(shapes[one], poses[finite, one], shapes[two], poses[finite, two])
+        return impinge.distance(shapes[one], poses[finite, one], obstacles[two - 4], places[two - 4])
+
+    all_distances = np.array([between(one, two) for one, two in pairs])
+    for clearance in (0.0, 0.25):
+        touching = all_distances <= clearance
+        free = checker.is_free(configurations, clearance)
+        assert not free[7] and 0 < free.sum() < 499
+        np.testing.assert_array_equal(free[finite], ~touching.any(axis=0))
+        first = checker.first_pair(configurations, clearance, threads=1)
+        expected = [pairs[column.argmax()] if column.any() else NONE for column in touching.T]
+        np.testing.assert_array_equal(first[finite], expected)
+        assert first[7].tolist() == NONE
+    found = checker.nearest(configurations)
+    np.testing.assert_array_equal(found.distance[finite], all_distances.min(axis=0))
+    np.testing.assert_array_equal(found.pair[finite], np.array(pairs)[all_distances.argmin(axis=0)])
+    assert np.isnan(found.distance[7]) and found.pair[7].tolist() == NONE
+    near = checker.nearest(configurations, 0.25).distance[finite]
+    np.testing.assert_array_equal(near, np.where(found.distance[finite] <= 0.25, found.distance[finite], np.inf))
+    np.testing.assert_array_equal(checker.frames(configurations[3])[1], checker.frames(configurations)[3, 1])
+
+
+def test_without_columns_and_bodies():
+    checker = Checker([], 0)
+    assert checker.is_free(np.zeros((3, 0))).tolist() == [True] * 3
+    assert checker.poses(np.zeros((3, 0))).shape == (3, 0, 4, 4)
+    still = Checker([Frame(origin=Poses([1, 0, 0]))], 0, [impinge.Ball(1)], [0])
+    assert still.poses(np.zeros((2, 0)))[:, 0, 0, 3].tolist() == [1, 1]
+    still.set_obstacles([impinge.Ball(1)])
+    assert still.nearest(np.zeros((2, 0))).distance.tolist() == [0, 0]
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Checker([Frame(1)], 0), "frame 0 has the parent 1 of 1 frames"),
+        (lambda: Checker([Frame(1), Frame(0)], 0), "the parents of frame 0 have a loop"),
+        (lambda: Checker([Frame(None, None, "revolute", [0, 0, 1], 2)], 2), "driven by column 2 of 2"),
+        (lambda: Checker([Frame(None, None, "prismatic", [0, 0, 0])], 1), r"frames\[0\] has the axis"),
+        (lambda: Checker([Frame()], 0, [impinge.Ball(1)], [1]), "body 0 is on frame 1 of 1"),
+        (lambda: Checker([Frame()], 0, [impinge.Ball(1)], [0, 0]), "on has 2 elements, where 1 are needed"),
+        (lambda: Checker([Frame()], 0, [impinge.Ball(1)] * 2, [0, 0], None, [(0, 2)]), r"`pairs\[0\]` is 0 and 2"),
+        (lambda: Checker([Frame()], 0, [impinge.Ball(1)], [0]).set_obstacles([], None, [(0, 0)]), r"`ignored\[0\]`"),
+        (lambda: Checker([Frame()], 2).is_free([0.0]), r"configurations has the shape \(1,\)"),
+    ],
+)
+def test_what_is_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
