@@ -6,7 +6,10 @@ use super::balls::{
     ball_ball, ball_cone, ball_cuboid, ball_cylinder, ball_polygon, ball_polytope, ball_segment,
     ball_triangle, ball_triangle2,
 };
+use super::boxes::cuboid_cuboid;
 use super::flat_core::FlatCore;
+use super::hulls::are_small;
+use super::inner_ball::inner_balls_meet;
 use super::projection::center_in_second;
 use super::segments::segment_segment;
 use super::{general, plane_any, revolved};
@@ -41,6 +44,12 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
     if let Some(known) = known_in_space(pair) {
         return (known <= limit).then_some(known);
     }
+    if limit >= N::ZERO && inner_balls_meet(pair) {
+        return Some(N::ZERO);
+    }
+    if let (Kind::Cuboid(_), Kind::Cuboid(_)) = (pair.first, pair.second) {
+        return cuboid_cuboid::distance(pair, limit);
+    }
     let way = way_in_space(pair);
     if way == DistanceMethod::Revolved && is_plain(pair, limit) && are_bare(pair) {
         return revolved::distance(pair, limit);
@@ -52,6 +61,9 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
 pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
     if let Some(known) = known(pair, beside_ball_in_plane) {
         return (known <= limit).then_some(known);
+    }
+    if limit >= N::ZERO && inner_balls_meet(pair) {
+        return Some(N::ZERO);
     }
     distance(pair, limit, way_in_plane(pair))
 }
@@ -209,8 +221,12 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
             Segment(_) | Capsule(_) | Triangle(_) | Cuboid(_) | Polytope(_),
         ) => DistanceMethod::Formula,
         (Cuboid(_), Cuboid(_)) => DistanceMethod::Formula,
-        (Triangle(_) | Cuboid(_) | Polytope(_), Triangle(_) | Cuboid(_) | Polytope(_)) => {
-            DistanceMethod::Axes
+        (
+            first @ (Triangle(_) | Cuboid(_) | Polytope(_)),
+            second @ (Triangle(_) | Cuboid(_) | Polytope(_)),
+        ) => {
+            let has_axes = are_small([first, second]);
+            if has_axes { DistanceMethod::Axes } else { DistanceMethod::Search }
         }
         (Cylinder(..), Cylinder(..)) => DistanceMethod::Features,
         (

@@ -34,6 +34,7 @@ use crate::convex::{Separation, Units};
 use crate::math::lanes::with_lanes;
 use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Wide};
+use crate::shape::Kind;
 
 /// How many vertices, faces or edges are treated at once.
 const LANES: usize = 8;
@@ -53,6 +54,15 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
         SatResult::Found(found) => Some(found).filter(|found| found.distance <= limit),
         SatResult::Unproved => general::of_flat_cores(pair, limit),
     }
+}
+
+/// Whether the lanes hold the features of both solids; else all pairs of them fall back.
+pub(super) fn are_small<N: Real>(kinds: [Kind<'_, N, 3>; 2]) -> bool {
+    let is_small = |kind| match kind {
+        Kind::Polytope(polytope) => Polyhedral::of_polytope(polytope).is_some(),
+        _ => true,
+    };
+    kinds.into_iter().all(is_small)
 }
 
 /// The result of the test for a pair.
