@@ -52,6 +52,12 @@ pub(crate) trait Difference<N: Real, const D: usize> {
     /// Both cores are hulls of points: there are neither round faces nor branches with a bend.
     fn is_flat(&self) -> bool;
 
+    /// Neither core has edges or rims; a segment may be one of them. Then normals of which no other nearby is better
+    /// lie well apart.
+    fn is_smooth(&self) -> bool {
+        false
+    }
+
     /// The normals of the flat round faces of either core that a normal is nearly perpendicular to, as
     /// normals from the first core to the second.
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2];
@@ -82,6 +88,7 @@ pub(super) struct CorePair<'a, N: Real, A: ?Sized, B: ?Sized, const D: usize> {
     /// 1 / `scale`, exactly.
     shrink: N,
     is_flat: bool,
+    is_smooth: bool,
     peaks: Option<&'a dyn Peaks<N, D>>,
 }
 
@@ -114,15 +121,27 @@ where
         }
         let reaches = (safe_reach(solid1), safe_reach(solid2));
         let Units { scale, shrink } = Units::of(reaches.0, reaches.1, &pose12.translation);
-        let translation = pose12.translation * shrink;
-        let rotation = pose12.rotation;
-        let (is_flat, peaks) = (false, None);
-        Some(Self { solid1, solid2, rotation, translation, scale, shrink, is_flat, peaks })
+        Some(Self {
+            solid1,
+            solid2,
+            rotation: pose12.rotation,
+            translation: pose12.translation * shrink,
+            scale,
+            shrink,
+            is_flat: false,
+            is_smooth: false,
+            peaks: None,
+        })
     }
 
     /// The same where both cores are known to be hulls of points.
     pub(super) fn between_flat_cores(self) -> Self {
         Self { is_flat: true, ..self }
+    }
+
+    /// The same where neither core is known to have edges or rims, but that one may be a segment.
+    pub(super) fn between_smooth_cores(self) -> Self {
+        Self { is_smooth: true, ..self }
     }
 
     /// The same with means to name the best normal where the cores overlap.
@@ -167,6 +186,10 @@ where
 
     fn is_flat(&self) -> bool {
         self.is_flat
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.is_smooth
     }
 
     fn round_faces(&self, normal: &Vector<N, D>) -> [Option<Vector<N, D>>; 2] {

@@ -11,7 +11,7 @@ use super::candidate::SupportCandidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
-use super::hull::Hull;
+use super::hull::{EpaFace, Hull};
 use super::newton::settles;
 use super::peak::at_peak;
 use super::polish::{lowest, polish};
@@ -24,9 +24,17 @@ use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
 /// which one does for another.
 const CLIMBS: usize = 6;
 const SAME_CLIMB: f64 = 0.95;
-/// Cap on the number of support points. Flat faces take about ten, curved ones up to a hundred; where
-/// a whole ring of normals is equally good, as for coaxial cylinders, the cap is what stops.
+/// Cap on the number of support points. Flat faces take about ten, smooth cores about twenty, rims up to a hundred;
+/// where a whole ring of normals is about as good and nothing names it, the cap is what stops.
 const ROUNDS: usize = 128;
+
+/// The gap between a face and a smooth difference at which Newton's method is tried, and the cosine of the angle
+/// within which the normal that it leads to is the only one of its kind.
+const COARSE: f64 = 1.0 / 1024.0;
+const SAME_SUMMIT: f64 = 1.0 - 1.0 / 64.0;
+/// The same about a normal that was found, where the method need not be asked again.
+const FINE: f64 = 1.0 / 65536.0;
+const SAME_PLACE: f64 = 1.0 - 1.0 / 2048.0;
 
 /// See [`super::Simplicial::deepest`].
 pub(super) fn deepest<N: Real>(
@@ -34,13 +42,15 @@ pub(super) fn deepest<N: Real>(
     simplex: &Simplex<N, 3>,
 ) -> Separation<N, 3> {
     if let Some(peak) = difference.peak() {
-        return at_peak(difference, &peak);
+        let found = at_peak(difference, &peak);
+        let beside = if peak.is_ring { beside(difference, &[], &found) } else { None };
+        return beside.unwrap_or(found);
     }
     match from_simplex(difference, simplex) {
         Ok(corners) => {
             let mut hull = Hull::new(corners);
             let grown = grow(difference, &mut hull);
-            beside(difference, &mut hull, &grown).unwrap_or(grown)
+            beside(difference, hull.vertices(), &grown).unwrap_or(grown)
         }
         Err(flat) => flat,
     }
@@ -49,14 +59,14 @@ pub(super) fn deepest<N: Real>(
 /// What the rings of round sides have that is better than what growing led to.
 fn beside<N: Real>(
     difference: &dyn Difference<N, 3>,
-    hull: &mut Hull<N>,
+    vertices: &[Vertex<N, 3>],
     grown: &Separation<N, 3>,
 ) -> Option<Separation<N, 3>> {
-    let found = better(difference, &grown.normal, grown.distance)?;
-    hull.keep(&found.lowest);
+    let mut found = better(difference, &grown.normal, grown.distance)?;
+    found.lowest.extend_from_slice(vertices);
     Some(match found.mix {
         Some(mix) => placed(&found.best, &mix, N::HALF),
-        None => locate(difference, &found.best, hull.vertices()),
+        None => locate(difference, &found.best, &found.lowest),
     })
 }
 
@@ -141,11 +151,20 @@ fn from_needle<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>
 fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separation<N, 3> {
     let Some(first) = hull.nearest() else { return locate_any(difference, hull) };
     let mut best = SupportCandidate::along(difference, -hull.face(first).outward);
+    let mut summits = Summits::of(difference);
     for _ in 0..ROUNDS {
         let Some(index) = hull.nearest() else { break };
         let face = *hull.face(index);
+        if let Some(found) = summits.answer(&face, &best) {
+            return found;
+        }
         let candidate = SupportCandidate::along(difference, -face.outward);
         best.improve(&candidate);
+        if let Some(top) = summits.beyond(difference, hull, &face, &candidate) {
+            best.improve(&top);
+            hull.settle(index, -top.height);
+            continue;
+        }
         if -candidate.height - face.offset <= tolerance() {
             if face.settled {
                 break;
@@ -185,6 +204,84 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
     }
 }
 
+/// What Newton's method has led to from the faces of a hull in a smooth difference.
+struct Summits<N: Real> {
+    highest: Option<Summit<N>>,
+    /// It is tried from faces whose gap is no larger.
+    coarse: N,
+}
+
+impl<N: Real> Summits<N> {
+    fn of(difference: &dyn Difference<N, 3>) -> Self {
+        let coarse = if difference.is_smooth() { N::lit(COARSE) } else { N::ZERO };
+        Self { highest: None, coarse }
+    }
+
+    /// The answer, if no face is left that is nearer to the origin, and no normal was met that is better.
+    fn answer(
+        &self,
+        nearest: &EpaFace<N>,
+        best: &SupportCandidate<N, 3>,
+    ) -> Option<Separation<N, 3>> {
+        let Summit { top, mix } = self.highest.as_ref()?;
+        let is_answer =
+            -nearest.offset - top.height <= tolerance() && best.height - top.height <= noise();
+        is_answer.then(|| placed(top, mix, N::HALF))
+    }
+
+    /// The best normal beyond a face with this candidate, where there is but one.
+    fn beyond(
+        &mut self,
+        difference: &dyn Difference<N, 3>,
+        hull: &Hull<N>,
+        face: &EpaFace<N>,
+        candidate: &SupportCandidate<N, 3>,
+    ) -> Option<SupportCandidate<N, 3>> {
+        let gap = -candidate.height - face.offset;
+        if gap <= tolerance() || gap > self.coarse || face.settled {
+            return None;
+        }
+        if let Some(known) = self.highest.as_ref().filter(|known| known.stands_for(face, gap)) {
+            return Some(known.top);
+        }
+        let Some(found) = Summit::beside(difference, hull, face, *candidate) else {
+            self.coarse *= N::lit(COARSE);
+            return None;
+        };
+        let top = found.top;
+        if self.highest.as_ref().is_none_or(|known| top.height > known.top.height) {
+            self.highest = Some(found);
+        }
+        Some(top)
+    }
+}
+
+/// A normal with points that lie across from each other along it: the slope of the height is zero there.
+struct Summit<N: Real> {
+    top: SupportCandidate<N, 3>,
+    mix: Mix<N, 3>,
+}
+
+impl<N: Real> Summit<N> {
+    /// Whether a face that is so near to the difference lies at the very place.
+    fn stands_for(&self, face: &EpaFace<N>, gap: N) -> bool {
+        gap <= N::lit(FINE) && -self.top.normal.dot(&face.outward) >= N::lit(SAME_PLACE)
+    }
+
+    /// The one that Newton's method leads to from a face, if that is close by: then there is no other between.
+    fn beside(
+        difference: &dyn Difference<N, 3>,
+        hull: &Hull<N>,
+        face: &EpaFace<N>,
+        mut top: SupportCandidate<N, 3>,
+    ) -> Option<Self> {
+        let corners = face.corners.map(|corner| *hull.vertex(corner));
+        let mix = polish(difference, &mut top, &corners)?;
+        let is_close = -top.normal.dot(&face.outward) >= N::lit(SAME_SUMMIT);
+        is_close.then_some(Self { top, mix })
+    }
+}
+
 /// Goes on from the best normals of the faces, where the hull is of no more use: at the cap, or bent
 /// by rounding. Of a small solid deep in a large round one many normals far apart are nearly as good as
 /// the best, so several are tried.
@@ -193,8 +290,10 @@ fn climb_on<N: Real>(
     hull: &Hull<N>,
     best: &mut SupportCandidate<N, 3>,
 ) {
+    // What is better than the best is beyond a face that lies nearer.
+    let nearer = hull.nearer_than(-best.height - tolerance());
     let mut starts: Vec<_> =
-        hull.normals().map(|outward| SupportCandidate::along(difference, -outward)).collect();
+        nearer.map(|outward| SupportCandidate::along(difference, -outward)).collect();
     starts.push(*best);
     for _ in 0..CLIMBS {
         let Some(mut start) = starts.iter().copied().reduce(higher) else { break };

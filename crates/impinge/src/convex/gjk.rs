@@ -15,7 +15,7 @@ use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
 use super::simplex::{NearestOfSimplex, Simplex, Simplicial};
 use super::witness::{Mix, locate, placed, settle};
-use crate::math::{Real, Vector, max};
+use crate::math::{Real, Vector, max, unit_or};
 
 /// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty;
 /// whoever comes here is refined from the best normal so far.
@@ -90,20 +90,29 @@ where
     S: Difference<N, D>,
 {
     let mut search = GjkSearch::new(SupportCandidate::along(difference, *start));
-    search.gap = if difference.is_flat() { gap() } else { rough_gap() };
     search.near = rounding.map_or(N::ZERO, near);
-    let mut outcome = search.run(difference, limit);
-    if matches!(outcome, Outcome::Apart) && !difference.is_flat() {
-        if let Some(polished) = search.polished(difference) {
-            return Some(Answer::Signed(polished));
+    let mut outcome = Outcome::Apart;
+    let rough: &[N] = if difference.is_flat() { &[] } else { &[coarse_gap(), rough_gap()] };
+    for &gap in rough {
+        search.gap = gap;
+        outcome = search.run(difference, limit);
+        if !matches!(outcome, Outcome::Apart) {
+            break;
         }
+        if let Some(polished) = search.polished(difference) {
+            return (polished.distance <= limit).then_some(Answer::Signed(polished));
+        }
+    }
+    if matches!(outcome, Outcome::Apart) {
         search.gap = gap();
         outcome = search.run(difference, limit);
     }
     match outcome {
         Outcome::Beyond => None,
         Outcome::Near => Some(Answer::Overlap),
-        Outcome::Overlap if rounding.is_some() && search.is_clear() => Some(Answer::Overlap),
+        Outcome::Overlap if rounding.is_some_and(|radius| search.clears(difference, radius)) => {
+            Some(Answer::Overlap)
+        }
         Outcome::Overlap => Some(Answer::Signed(search.finish_overlap(difference))),
         Outcome::Apart => Some(Answer::Signed(search.finish(difference))),
     }
@@ -174,6 +183,12 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         }
     }
 
+    /// The difference, inflated by a radius, certainly holds a ball around the origin. In solids that lie
+    /// symmetrically the search from their middles ends at a corner, edge or face; another start leads off it.
+    fn clears(&self, difference: &impl Difference<N, D>, radius: N) -> bool {
+        self.is_clear() || overlaps(difference, &skew_axis(), radius, N::ZERO)
+    }
+
     /// The simplex holds a ball around the origin.
     fn is_clear(&self) -> bool {
         let points = self.simplex.points();
@@ -240,7 +255,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     /// The answer from the features found; refined first where the bounds do not meet. That is the
     /// case near touching, where the direction of the nearest point is mostly rounding errors, and
     /// where one solid is much larger than the other.
-    fn finish(mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
+    fn finish(&mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.met() {
             return self.settled(difference);
         }
@@ -265,7 +280,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
 
     /// The answer where the origin is in the difference, or all but: at once if a normal is known
     /// along which it lies on the boundary.
-    fn finish_overlap(self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
+    fn finish_overlap(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.best.height >= -noise::<N>() {
             return self.settled(difference);
         }
@@ -300,8 +315,22 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     }
 }
 
-/// The gap at which curved cores are handed to Newton's method, which takes it from there: 2⁻⁹ in
-/// `f32`, 2⁻¹⁹ in `f64`.
+/// A unit vector that is no axis of symmetry of anything that lies along the axes.
+fn skew_axis<N: Real, const D: usize>() -> Vector<N, D> {
+    let mut next = N::ONE;
+    let skew = Vector::<N, D>::from_fn(|_, _| {
+        next *= N::lit(0.618);
+        next
+    });
+    unit_or(&skew, skew)
+}
+
+/// The gap at which curved cores are handed to Newton's method first: from there it mostly leads to an answer.
+fn coarse_gap<N: Real>() -> N {
+    max(rough_gap(), N::lit(1.0 / 128.0))
+}
+
+/// The gap at which they are handed to it once more, which takes it from there: 2⁻⁹ in `f32`, 2⁻¹⁹ in `f64`.
 fn rough_gap<N: Real>() -> N {
     N::TWO * tolerance::<N>().sqrt()
 }

@@ -77,9 +77,9 @@ impl<N: Real> Hull<N> {
         nearest
     }
 
-    /// The unit normals out of the faces that are not too thin.
-    pub(super) fn normals(&self) -> impl Iterator<Item = Vector<N, 3>> + '_ {
-        let faces = self.faces.iter().filter(|face| face.offset < N::INFINITY);
+    /// The unit normals out of the faces that are nearer to the origin than this.
+    pub(super) fn nearer_than(&self, offset: N) -> impl Iterator<Item = Vector<N, 3>> + '_ {
+        let faces = self.faces.iter().filter(move |face| face.offset < offset);
         faces.map(|face| face.outward)
     }
 

@@ -44,7 +44,7 @@ pub(crate) use separation::Separation;
 pub(crate) use simplex::Simplicial;
 pub(crate) use units::Units;
 
-use crate::math::Pose;
+use crate::math::{Pose, Vector};
 use crate::shape::SupportMap;
 pub(crate) use difference::safe_reach;
 use difference::{CorePair, noise};
@@ -83,12 +83,13 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    of_pair(&CorePair::new(a, b, pose12)?, [a.rounding(), b.rounding()], limit)
+    let pair = CorePair::new(a, b, pose12)?;
+    of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
-/// [`separation`] of solids whose cores are hulls of points, which is found the same way but for all
-/// that is done about curved ones.
-pub(crate) fn flat_separation<N, A, B, const D: usize>(
+/// [`separation`] of solids whose cores have neither edges nor rims, but that one may be a segment: the best normal
+/// of an overlap is found in fewer steps.
+pub(crate) fn smooth_separation<N, A, B, const D: usize>(
     a: &A,
     b: &B,
     pose12: &Pose<N, D>,
@@ -99,8 +100,27 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
+    let pair = CorePair::new(a, b, pose12)?.between_smooth_cores();
+    of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
+}
+
+/// [`separation`] of solids whose cores are hulls of points, which is found the same way but for all
+/// that is done about curved ones. The search starts along a unit vector, if one is given.
+pub(crate) fn flat_separation<N, A, B, const D: usize>(
+    a: &A,
+    b: &B,
+    pose12: &Pose<N, D>,
+    limit: N,
+    start: Option<&Vector<N, D>>,
+) -> Option<Separation<N, D>>
+where
+    N: Simplicial<D>,
+    A: SupportMap<N, D> + ?Sized,
+    B: SupportMap<N, D> + ?Sized,
+{
     let pair = CorePair::new(a, b, pose12)?.between_flat_cores();
-    of_pair(&pair, [a.rounding(), b.rounding()], limit)
+    let start = start.copied().unwrap_or_else(|| pair.start());
+    of_pair(&pair, &start, [a.rounding(), b.rounding()], limit)
 }
 
 /// [`separation`] of solids of which it is known where the best normal of an overlap can lie: that is found
@@ -118,7 +138,7 @@ where
     B: SupportMap<N, D> + ?Sized,
 {
     let pair = CorePair::new(a, b, pose12)?.with_peaks(peaks);
-    of_pair(&pair, [a.rounding(), b.rounding()], limit)
+    of_pair(&pair, &pair.start(), [a.rounding(), b.rounding()], limit)
 }
 
 /// Whether two solids certainly overlap: points of the difference of their cores span a simplex that holds
@@ -213,6 +233,7 @@ where
 
 fn of_pair<N, A, B, const D: usize>(
     pair: &CorePair<'_, N, A, B, D>,
+    start: &Vector<N, D>,
     radii: [N; 2],
     limit: N,
 ) -> Option<Separation<N, D>>
@@ -221,7 +242,7 @@ where
     A: SupportMap<N, D> + ?Sized,
     B: SupportMap<N, D> + ?Sized,
 {
-    let found = gjk::solve(pair, &pair.start(), limit_of_cores(pair, radii, limit))?;
+    let found = gjk::solve(pair, start, limit_of_cores(pair, radii, limit))?;
     Some(pair.restored(&found).rounded(radii[0], radii[1]))
 }
 

@@ -17,6 +17,8 @@ pub(crate) struct Peak<N: Real, const D: usize> {
     pub(crate) normal: Vector<N, D>,
     /// It is that of a flat face: there is none a little better beside it.
     pub(crate) is_exact: bool,
+    /// It is one of a ring of normals of a round side, and others of it may be a little better.
+    pub(crate) is_ring: bool,
     /// Points of each core, mixes of which lie across from each other along the normal.
     pub(crate) on1: SmallVec<[Vector<N, D>; 8]>,
     pub(crate) on2: SmallVec<[Vector<N, D>; 8]>,

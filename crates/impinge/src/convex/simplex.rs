@@ -160,8 +160,10 @@ impl<N: Simplicial<D>, const D: usize> Simplex<N, D> {
         let mut kept = 0;
         for (index, &weight) in weights.iter().enumerate().take(self.len) {
             if weight > N::ZERO {
-                self.vertices[kept] = self.vertices[index];
-                self.points[kept] = self.points[index];
+                if kept < index {
+                    self.vertices[kept] = self.vertices[index];
+                    self.points[kept] = self.points[index];
+                }
                 self.weights[kept] = weight;
                 kept += 1;
             }

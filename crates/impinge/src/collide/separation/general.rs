@@ -1,18 +1,18 @@
 //! Any two convex solids: the general algorithm, and what it takes to agree with the others.
 
+use super::eroded::Eroded;
 use super::flat_core::FlatCore;
 use super::wrong_kinds;
 use crate::collide::Pair;
 use crate::convex::{self, Separation, Simplicial};
-use crate::math::{Pose, Real, max};
-use crate::shape::{Geometry, SupportMap};
+use crate::math::{Pose, Real, Vector, max};
+use crate::shape::{Kind, SupportMap};
 
 /// The two solids of a pair as support maps.
 fn maps<'a, N: Real, const D: usize>(
     pair: &Pair<'a, N, D>,
-) -> (&'a dyn SupportMap<N, D>, &'a dyn SupportMap<N, D>) {
-    let (first, second) = (Geometry(pair.first), Geometry(pair.second));
-    match (first.as_support_map(), second.as_support_map()) {
+) -> (Eroded<'a, N, D>, Eroded<'a, N, D>) {
+    match (Eroded::of(pair.first), Eroded::of(pair.second)) {
         (Some(map1), Some(map2)) => (map1, map2),
         _ => wrong_kinds(pair),
     }
@@ -39,9 +39,19 @@ pub(super) fn separation<N: Simplicial<D>, const D: usize>(
     limit: N,
 ) -> Option<Separation<N, D>> {
     let (map1, map2) = maps(pair);
-    let loosened = loosened(map1, map2, &pair.pose12, limit);
-    let found = convex::separation(map1, map2, &pair.pose12, loosened);
+    let loosened = loosened(&map1, &map2, &pair.pose12, limit);
+    let found = if are_smooth(pair) {
+        convex::smooth_separation(&map1, &map2, &pair.pose12, loosened)
+    } else {
+        convex::separation(&map1, &map2, &pair.pose12, loosened)
+    };
     found.filter(|found| found.distance <= limit)
+}
+
+/// Two ellipsoids, or a segment or capsule and one.
+fn are_smooth<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
+    use Kind::{Capsule, Ellipsoid, Segment};
+    matches!((pair.first, pair.second), (Segment(_) | Capsule(_) | Ellipsoid(_), Ellipsoid(_)))
 }
 
 /// The separation of two solids whose cores are hulls of points: the same, with all in one place for
@@ -50,11 +60,29 @@ pub(super) fn of_flat_cores<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
+    from_start(pair, limit, None)
+}
+
+/// [`of_flat_cores`], searched from a unit vector that leads from the first solid to the second: the nearer it is
+/// to the normal, the sooner that is found.
+pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+    normal: &Vector<N, D>,
+) -> Option<Separation<N, D>> {
+    from_start(pair, limit, Some(normal))
+}
+
+fn from_start<N: Simplicial<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+    start: Option<&Vector<N, D>>,
+) -> Option<Separation<N, D>> {
     let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) else {
         wrong_kinds(pair)
     };
     let loosened = loosened(&map1, &map2, &pair.pose12, limit);
-    let found = convex::flat_separation(&map1, &map2, &pair.pose12, loosened);
+    let found = convex::flat_separation(&map1, &map2, &pair.pose12, loosened, start);
     found.filter(|found| found.distance <= limit)
 }
 
@@ -70,8 +98,8 @@ pub(super) fn distance<N: Simplicial<D>, const D: usize>(
         }
         _ => {
             let (map1, map2) = maps(pair);
-            let loosened = loosened(map1, map2, &pair.pose12, limit);
-            convex::distance(map1, map2, &pair.pose12, loosened)
+            let loosened = loosened(&map1, &map2, &pair.pose12, limit);
+            convex::distance(&map1, &map2, &pair.pose12, loosened)
         }
     };
     found.filter(|distance| *distance <= limit)

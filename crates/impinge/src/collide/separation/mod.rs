@@ -9,8 +9,9 @@
 //! - [`apart`] searches the nearest points of triangles, boxes and hulls in 3D that are well apart, of one pair or eight;
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D, `triangles` and `chain` test eight
 //!   parts of a surface at once;
-//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps;
-//! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` the rest, by GJK and EPA.
+//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps, `coaxial`
+//!   those about one axis;
+//! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` the rest, by GJK and EPA, smooth ones `eroded`.
 //!
 //! Every function is given a pair and a limit and answers in the frame of the first solid; `None`
 //! exactly if the signed distance is above the limit (or not a number). The limit never changes the
@@ -20,9 +21,12 @@ pub(crate) mod apart;
 pub(crate) mod balls;
 pub(crate) mod boxes;
 mod chain;
+mod coaxial;
+mod eroded;
 mod flat_core;
 mod general;
 pub(crate) mod hulls;
+mod inner_ball;
 mod overlap;
 mod plane_any;
 pub(crate) mod polygons;

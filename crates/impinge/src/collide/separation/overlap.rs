@@ -7,6 +7,7 @@ use super::balls::{
     ball_triangle, ball_triangle2,
 };
 use super::flat_core::FlatCore;
+use super::inner_ball::inner_balls_meet;
 use super::projection::center_in_second;
 use super::segments::segment_segment;
 use super::{apart, general, plane_any, revolved};
@@ -41,6 +42,9 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
     if let Some(known) = known_in_space(pair) {
         return (known <= limit).then_some(known);
     }
+    if limit >= N::ZERO && inner_balls_meet(pair) {
+        return Some(N::ZERO);
+    }
     if is_plain(pair, limit) && are_faceted(pair) {
         return apart::distance(pair, limit);
     }
@@ -55,6 +59,9 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
 pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
     if let Some(known) = known(pair, beside_ball_in_plane) {
         return (known <= limit).then_some(known);
+    }
+    if limit >= N::ZERO && inner_balls_meet(pair) {
+        return Some(N::ZERO);
     }
     distance(pair, limit, way_in_plane(pair))
 }

@@ -33,6 +33,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     fn from_vertices(vertices: Vec<Point<N, D>>, center: Point<N, D>) -> Self {
         Self {
             reach: Self::reach_of(&vertices),
+            inner_radius: N::ZERO,
             blocks: Self::blocks_of(&vertices),
             quartets: Self::blocks_of(&vertices),
             vertices,
@@ -73,7 +74,7 @@ impl<N: Real> Polytope<N, 2> {
             polygon.push_face(-perp(&along), &[side, next]);
             polygon.loop_sides.extend([side, side]);
         }
-        polygon.planes = Self::planes_of(&polygon.faces);
+        polygon.collect_planes();
         polygon.collect_fans();
         polygon
     }
@@ -93,7 +94,7 @@ impl<N: Real> Polytope<N, 3> {
             let ring: Vec<u32> = face.iter().map(|&vertex| count32(vertex)).collect();
             hull.push_face(*normal, &ring);
         }
-        hull.planes = Self::planes_of(&hull.faces);
+        hull.collect_planes();
         hull.connect()?;
         hull.collect_fans();
         Some(hull)

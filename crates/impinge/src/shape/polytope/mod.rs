@@ -13,7 +13,7 @@ use core::ops::Range;
 use smallvec::SmallVec;
 
 use crate::math::simd::Level;
-use crate::math::{Point, Real, Vector, max, unit};
+use crate::math::{Point, Real, Vector, max, min, unit};
 use crate::shape::FeatureId;
 use crate::shape::polytope::support as polytope_support;
 use crate::shape::solids::segment::length_of;
@@ -45,6 +45,8 @@ use crate::shape::solids::segment::length_of;
 pub struct Polytope<N: Real, const D: usize> {
     pub(in crate::shape) center: Point<N, D>,
     pub(in crate::shape) reach: N,
+    /// That of a ball about the middle which no face cuts.
+    pub(in crate::shape) inner_radius: N,
     pub(in crate::shape) vertices: Vec<Point<N, D>>,
     /// The vertices again, eight at a time, coordinate by coordinate; the last one fills the rest.
     pub(in crate::shape) blocks: Blocks<N, D>,
@@ -258,6 +260,19 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             from_fn(|axis| from_fn(|lane| some[if lane < last { lane } else { last }][axis]))
         };
         vertices.chunks(COUNT).map(block).collect()
+    }
+
+    /// The radius of a ball about the middle that is inside, up to rounding; zero where there is none.
+    #[inline]
+    pub(crate) fn inner_radius(&self) -> N {
+        self.inner_radius
+    }
+
+    /// Keeps what follows from the faces once all are known.
+    pub(in crate::shape) fn collect_planes(&mut self) {
+        self.planes = Self::planes_of(&self.faces);
+        let depths = self.faces.iter().map(|face| -face.height_of(&self.center));
+        self.inner_radius = max(depths.fold(N::MAX, min), N::ZERO);
     }
 
     /// What [`Self::planes`] holds.

@@ -1,7 +1,7 @@
 //! Ellipsoids, and ellipses in 2D.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Matrix, Point, Pose, Real, Vector, max_component, unit};
+use crate::math::{Matrix, Point, Pose, Real, Vector, max_component, unit, unit_or};
 use crate::shape::error::{finite, or_panic, size};
 use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
@@ -61,10 +61,17 @@ impl<N: Real, const D: usize> Ellipsoid<N, D> {
 
 impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
-        let along = |v: &Vector<N, D>| unit(v).map(|(along, _)| along);
-        // Both steps by unit vectors, so that no product leaves the range of the numbers.
-        let stretched = along(direction).map(|along| along.component_mul(&self.half_axes));
-        let on_sphere = stretched.and_then(|v| along(&v)).unwrap_or_else(Vector::<N, D>::zeros);
+        let stretched = direction.component_mul(&self.half_axes);
+        let squared = stretched.norm_squared();
+        let is_usual = squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt();
+        let on_sphere = if is_usual {
+            stretched / squared.sqrt()
+        } else {
+            // The same of numbers about 1 large, so that no product leaves the range of the numbers.
+            let near_one = |v: &Vector<N, D>| v / max_component(v).power_of_two_below();
+            let stretched = near_one(direction).component_mul(&near_one(&self.half_axes));
+            unit_or(&stretched, Vector::<N, D>::zeros())
+        };
         Point::from(on_sphere.component_mul(&self.half_axes))
     }
 

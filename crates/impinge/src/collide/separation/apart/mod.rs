@@ -60,7 +60,10 @@ pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
         GapResult::Beyond => None,
         GapResult::Apart(found) => Some(found.distance),
         GapResult::Overlap => Some(N::ZERO),
-        GapResult::Unproved => nearer(pair)(pair, limit).map(|found| found.distance),
+        GapResult::Unproved => match (pair.first, pair.second) {
+            (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::distance(pair, limit),
+            _ => nearer(pair)(pair, limit).map(|found| found.distance),
+        },
     };
     distance.filter(|distance| *distance <= limit)
 }

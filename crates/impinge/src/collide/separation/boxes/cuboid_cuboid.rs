@@ -19,22 +19,49 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
     limit: N,
 ) -> Option<Separation<N, 3>> {
+    let boxes = of_pair(pair);
+    along_best(pair, limit, &boxes, &boxes.best_axis())
+}
+
+/// The distance in [`separation`]; where the boxes overlap the axes know it, without points.
+pub(in crate::collide::separation) fn distance<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<N> {
+    let boxes = of_pair(pair);
+    let best = boxes.best_axis();
+    if best.gap <= N::ZERO {
+        return (best.gap <= limit).then_some(best.gap);
+    }
+    along_best(pair, limit, &boxes, &best).map(|found| found.distance)
+}
+
+fn of_pair<N: Real>(pair: &Pair<'_, N, 3>) -> BoxPair<N> {
     let (Kind::Cuboid(cuboid1), Kind::Cuboid(cuboid2)) = (&pair.first, &pair.second) else {
         wrong_kinds(pair)
     };
     let (half1, half2) = (*cuboid1.half_extents(), *cuboid2.half_extents());
-    let boxes = BoxPair { half1, half2, pose12: pair.pose12 };
-    let (best, noise) = (boxes.best_axis(), boxes.noise());
+    BoxPair { half1, half2, pose12: pair.pose12 }
+}
+
+/// The separation, given the axis of the largest gap.
+fn along_best<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+    boxes: &BoxPair<N>,
+    best: &BoxAxis<N>,
+) -> Option<Separation<N, 3>> {
+    let noise = boxes.noise();
     if best.gap > limit + N::lit(16.0) * noise {
         return None;
     }
-    let found = along(&boxes, &best);
+    let found = along(boxes, best);
     let beside = found.point2 - found.point1 - best.normal * best.gap;
     let attained = best.gap <= N::ZERO || beside.norm() <= noise;
     if attained {
         return (found.distance <= limit).then_some(found);
     }
-    general::of_flat_cores(pair, limit)
+    general::of_flat_cores_near(pair, limit, &best.normal)
 }
 
 /// The points where the boxes face each other along an axis.
@@ -115,6 +142,21 @@ impl<N: Real> BoxReferenceFace<N> {
         })
     }
 
+    /// The lowest of some points, if all others are higher by more than a slack.
+    fn alone(&self, points: &[Point<N, 3>], slack: N) -> Option<Point<N, 3>> {
+        let lower = |a, b| if self.height(b) < self.height(a) { b } else { a };
+        let lowest = points.iter().reduce(lower)?;
+        let flat = self.height(lowest) + slack;
+        let low = points.iter().filter(|point| self.height(point) <= flat);
+        (low.count() == 1).then_some(*lowest)
+    }
+
+    /// Whether a point lies over the face or under it, not beside it.
+    fn is_below(&self, point: &Point<N, 3>) -> bool {
+        let across = [(self.axis + 1) % 3, (self.axis + 2) % 3];
+        across.iter().all(|&axis| point[axis].abs() <= self.half[axis])
+    }
+
     /// The middle of the lowest points of the other box among those above this face; `pose` is the
     /// other box's in the frame of this one, `distance` how low its lowest point is known to be.
     fn deepest(&self, other: &Vector<N, 3>, pose: &Pose<N, 3>, distance: N) -> Point<N, 3> {
@@ -123,6 +165,12 @@ impl<N: Real> BoxReferenceFace<N> {
         let facing: Polygon<N> = facing.iter().map(|corner| pose.point(corner)).collect();
         let size = self.half.sum() + other.sum() + distance.abs();
         let noise = N::lit(16.0) * N::EPSILON * size;
+        if let Some(corner) = self.alone(&facing, noise) {
+            // A corner beside the face of a box that is apart: there are no points that lie across.
+            if distance > N::ZERO || self.is_below(&corner) {
+                return corner;
+            }
+        }
         // Up to rounding, no point may be above a face without width; none is if the boxes are apart.
         let mut above = self.above(&facing, N::ZERO);
         if above.is_empty() {

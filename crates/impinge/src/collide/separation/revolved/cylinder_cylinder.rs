@@ -10,7 +10,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::hulls::{in_first_frame, noise, out_of_reach};
-use crate::collide::separation::{general, wrong_kinds};
+use crate::collide::separation::{coaxial, wrong_kinds};
 use crate::convex::{Separation, Units};
 use crate::math::{Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::shape::{Cylinder, Kind, SupportMap};
@@ -36,7 +36,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     let result = meeting.resolve(out_of_reach(&units, limit));
     match result.answer(&units, &pair.pose12) {
         Some(found) => found.filter(|found| found.distance <= limit),
-        None => general::separation(pair, limit),
+        None => coaxial::separation(pair, limit),
     }
 }
 
@@ -405,6 +405,7 @@ fn lifted<N: Real>(v: &Vector<N, 2>) -> Vector<N, 3> {
 #[cfg(test)]
 pub(in crate::collide::separation) mod tests {
     use super::*;
+    use crate::collide::separation::general;
     use crate::collide::separation::hulls::tests::{Random, error};
     use crate::shape::Shape;
 

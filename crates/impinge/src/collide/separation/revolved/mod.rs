@@ -21,6 +21,7 @@ mod tests;
 
 use self::cylinder_cylinder::{RevolvedFound, RevolvedResult};
 use self::profile::{Profile, ProfilePart, ProfileView};
+use super::coaxial;
 use super::flat_core::FlatCore;
 use super::general;
 use super::hulls::{noise, out_of_reach};
@@ -46,7 +47,7 @@ fn still<N: Real>() -> N {
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let otherwise = || match FlatCore::of(pair.first) {
         Some(_) => ridges::separation(pair, limit),
-        None => general::separation(pair, limit),
+        None => coaxial::separation(pair, limit),
     };
     attempt(pair, limit).unwrap_or_else(otherwise)
 }

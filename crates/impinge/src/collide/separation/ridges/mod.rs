@@ -28,7 +28,7 @@ use self::arc::{Arc, ArcSearch, RidgeLine};
 use self::flat::Flat;
 pub(super) use self::round::Round;
 use super::flat_core::FlatCore;
-use super::{general, wrong_kinds};
+use super::{coaxial, general, wrong_kinds};
 use crate::collide::Pair;
 use crate::convex::{self, Peak, Peaks, Separation};
 use crate::math::{Pose, Real, Vector, cross, max, min, unit};
@@ -67,6 +67,9 @@ struct OverlapPeaks<'a, 'b, N: Real> {
 
 impl<N: Real> Peaks<N, 3> for OverlapPeaks<'_, '_, N> {
     fn best(&self, shrink: N, gap: N) -> Option<Peak<N, 3>> {
+        if let Some(peak) = coaxial::peak(self.pair, shrink) {
+            return Some(peak);
+        }
         let round = Round::new(&self.pair.second, shrink)?;
         let flat = Flat::new(&self.pair.first, &self.pair.pose12, shrink)?;
         let mut meeting = DepthSearch {
@@ -232,6 +235,7 @@ impl<N: Real> DepthSearch<'_, N> {
         Peak {
             normal,
             is_exact,
+            is_ring: false,
             on1: low.iter().map(|&vertex| self.flat.own_vertices[vertex]).collect(),
             on2: on_round.into_iter().map(in_first).collect(),
         }

@@ -1,0 +1,279 @@
+//! Solids of revolution about one axis, or nearly: how deep, from their outlines.
+//!
+//! The difference of two solids about one axis is a solid about it too. In a half-plane of the axis its outline is
+//! that of the difference of two polygons, so the least depth is along the normal of a side of one of them, and as
+//! deep all around the axis. A search over directions has nothing to go by there. Where the axes differ a little,
+//! the best direction is near the ring of such a normal.
+
+use smallvec::SmallVec;
+
+use super::flat_core::FlatCore;
+use super::general;
+use super::hulls::noise;
+use super::ridges::Round;
+use super::wrong_kinds;
+use crate::collide::Pair;
+use crate::convex::{self, Peak, Peaks, Separation};
+use crate::math::{Pose, Real, Vector, cross, max, perpendicular_to, unit};
+use crate::shape::{Geometry, Kind};
+
+/// Solids of about size 1 that lie no farther from having one axis are searched near it: 2⁻¹².
+const NEAR: f64 = 1.0 / 4096.0;
+/// Normals of rings that differ by less are looked for together.
+const SAME_RING: f64 = 1.0 / 16.0;
+
+/// The separation of two cylinders or cones by the general algorithm.
+pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+    let (first, second) = (Geometry(pair.first), Geometry(pair.second));
+    let (Some(map1), Some(map2)) = (first.as_support_map(), second.as_support_map()) else {
+        wrong_kinds(pair)
+    };
+    let loosened = general::loosened(map1, map2, &pair.pose12, limit);
+    let peaks = CoaxialPeaks { pair };
+    let found = convex::separation_by(map1, map2, &pair.pose12, loosened, &peaks);
+    found.filter(|found| found.distance <= limit)
+}
+
+struct CoaxialPeaks<'a, 'b, N: Real> {
+    pair: &'b Pair<'a, N, 3>,
+}
+
+impl<N: Real> Peaks<N, 3> for CoaxialPeaks<'_, '_, N> {
+    fn best(&self, shrink: N, _: N) -> Option<Peak<N, 3>> {
+        peak(self.pair, shrink)
+    }
+}
+
+/// The best normal of the cores of a segment, capsule, cylinder or cone and another that overlap; `None` of other
+/// solids, and of those that are not about one axis. `shrink` takes lengths to units of the pair.
+pub(super) fn peak<N: Real>(pair: &Pair<'_, N, 3>, shrink: N) -> Option<Peak<N, 3>> {
+    let own_frame = Pose::identity();
+    let first = Outline::of(pair.first, &own_frame, shrink)?;
+    let second = Outline::of(pair.second, &pair.pose12, shrink)?;
+    Coaxial::new(first, second)?.peak()
+}
+
+/// A solid about an axis, in the frame of the first and units of the pair: in a half-plane of the axis the hull
+/// of two points and of those across the axis.
+struct Outline<N: Real> {
+    middle: Vector<N, 3>,
+    /// Unit.
+    axis: Vector<N, 3>,
+    /// How far aside and along the axis: the upper one and the lower one.
+    corners: [Vector<N, 2>; 2],
+}
+
+impl<N: Real> Outline<N> {
+    /// `None` of other kinds, and of one without a size.
+    fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
+        let place = pose.translation * shrink;
+        if let Some(round) = Round::new(&kind, shrink) {
+            let top = if round.is_cone { N::ZERO } else { round.radius };
+            return Some(Self {
+                middle: place,
+                axis: pose.rotation.column(1).into_owned(),
+                corners: [
+                    Vector::<N, 2>::new(top, round.half),
+                    Vector::<N, 2>::new(round.radius, -round.half),
+                ],
+            });
+        }
+        let segment = match FlatCore::of(kind)? {
+            FlatCore::Segment(segment) => segment,
+            FlatCore::Capsule(capsule) => capsule.segment(),
+            _ => return None,
+        };
+        let [a, b] = [segment.a(), segment.b()].map(|end| end.coords * (shrink * N::HALF));
+        let (along, half) = unit(&(b - a)).filter(|(_, half)| *half > noise())?;
+        let corners = [half, -half].map(|at| Vector::<N, 2>::new(N::ZERO, at));
+        let middle = pose.rotation * (a + b) + place;
+        Some(Self { middle, axis: pose.rotation * along, corners })
+    }
+
+    fn reach(&self) -> N {
+        max(self.corners[0].norm(), self.corners[1].norm())
+    }
+
+    fn level(&self, normal: &Vector<N, 2>) -> N {
+        max(normal.dot(&self.corners[0]), normal.dot(&self.corners[1]))
+    }
+
+    /// How far it reaches along a unit vector.
+    fn extent(&self, along: &Vector<N, 3>) -> N {
+        let up = along.dot(&self.axis);
+        let aside = (along - self.axis * up).norm();
+        along.dot(&self.middle) + self.level(&Vector::<N, 2>::new(aside, up))
+    }
+
+    /// The normals of the caps, then that of the side.
+    fn normals(&self) -> impl Iterator<Item = Vector<N, 2>> {
+        let [top, bottom] = &self.corners;
+        let up = Vector::<N, 2>::y();
+        let caps = [(top, up), (bottom, -up)].map(|(end, cap)| (end.x > N::ZERO).then_some(cap));
+        let side = unit(&Vector::<N, 2>::new(top.y - bottom.y, bottom.x - top.x));
+        caps.into_iter().chain([side.map(|(side, _)| side)]).flatten()
+    }
+
+    /// A direction in the half-plane that holds the unit vector `aside`.
+    fn lifted(&self, v: &Vector<N, 2>, aside: &Vector<N, 3>) -> Vector<N, 3> {
+        aside * v.x + self.axis * v.y
+    }
+
+    /// The corners that are farthest along a normal; on caps those across the axis as well.
+    fn touched(&self, normal: &Vector<N, 2>, aside: &Vector<N, 3>) -> SmallVec<[Vector<N, 3>; 8]> {
+        let low = self.level(normal) - N::EPSILON.sqrt();
+        let sides: &[N] = if normal.x > N::ZERO { &[N::ONE] } else { &[N::ONE, -N::ONE] };
+        let far = self.corners.iter().filter(|corner| normal.dot(corner) >= low);
+        far.flat_map(|corner| {
+            sides.iter().map(|&s| self.middle + self.lifted(corner, &(aside * s)))
+        })
+        .collect()
+    }
+}
+
+/// Two solids about one axis.
+struct Coaxial<N: Real> {
+    first: Outline<N>,
+    /// Its axis runs as that of the first.
+    second: Outline<N>,
+    /// From the middle of the first to that of the second, across the axis, and how far the solids are from having
+    /// one axis.
+    offset: Vector<N, 3>,
+    apart: N,
+}
+
+impl<N: Real> Coaxial<N> {
+    fn new(first: Outline<N>, mut second: Outline<N>) -> Option<Self> {
+        if first.axis.dot(&second.axis) < N::ZERO {
+            let [top, bottom] = second.corners;
+            second.axis = -second.axis;
+            second.corners = [bottom, top].map(|corner| Vector::<N, 2>::new(corner.x, -corner.y));
+        }
+        let between = second.middle - first.middle;
+        let shift = first.axis.dot(&between);
+        let offset = between - first.axis * shift;
+        let sine = cross(&first.axis, &second.axis).norm();
+        let apart = offset.norm() + sine * (second.reach() + shift.abs());
+        (apart <= N::lit(NEAR)).then_some(Self { first, second, offset, apart })
+    }
+
+    /// The unit vector away from the axis to where the second solid lies; if nowhere, anywhere.
+    fn aside(&self) -> Vector<N, 3> {
+        let beside = unit(&self.offset).filter(|(_, offset)| *offset > noise());
+        beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
+    }
+
+    /// The normal of a side of one of the two, which is given in its half-plane as one of the first.
+    fn direction(
+        &self,
+        normal: Vector<N, 2>,
+        whose: &Outline<N>,
+        aside: &Vector<N, 3>,
+    ) -> WayOut<N> {
+        let lifted = whose.lifted(&normal, aside);
+        let along = unit(&lifted).map_or(*aside, |(along, _)| along);
+        let depth = self.first.extent(&along) + self.second.extent(&-along);
+        WayOut { normal, along, depth }
+    }
+
+    /// `None` where a ring of normals that differ may have a better one than the best that is known.
+    fn peak(&self) -> Option<Peak<N, 3>> {
+        let aside = self.aside();
+        let own = self.first.normals().map(|n| self.direction(n, &self.first, &aside));
+        let across = |n: Vector<N, 2>| Vector::<N, 2>::new(n.x, -n.y);
+        let others = self.second.normals();
+        let others = others.map(|n| self.direction(across(n), &self.second, &aside));
+        let ways: SmallVec<[WayOut<N>; 6]> = own.chain(others).collect();
+        let shorter = |a: WayOut<N>, b: WayOut<N>| if b.depth < a.depth { b } else { a };
+        let best = ways.iter().copied().reduce(shorter)?;
+        let is_exact = self.apart <= noise();
+        let slack = self.apart * N::lit(4.0);
+        let is_rival = |other: &WayOut<N>| {
+            let is_other_ring = (other.normal - best.normal).norm() > N::lit(SAME_RING);
+            other.normal.x > N::ZERO && is_other_ring && other.depth < best.depth + slack
+        };
+        if !is_exact && ways.iter().any(is_rival) {
+            return None;
+        }
+        let is_ring = best.normal.x > N::ZERO && !is_exact;
+        Some(Peak {
+            normal: best.along,
+            is_exact: !is_ring,
+            is_ring,
+            on1: self.first.touched(&best.normal, &aside),
+            on2: self.second.touched(&across(best.normal), &-aside),
+        })
+    }
+}
+
+/// A direction out of an overlap.
+#[derive(Clone, Copy)]
+struct WayOut<N: Real> {
+    /// In the half-plane of the axis.
+    normal: Vector<N, 2>,
+    /// Unit.
+    along: Vector<N, 3>,
+    depth: N,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::separation::hulls::tests::{Random, error};
+    use crate::collide::separation::{general, separation as of_table};
+    use crate::math::Point;
+    use crate::math::na::UnitQuaternion;
+    use crate::shape::{Cone, Cylinder, Segment, Shape};
+
+    fn solid<N: Real>(random: &mut Random) -> Box<dyn Shape<N, 3>> {
+        let sizes = random.vector::<N>().abs().add_scalar(N::lit(0.125));
+        match random.pick(3) {
+            0 => Box::new(Cylinder::new(sizes.x, sizes.y)),
+            1 => Box::new(Cone::new(sizes.x, sizes.y)),
+            _ => {
+                let end = Point::<N, 3>::new(N::ZERO, sizes.x, N::ZERO);
+                Box::new(Segment::new(-end, end))
+            }
+        }
+    }
+
+    /// Solids about one axis but for an offset and a lean of this size, the second either way up.
+    fn compare<N: Real>(seed: u64, slight: f64, accuracy: f64) {
+        let random = &mut Random(seed);
+        for round in 0..200 {
+            let [one, other] = [(); 2].map(|()| solid::<N>(random));
+            if one.geometry().kind() > other.geometry().kind() {
+                continue;
+            }
+            let [about, lean, offset] = [(); 3].map(|()| random.vector::<N>());
+            let up = if round % 2 == 0 { N::ZERO } else { N::lit(core::f64::consts::PI) };
+            let turns =
+                [lean * N::lit(slight), Vector::<N, 3>::x() * up, Vector::<N, 3>::y() * about.y];
+            let turn = turns.map(UnitQuaternion::from_scaled_axis);
+            let rotation = (turn[0] * turn[1] * turn[2]).to_rotation_matrix().into_inner();
+            let at = Vector::<N, 3>::y() * (about.x * N::HALF) + offset * N::lit(slight);
+            let pose12 = Pose { rotation, translation: at };
+            let pair = Pair { first: one.geometry().0, second: other.geometry().0, pose12 };
+            let found = of_table(&pair, N::INFINITY).expect("no limit");
+            let truth = general::separation(&pair, N::INFINITY).expect("no limit");
+            let error = error(&pair, &found, &truth);
+            assert!(
+                error <= accuracy,
+                "round {round}: off by {error}: {one:?} {other:?} {pose12:?}: {found:?}, not {truth:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn answers_about_one_axis_are_those_of_the_search() {
+        compare::<f64>(1, 0.0, 1e-11);
+        compare::<f32>(2, 0.0, 1e-5);
+    }
+
+    #[test]
+    fn answers_near_one_axis_are_those_of_the_search() {
+        compare::<f64>(3, 1e-9, 1e-11);
+        compare::<f64>(4, 1e-5, 1e-11);
+        compare::<f32>(5, 1e-5, 1e-5);
+    }
+}

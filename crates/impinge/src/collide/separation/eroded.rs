@@ -1,0 +1,121 @@
+//! Solids with a part of their roundness taken off.
+//!
+//! Where a ball rolls around inside of a solid and touches every point of its surface, the solid is the points
+//! within the ball's radius of a smaller convex one (W. Blaschke, "Kreis und Kugel", 1916). So it is a rounded solid
+//! like a capsule, and until the smaller ones overlap its depth is found as a distance is, by a convex search.
+
+use crate::math::{Matrix, Point, Real, Vector, max_component, min};
+use crate::shape::{CurvedSupport, Ellipsoid, Geometry, Kind, SupportMap};
+
+/// The share of the largest radius that is taken off: what is left of a sphere still has a size.
+const SHARE: f64 = 15.0 / 16.0;
+
+/// A solid as the points within a radius of what is left when a ball of that radius is taken off all around.
+/// Asked for support points along unit vectors only.
+#[derive(Clone, Copy)]
+pub(super) struct Eroded<'a, N: Real, const D: usize> {
+    solid: &'a dyn SupportMap<N, D>,
+    /// Zero for solids with corners or edges.
+    radius: N,
+}
+
+impl<'a, N: Real, const D: usize> Eroded<'a, N, D> {
+    /// `None` for half-spaces and composites.
+    pub(super) fn of(kind: Kind<'a, N, D>) -> Option<Self> {
+        let radius = if let Kind::Ellipsoid(ellipsoid) = kind {
+            least_curvature_radius(ellipsoid) * N::lit(SHARE)
+        } else {
+            N::ZERO
+        };
+        Some(Self { solid: Geometry(kind).as_support_map()?, radius })
+    }
+}
+
+/// The radius of the largest ball that rolls inside: that of the sharpest bend, at the ends of the longest axis
+/// across the shortest.
+fn least_curvature_radius<N: Real, const D: usize>(ellipsoid: &Ellipsoid<N, D>) -> N {
+    let half_axes = ellipsoid.half_axes();
+    let longest = max_component(half_axes);
+    let shortest = half_axes.iter().fold(longest, |least, &half_axis| min(half_axis, least));
+    if longest > N::ZERO { shortest * (shortest / longest) } else { N::ZERO }
+}
+
+impl<N: Real, const D: usize> SupportMap<N, D> for Eroded<'_, N, D> {
+    #[inline]
+    fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
+        self.solid.core_support(direction) - direction * self.radius
+    }
+
+    fn rounding(&self) -> N {
+        self.solid.rounding() + self.radius
+    }
+
+    fn curved_support(
+        &self,
+        point: &Point<N, D>,
+        direction: &Vector<N, D>,
+    ) -> Option<CurvedSupport<N, D>> {
+        let off = direction * self.radius;
+        let found = self.solid.curved_support(&(point + off), direction)?;
+        let across = Matrix::<N, D>::identity() - direction * direction.transpose();
+        Some(CurvedSupport { point: found.point - off, bend: found.bend - across * self.radius })
+    }
+
+    fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {
+        self.solid.round_face(direction)
+    }
+
+    fn round_side(&self) -> Option<(Vector<N, D>, N)> {
+        self.solid.round_side()
+    }
+
+    fn center(&self) -> Point<N, D> {
+        self.solid.center()
+    }
+
+    fn reach(&self) -> N {
+        self.solid.reach() - self.radius
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collide::Pair;
+    use crate::collide::separation::general;
+    use crate::collide::separation::hulls::tests::{Random, error};
+    use crate::convex;
+    use crate::shape::{Cone, Cuboid, Cylinder, Shape};
+
+    /// As deep or as far apart as without a ball taken off.
+    fn compare<N: Real>(seed: u64, accuracy: f64) {
+        let random = &mut Random(seed);
+        for round in 0..600 {
+            let sizes = [(); 2].map(|()| random.vector::<N>().abs().add_scalar(N::lit(0.125)));
+            let first: Box<dyn Shape<N, 3>> = match round % 4 {
+                0 => Box::new(Cuboid::new(sizes[0])),
+                1 => Box::new(Cylinder::new(sizes[0].x, sizes[0].y)),
+                2 => Box::new(Cone::new(sizes[0].x, sizes[0].y)),
+                _ => Box::new(Ellipsoid::new(sizes[0])),
+            };
+            let second = Ellipsoid::new(sizes[1]);
+            let mut pose12 = random.turn();
+            pose12.translation = random.vector::<N>() * N::lit([2.0, 1.0, 0.25][round % 3]);
+            let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
+            let found = general::separation(&pair, N::INFINITY).expect("no limit");
+            let solid = Geometry(pair.first).as_support_map().expect("a convex solid");
+            let truth = convex::separation(solid, &second, &pose12, N::INFINITY).expect("no limit");
+            let error = error(&pair, &found, &truth);
+            assert!(
+                error <= accuracy,
+                "round {round}: off by {error}: {first:?} {second:?} {pose12:?}: {found:?}, not {truth:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_taken_off_is_put_back() {
+        compare::<f64>(1, 1e-11);
+        compare::<f32>(2, 1e-5);
+    }
+}

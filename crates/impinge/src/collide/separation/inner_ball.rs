@@ -1,0 +1,85 @@
+//! Balls inside solids: two that meet prove an overlap at once.
+
+use crate::collide::Pair;
+use crate::math::{Point, Real, Vector, min};
+use crate::shape::{Cone, Kind, SupportMap};
+
+/// The share of both radii within which middles count as near: what is left out is no rounding error.
+const SHARE: f64 = 1023.0 / 1024.0;
+
+/// Whether balls inside the two solids certainly overlap. `false` says nothing.
+pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
+    let ((center1, radius1), (center2, radius2)) = (of(pair.first), of(pair.second));
+    let reach = (radius1 + radius2) * N::lit(SHARE);
+    (pair.pose12.point(&center2) - center1).norm_squared() < reach * reach
+}
+
+/// A ball inside a solid, about its middle; one without size where none is known.
+fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Point<N, D>, N) {
+    let least = |sizes: &Vector<N, D>| sizes.iter().fold(N::MAX, |least, &size| min(size, least));
+    match kind {
+        Kind::Capsule(capsule) => (capsule.center(), capsule.radius()),
+        Kind::Cuboid(cuboid) => (Point::origin(), least(cuboid.half_extents())),
+        Kind::Polytope(polytope) => (polytope.center(), polytope.inner_radius()),
+        Kind::Cylinder(cylinder, _) => {
+            (Point::origin(), min(cylinder.half_height(), cylinder.radius()))
+        }
+        Kind::Cone(cone, _) => of_cone(cone),
+        Kind::Ellipsoid(ellipsoid) => (Point::origin(), least(ellipsoid.half_axes())),
+        Kind::Rounded(solid) => {
+            let (center, radius) = of(solid.inner().0);
+            (center, radius + solid.radius())
+        }
+        _ => (Point::origin(), N::ZERO),
+    }
+}
+
+/// The ball that touches the cap and the side: in the half-plane of the axis the circle in a triangle.
+fn of_cone<N: Real, const D: usize>(cone: &Cone<N>) -> (Point<N, D>, N) {
+    let (height, radius) = (cone.half_height() * N::TWO, cone.radius());
+    let side = (height * height + radius * radius).sqrt();
+    let inner = if side > N::ZERO { height * (radius / (radius + side)) } else { N::ZERO };
+    let mut center = Point::origin();
+    center[1] = inner - cone.half_height();
+    (center, inner)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Pose;
+    use crate::shape::{Capsule, ConvexHull, Cuboid, Cylinder, Ellipsoid, Rounded, Shape};
+
+    #[test]
+    fn balls_touch_the_surface() {
+        let corners = [[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 6.0]];
+        let corners = corners.map(Point::<f64, 3>::from);
+        let solids: [(Box<dyn Shape<f64, 3>>, f64); 7] = [
+            (Box::new(Cuboid::new(Vector::<f64, 3>::new(3.0, 2.0, 4.0))), 2.0),
+            (Box::new(Cylinder::new(3.0, 4.0)), 3.0),
+            (Box::new(Cone::new(2.0, 3.0)), 1.5),
+            (Box::new(Ellipsoid::new(Vector::<f64, 3>::new(3.0, 2.0, 4.0))), 2.0),
+            (Box::new(Capsule::new(1.0, 0.5)), 0.5),
+            (Box::new(Rounded::new(Cylinder::new(3.0, 4.0), 0.25)), 3.25),
+            (Box::new(ConvexHull::from_points(&corners)), 0.75_f64.sqrt()),
+        ];
+        // The middle of the hull is the mean of its corners, not that of the largest ball.
+        for (solid, expected) in solids {
+            let (_, radius) = of(solid.geometry().0);
+            assert!((radius - expected).abs() < 1e-14, "{radius} in {solid:?}");
+        }
+    }
+
+    #[test]
+    fn balls_that_are_apart_say_nothing() {
+        let (long, cone) = (Cuboid::new(Vector::<f64, 3>::new(9.0, 1.0, 1.0)), Cone::new(2.0, 3.0));
+        let at = |x| Pair {
+            first: long.geometry().0,
+            second: cone.geometry().0,
+            pose12: Pose::from_translation(Vector::<f64, 3>::new(x, 0.5, 0.0)),
+        };
+        assert!(inner_balls_meet(&at(2.49)), "1 and 1.5 are more than the way");
+        assert!(!inner_balls_meet(&at(2.51)), "though the solids overlap");
+        assert!(!inner_balls_meet(&at(f64::NAN)), "nowhere");
+    }
+}
