@@ -46,7 +46,7 @@ impl<N: Space<D>, const D: usize> Heap<N, D> {
         for index in 0..count {
             let size = N::lit([7.0, 70.0, 700.0][index % 3]);
             let far = Vector::<N, D>::repeat(N::lit(1000.0 * (index % 3) as f64));
-            heap.add((index % 2) as u32, random.vector::<N, D>() * size + far);
+            heap.add(u32::from(index % 2 == 1), random.vector::<N, D>() * size + far);
         }
         if odd {
             let place = heap.poses[0].translation;
@@ -241,16 +241,16 @@ fn what_is_no_tile_is_refused() {
     let heap = Heap::<f64, 2>::grid(3);
     let made = tiles(&heap.boxes(), 3, 0.5).expect("good");
     let no = tiles(&heap.boxes(), 0, 0.5).expect_err("none");
-    assert_eq!(no.to_string(), "there are to be 0 tiles, where 1 or more are needed");
+    assert_eq!(no.to_string(), "there are to be 0 tiles, where 1 or more are needed", "none");
     let no = tiles(&heap.boxes(), 2, -0.5).expect_err("negative");
-    assert_eq!(no, BatchError::Distance { value: -0.5 });
+    assert_eq!(no, BatchError::Distance { value: -0.5 }, "by its value");
     let shapes = Shapes::Picked { shapes: &heap.shapes, picks: &heap.picks };
     let side = Side::try_new(shapes, &heap.poses).expect("as many");
     let ask = |ids, tile| pairs_in_tile(&side, ids, &made, tile, &Control::new());
     let no = ask(&heap.ids, 3).expect_err("three tiles");
-    assert_eq!(no.to_string(), "there is no tile 3 of 3");
+    assert_eq!(no.to_string(), "there is no tile 3 of 3", "from 0 to 2");
     let no = ask(&heap.ids[1..], 0).expect_err("one less");
-    assert_eq!(no, BatchError::Length { argument: "ids", given: 8, needed: 9 });
+    assert_eq!(no, BatchError::Length { argument: "ids", given: 8, needed: 9 }, "an id for each");
     let cut = |axis, at| TileCut { axis, at };
     let good = cut(0, 1.0);
     let wrong = [vec![cut(2, 0.0)], vec![good, cut(1, f64::NAN)], vec![good, good, cut(0, 0.5)]];
