@@ -8,6 +8,7 @@ Balls, boxes and capsules in heaps of 50 000 on average, the densest a thousand 
 """
 
 import argparse
+import multiprocessing
 import resource
 import shutil
 import tempfile
@@ -64,7 +65,10 @@ def memory():
 def main(given, folder):
     source, output = folder / f"objects-{given.objects}.parquet", folder / f"pairs-{given.objects}"
     if not source.exists():
-        write(source, given.objects)
+        # Elsewhere: what this process once held, its children count as their own.
+        process = multiprocessing.get_context("spawn").Process(target=write, args=(source, given.objects))
+        process.start()
+        process.join()
     shutil.rmtree(output, ignore_errors=True)
     print(f"{given.objects} objects, {source.stat().st_size / 1e6:.0f} MB of Parquet", flush=True)
     local = LocalCluster(given.workers, threads_per_worker=1, host="127.0.0.1", dashboard_address="127.0.0.1:0", memory_limit=0)

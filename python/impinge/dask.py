@@ -15,7 +15,7 @@ import uuid
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
@@ -92,22 +92,37 @@ def self_join(
     there is an output.
     """
     output = Path(output)
-    scratch = output.with_name(output.name + ".scratch")
-    output.mkdir(parents=True)
+    if output.exists():
+        raise FileExistsError(f"there is an output: {output}")
     units = _row_groups(source, shapes.dim)
+    scratch = output.with_name(output.name + ".scratch")
+    # Of a process that died.
+    shutil.rmtree(scratch, ignore_errors=True)
+    try:
+        return _join(units, shapes, scratch, output, _Options(clearance, number_of_tiles, sample))
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+class _Options(NamedTuple):
+    clearance: float
+    number_of_tiles: int
+    sample: int
+
+
+def _join(units: list[Any], shapes: Scene, scratch: Path, output: Path, options: _Options) -> int:
     starts = np.cumsum([0, *(unit.count_rows() for unit in units)])
     shared = delayed(shapes)
 
-    step = max(1, int(starts[-1]) // max(1, sample))
+    step = max(1, int(starts[-1]) // max(1, options.sample))
     sampled = _run(_sample, [(unit, int(start), shared, step) for unit, start in zip(units, starts, strict=False)])
     picked = np.concatenate([found for _, found in sampled] or [np.empty((0, 2, shapes.dim), shapes.dtype)])
-    tiles = cut_tiles(picked, number_of_tiles, clearance=clearance)
+    tiles = cut_tiles(picked, options.number_of_tiles, clearance=options.clearance)
     firsts = _even_ranges([found for found, _ in sampled], len(units))
 
     _run(_share_out, [(unit, number, shared, tiles, scratch) for number, unit in enumerate(units)])
     found = _run(_join_tile, [(tile, shared, tiles, firsts, scratch) for tile in range(len(tiles))])
     _run(_merge, [(number, scratch, output) for number in range(len(firsts) + 1)])
-    shutil.rmtree(scratch, ignore_errors=True)
     return int(sum(found))
 
 

@@ -63,7 +63,6 @@ fn boxes<'py>(
 /// [[[10, 11]], [[12, 13]]]
 #[pyfunction]
 #[pyo3(signature = (shapes, poses, ids, tiles, tile, *, threads=None, progress=None))]
-#[expect(clippy::too_many_arguments, reason = "Python's arguments are named")]
 fn pairs_in_tile<'py>(
     shapes: &Object<'py>,
     poses: &Object<'py>,

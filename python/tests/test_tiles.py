@@ -186,6 +186,7 @@ def test_self_join_refuses(source, tmp_path):
         pq.write_table(table, path)
         with pytest.raises(ValueError, match=message):
             self_join(path, scene, tmp_path / f"out-{number}")
+        assert not list(tmp_path.glob("out-*")), "nothing is left"
 
 
 def test_a_scene_is_asked_in_row_order(client, tmp_path):

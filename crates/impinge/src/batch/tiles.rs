@@ -326,7 +326,7 @@ fn halves<N: Real, const D: usize>(bounds: &Aabb<N, D>, cut: &TileCut<N>) -> [Aa
 
 /// What a cut leads to, the better the less: the number of objects in a tile of the fuller side, times a common number,
 /// and the number of objects on both sides.
-type Load = (u64, usize);
+type CutLoad = (u64, usize);
 
 /// The cut with the least load; anywhere inside where the bounds and all boxes have no lower end.
 fn best_cut<N: Real, const D: usize>(
@@ -334,7 +334,7 @@ fn best_cut<N: Real, const D: usize>(
     bounds: &Aabb<N, D>,
     tiles: u32,
 ) -> TileCut<N> {
-    let mut best: Option<(Load, TileCut<N>)> = None;
+    let mut best: Option<(CutLoad, TileCut<N>)> = None;
     for axis in 0..D {
         let faces = Faces::along(axis, boxes);
         for at in faces.even_cuts([bounds.mins()[axis], bounds.maxs()[axis]], tiles) {
@@ -390,7 +390,7 @@ impl<N: Real> Faces<N> {
         [before(&self.lows), self.highs.len() - before(&self.highs)]
     }
 
-    fn load(&self, at: N, tiles: u32) -> Load {
+    fn load(&self, at: N, tiles: u32) -> CutLoad {
         let [below, above] = self.counts(at);
         let below_each = (below as u64) * u64::from(tiles - tiles / 2);
         let above_each = (above as u64) * u64::from(tiles / 2);
