@@ -39,6 +39,11 @@ pub enum CheckerError {
         /// How many columns there are.
         columns: usize,
     },
+    /// The axis of a joint is no unit vector, or its generator none of a turn about one.
+    Axis {
+        /// The frame of the joint.
+        frame: usize,
+    },
     /// A pose or a joint has a number that is infinite or NaN.
     NotFinite {
         /// What it is a pose of: `frames`, `bodies` or `obstacles`.
@@ -80,6 +85,9 @@ impl fmt::Display for CheckerError {
             Self::Loop { frame } => write!(f, "the parents of frame {frame} have a loop"),
             Self::Column { frame, column, columns } => {
                 write!(f, "the joint of frame {frame} is driven by column {column} of {columns}")
+            }
+            Self::Axis { frame } => {
+                write!(f, "the joint of frame {frame} has an axis that is no unit vector")
             }
             Self::NotFinite { argument, index } => {
                 write!(f, "`{argument}[{index}]` has a number that is not finite")

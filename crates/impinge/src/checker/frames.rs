@@ -79,8 +79,8 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
     /// The tree of these frames, moved by configurations of so many columns. No joint needs to use a column.
     ///
     /// # Errors
-    /// [`CheckerError::Parent`], [`CheckerError::Loop`], [`CheckerError::Column`], and [`CheckerError::NotFinite`] of
-    /// an origin or a joint, each for the first frame that has it.
+    /// [`CheckerError::Parent`], [`CheckerError::Loop`], [`CheckerError::Column`], [`CheckerError::Axis`], and
+    /// [`CheckerError::NotFinite`] of an origin or a joint, each for the first frame that has it.
     pub fn try_new(frames: &[Frame<N, D>], columns: usize) -> Result<Self, CheckerError> {
         for (index, frame) in frames.iter().enumerate() {
             check(index, frame, [frames.len(), columns])?;
@@ -225,6 +225,9 @@ fn check<N: Real, const D: usize>(
     }
     if !frame.origin.is_finite() || !frame.joint.is_finite() {
         return Err(CheckerError::NotFinite { argument: "frames", index });
+    }
+    if !frame.joint.has_unit_axis() {
+        return Err(CheckerError::Axis { frame: index });
     }
     Ok(())
 }

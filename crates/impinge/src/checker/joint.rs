@@ -48,7 +48,7 @@ impl<N: Real, const D: usize> Joint<N, D> {
     }
 
     /// Turns by the rotation exp(θ K) with the number θ in a column and the generator K: v ↦ axis × v of a unit axis in
-    /// 3D, a quarter turn in 2D. What is no such matrix makes no rotation.
+    /// 3D, a quarter turn in 2D.
     ///
     /// ```
     /// use impinge::dim2::checker::Joint;
@@ -88,6 +88,20 @@ impl<N: Real, const D: usize> Joint<N, D> {
     #[must_use]
     pub fn value_at(&self, number: N) -> N {
         number * self.factor + self.offset
+    }
+
+    /// Its axis is a unit vector, or its generator that of a turn about one, up to rounding: other numbers would stretch
+    /// what they move.
+    pub(super) fn has_unit_axis(&self) -> bool {
+        let is_one = |x: N| (x - N::ONE).abs() <= N::lit(64.0) * N::EPSILON;
+        match &self.motion {
+            JointMotion::Fixed => true,
+            JointMotion::Turn(generator) => {
+                let is_skew = *generator == -generator.transpose();
+                is_skew && is_one(generator.norm_squared() * N::HALF)
+            }
+            JointMotion::Slide(axis) => is_one(axis.norm_squared()),
+        }
     }
 
     /// All its numbers are finite.

@@ -34,6 +34,18 @@ fn trees() {
     let axis = Unit::new_unchecked(Vector::<f64, 3>::repeat(f64::INFINITY));
     let broken = Frame { joint: Joint::prismatic(axis, 0), ..frame(None) };
     assert_eq!(refused(&[broken], 1), Some(error), "the axis");
+    for joint in [
+        Joint::prismatic(Unit::new_unchecked(Vector::<f64, 3>::repeat(1.0)), 0),
+        Joint::<f64, 3>::revolute(Unit::new_unchecked(Vector::<f64, 3>::x() * 1.001), 0),
+        Joint::turning(Vector::<f64, 3>::x().cross_matrix().abs(), 0),
+    ] {
+        let axis = Some(CheckerError::Axis { frame: 1 });
+        assert_eq!(
+            refused(&[frame(None), Frame { joint, ..frame(Some(0)) }], 1),
+            axis,
+            "{joint:?}"
+        );
+    }
     let broken = Frame { joint: frame(None).joint.with_factor(f64::NAN), ..frame(None) };
     assert_eq!(refused(&[broken], 1), Some(error), "the factor");
 }
