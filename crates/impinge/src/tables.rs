@@ -12,8 +12,8 @@ use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::collide::far::{Apart, are_beyond};
 use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
-use crate::collide::packet::{GapVisitor, TiledParts};
-use crate::collide::parts::Between;
+use crate::collide::packet::{GapVisitor, LANES, TiledParts, Tiles};
+use crate::collide::parts::{AxisSlabs, Between, part_gaps2, part_gaps3};
 use crate::collide::separation::{
     Algorithm, Projection, distance_in_plane, distance_in_space, distance_in_world, gaps2, gaps3,
     in_world, seen_in_plane, seen_in_space, separation_in_plane, separation_in_space,
@@ -51,6 +51,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) separation: Algorithm<N, D>,
     /// That of many triangles from one solid, if there is an algorithm for many.
     pub(crate) gaps: GapsFn<N, D>,
+    /// How far each of eight parts is from what is in slabs, at least.
+    pub(crate) part_gaps: PartGapsFn<N, D>,
     /// Brings the contacts of a convex solid and a chain of segments, or of a ball and a surface, up to date;
     /// returns false where the generic path must do it.
     pub(crate) update_quickly: QuickFn<N, D>,
@@ -134,6 +136,7 @@ type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, N, bo
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type GapsFn<N, const D: usize> =
     fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, N, GapVisitor<'_, N, D>) -> bool;
+type PartGapsFn<N, const D: usize> = fn(&AxisSlabs<N, D>, &Tiles<N, D>, N) -> [N; LANES];
 type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
@@ -261,6 +264,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     gaps: GapsFn<N, D>,
+    part_gaps: PartGapsFn<N, D>,
     update_quickly: QuickFn<N, D>,
     distance: DistanceFn<N, D>,
     seen: SeenFn<N, D>,
@@ -285,6 +289,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         gaps: gaps2,
+        part_gaps: part_gaps2,
         update_quickly: update_chain,
         distance: distance_in_plane,
         seen: seen_in_plane,
@@ -310,6 +315,7 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         gaps: gaps3,
+        part_gaps: part_gaps3,
         update_quickly: update_on_surface,
         distance: distance_in_space,
         seen: seen_in_space,
@@ -337,6 +343,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             gaps: particular.gaps,
+            part_gaps: particular.part_gaps,
             update_quickly: particular.update_quickly,
             distance: particular.distance,
             seen: particular.seen,
