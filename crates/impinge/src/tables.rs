@@ -13,8 +13,8 @@ use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::checker::CheckerTables;
 use crate::collide::far::{Apart, are_beyond};
 use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
-use crate::collide::packet::{GapVisitor, TiledParts};
-use crate::collide::parts::Between;
+use crate::collide::packet::{GapVisitor, LANES, TiledParts, Tiles};
+use crate::collide::parts::{AxisSlabs, Between, part_gaps2, part_gaps3};
 use crate::collide::separation::{
     Algorithm, Projection, distance_in_plane, distance_in_space, distance_in_world, gaps2, gaps3,
     in_world, seen_in_plane, seen_in_space, separation_in_plane, separation_in_space,
@@ -52,6 +52,8 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) separation: Algorithm<N, D>,
     /// That of many triangles from one solid, if there is an algorithm for many.
     pub(crate) gaps: GapsFn<N, D>,
+    /// How far each of eight parts is from what is in slabs, at least.
+    pub(crate) part_gaps: PartGapsFn<N, D>,
     /// Brings the contacts of a convex solid and a chain of segments, or of a ball and a surface, up to date;
     /// returns false where the generic path must do it.
     pub(crate) update_quickly: QuickFn<N, D>,
@@ -139,6 +141,7 @@ type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, N, bo
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type GapsFn<N, const D: usize> =
     fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, N, GapVisitor<'_, N, D>) -> bool;
+type PartGapsFn<N, const D: usize> = fn(&AxisSlabs<N, D>, &Tiles<N, D>, N) -> [N; LANES];
 type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
@@ -266,6 +269,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for Tables<N, D> {
 struct Particular<N: Space<D>, const D: usize> {
     separation: Algorithm<N, D>,
     gaps: GapsFn<N, D>,
+    part_gaps: PartGapsFn<N, D>,
     update_quickly: QuickFn<N, D>,
     distance: DistanceFn<N, D>,
     distances: DistancesOfPairsFn<N, D>,
@@ -291,6 +295,7 @@ impl<N: Real> Particular<N, 2> {
     const IN_PLANE: Self = Self {
         separation: separation_in_plane,
         gaps: gaps2,
+        part_gaps: part_gaps2,
         update_quickly: update_chain,
         distance: distance_in_plane,
         distances: distances2,
@@ -317,6 +322,7 @@ impl<N: Real> Particular<N, 3> {
     const IN_SPACE: Self = Self {
         separation: separation_in_space,
         gaps: gaps3,
+        part_gaps: part_gaps3,
         update_quickly: update_on_surface,
         distance: distance_in_space,
         distances: distances3,
@@ -345,6 +351,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
         Self {
             separation: particular.separation,
             gaps: particular.gaps,
+            part_gaps: particular.part_gaps,
             update_quickly: particular.update_quickly,
             distance: particular.distance,
             distances: particular.distances,

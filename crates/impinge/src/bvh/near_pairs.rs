@@ -31,9 +31,12 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// The largest distance at which boxes still matter, negative to end the search; never grows.
     fn bound(&self) -> N;
 
-    /// Gets each pair whose boxes are within the bound: an object of the first (0) or the second (1) tree and one
-    /// of the other.
-    fn visit(&mut self, which: usize, own: u32, other: u32);
+    /// Nothing in the boxes, of the first and of the second tree, is near enough to matter; false says nothing.
+    fn are_beyond(&self, boxes: &[Aabb<N, D>; 2]) -> bool;
+
+    /// Gets the pairs whose boxes are within the bound: an object of the first (0) or the second (1) tree and at most
+    /// [`LANES`] of the other.
+    fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
 /// A block of each tree. Of pairs at one distance those in low layers come first.
@@ -78,6 +81,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
             let is_within = bound >= N::ZERO && pair.distance <= (bound + N::ZERO).bits();
             if !is_within {
                 return;
+            }
+            if self.question.are_beyond(&[0, 1].map(|which| self.bounds(which, &pair).as_aabb())) {
+                continue;
             }
             match self.wider(&pair) {
                 Some(which) => self.open(which, &pair),
@@ -128,12 +134,11 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
                 return;
             }
             let aabb = self.question.object_in_other(which, id);
-            for (distance, slot) in self.near(1 - which, 0, other, &aabb) {
-                let Some(other) = trees[1].id_in(slot) else { continue };
-                if distance > self.question.bound() {
-                    break;
-                }
-                self.question.visit(which, id, other);
+            let near = self.near(1 - which, 0, other, &aabb);
+            let others: SmallVec<[u32; LANES]> =
+                near.iter().filter_map(|&(_, slot)| trees[1].id_in(slot)).collect();
+            if !others.is_empty() {
+                self.question.visit(which, id, &others);
             }
         }
     }
@@ -191,8 +196,13 @@ mod tests {
             self.limit
         }
 
-        fn visit(&mut self, which: usize, own: u32, other: u32) {
-            self.found.push(if which == 0 { [own, other] } else { [other, own] });
+        fn are_beyond(&self, [one, other]: &[Aabb<f64, 3>; 2]) -> bool {
+            one.mins().x - self.shift > other.maxs().x + self.limit + 1e-6
+        }
+
+        fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
+            let pair = |other| if which == 0 { [own, other] } else { [other, own] };
+            self.found.extend(others.iter().map(|&other| pair(other)));
         }
     }
 

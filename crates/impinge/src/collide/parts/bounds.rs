@@ -67,7 +67,7 @@ pub(crate) fn around_point<N: Real, const D: usize>(
 }
 
 /// The largest of the finite coordinates of a box.
-fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
+pub(super) fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     let mut most = N::ZERO;
     for axis in 0..D {
         for x in [aabb.mins()[axis], aabb.maxs()[axis]] {
@@ -79,7 +79,8 @@ fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     most
 }
 
-fn rounding<N: Real>(scale: N) -> N {
+/// What rounding makes of coordinates of this size.
+pub(super) fn rounding<N: Real>(scale: N) -> N {
     N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
 }
 

@@ -1,15 +1,20 @@
 //! How far a composite is from another shape: as far as the nearest of its parts.
 
+use smallvec::SmallVec;
+
 use super::between::{Between, by_number};
 use super::bounds::loosened;
-use super::slabs::AxisSlabs;
+use super::slabs::{AxisSlabs, corners};
+use super::solid_bounds::SolidBounds;
 use super::sweep::PartSweep;
 use crate::bounding_volume::Aabb;
-use crate::bvh::{TreePair, visit_pairs};
+use crate::bvh::{Ranking, TreePair, visit_pairs, visit_ranked};
 use crate::collide::Pair;
+use crate::collide::packet::{LANES, Tiles};
 use crate::collide::separation::separation as of_convex;
 use crate::convex::Separation;
-use crate::math::{Real, Space, max};
+use crate::math::{Point, Real, Space, Vector, max};
+use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Kind};
 
 /// The separation of two parts, in the frame of the first shape, and which parts they are.
@@ -56,6 +61,11 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
         None
     }
 
+    /// The unit vector from the first shape to the second between the best parts so far, in the frame of the first.
+    fn normal(&self) -> Option<Vector<N, D>> {
+        None
+    }
+
     fn visit(&mut self, parts: [u32; 2]);
 }
 
@@ -88,13 +98,13 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
     let mut search = NearestSearch { between, visitor };
     match between.composites() {
         [None, None] => search.visitor.visit([0, 0]),
-        [Some(parts1), None] => search.of_one(1, 0, parts1),
+        [Some(parts1), None] => search.of_solid(1, parts1),
         [None, Some(parts2)] => match between.pair.first {
             Kind::Plane(plane) => {
                 search
                     .outside(0, 0, parts2, |sweep| AxisSlabs::of_half_space(between, plane, sweep));
             }
-            _ => search.of_one(0, 0, parts2),
+            _ => search.of_solid(0, parts2),
         },
         [Some(parts1), Some(parts2)] => {
             let trees = [parts1, parts2].map(|parts| parts.search().as_tree()?.packed_whole());
@@ -141,20 +151,74 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.visitor.bound()
     }
 
-    fn visit(&mut self, which: usize, own: u32, other: u32) {
-        let Self { between, visitor, parts, slabs } = self;
-        // A sweep only gets shorter, so that slabs made before are wide enough.
-        let of_own = || PartSlabs {
-            which,
-            part: own,
-            slabs: AxisSlabs::of_part(between, which, own, visitor.sweep(which).as_ref()),
+    fn are_beyond(&self, boxes: &[Aabb<N, D>; 2]) -> bool {
+        let moves = [0, 1].map(|which| self.visitor.sweep(which).is_some());
+        let Some(normal) = self.visitor.normal().filter(|_| moves == [false; 2]) else {
+            return false;
         };
-        let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == own;
-        let kept = slabs.take().filter(is_own).unwrap_or_else(of_own);
-        if !kept.slabs.are_beyond(&parts[1 - which].part(other), visitor.limit()) {
-            visitor.visit(if which == 0 { [own, other] } else { [other, own] });
+        self.between.gap_of_boxes(boxes, &normal) > self.visitor.limit()
+    }
+
+    fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
+        let slabs = self.slabs_of(which, own);
+        let mut near = self.gaps(&slabs, self.parts[1 - which], others);
+        self.slabs = Some(slabs);
+        near.sort_unstable_by(|(one, part1), (other, part2)| {
+            one.as_f64().total_cmp(&other.as_f64()).then(part1.cmp(part2))
+        });
+        for (gap, other) in near {
+            let is_beyond = gap > self.visitor.limit() || self.visitor.bound() < N::ZERO;
+            if is_beyond {
+                return;
+            }
+            self.visitor.visit(if which == 0 { [own, other] } else { [other, own] });
         }
-        *slabs = Some(kept);
+    }
+}
+
+/// Parts by how far they are at least, negative where they may overlap.
+type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
+
+impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
+    /// Those around a part of the first shape (0) or the second (1).
+    fn slabs_of(&mut self, which: usize, part: u32) -> PartSlabs<N, D> {
+        // A sweep only gets shorter, so that slabs made before are wide enough.
+        let is_own = |kept: &PartSlabs<N, D>| kept.which == which && kept.part == part;
+        if let Some(kept) = self.slabs.take().filter(is_own) {
+            return kept;
+        }
+        let sweep = self.visitor.sweep(which);
+        let mut slabs = AxisSlabs::of_part(self.between, which, part, sweep.as_ref());
+        if let Some(normal) = self.visitor.normal() {
+            let in_other = if which == 0 { self.between.pose21.vector(&normal) } else { normal };
+            slabs.add(&in_other);
+        }
+        PartSlabs { which, part, slabs }
+    }
+
+    /// The gaps between what is in slabs and some parts.
+    fn gaps(
+        &self,
+        around: &PartSlabs<N, D>,
+        parts: &dyn CompositeShape<N, D>,
+        others: &[u32],
+    ) -> PartGaps<N> {
+        let mut near = PartGaps::new();
+        for group in others.chunks(LANES) {
+            let (mut tiles, mut is_known) = (Tiles::blank(), [false; LANES]);
+            for (lane, &other) in group.iter().enumerate() {
+                let part = parts.part(other);
+                if let Some(corners) = corners(&part.solid, &part.pose) {
+                    tiles.put(lane, &corners.map(Point::from));
+                    is_known[lane] = true;
+                }
+            }
+            let gaps = (N::tables().part_gaps)(&around.slabs, &tiles, self.visitor.limit());
+            for ((&other, gap), is_known) in group.iter().zip(gaps).zip(is_known) {
+                near.push((if is_known { gap } else { -N::INFINITY }, other));
+            }
+        }
+        near
     }
 }
 
@@ -164,6 +228,22 @@ struct NearestSearch<'a, 'q, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
+    /// A convex solid, the first shape or the second, against the parts of the other that are near.
+    fn of_solid(&mut self, which: usize, parts: &dyn CompositeShape<N, D>) {
+        let (between, is_at_rest) = (self.between, self.visitor.sweep(which).is_none());
+        let tree =
+            parts.search().as_tree().filter(|tree| is_at_rest && tree.packed_whole().is_some());
+        match tree.zip(SolidBounds::of(between, which)) {
+            Some((tree, bounds)) => {
+                let aabb = between.whole_in_other(which);
+                let visitor = &mut *self.visitor;
+                let mut ranked = RankedParts { bounds, parts, boxes: tree, which, visitor };
+                visit_ranked(tree.packed(), &aabb, &mut ranked);
+            }
+            None => self.of_one(which, 0, parts),
+        }
+    }
+
     /// A part of one shape, the first or the second, against those of the other that are near.
     fn of_one(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let between = self.between;
@@ -206,6 +286,36 @@ impl<N: Space<D>, const D: usize> NearestSearch<'_, '_, N, D> {
     }
 }
 
+/// The parts of a composite by how far they may be from a convex solid, the first shape (0) or the second (1).
+struct RankedParts<'a, 'q, N: Real, const D: usize> {
+    bounds: SolidBounds<'a, N, D>,
+    parts: &'a dyn CompositeShape<N, D>,
+    boxes: &'a BoxTree<N, D>,
+    which: usize,
+    visitor: &'q mut dyn PairVisitor<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> Ranking<N, D> for RankedParts<'_, '_, N, D> {
+    fn of_box(&self, aabb: &Aabb<N, D>) -> N {
+        self.bounds.of_box(aabb)
+    }
+
+    fn of_object(&self, id: u32) -> N {
+        self.bounds.of_part(&self.parts.part(id), &self.boxes.boxes()[id as usize])
+    }
+
+    fn limit(&self) -> Option<N> {
+        let ends = self.visitor.bound() < N::ZERO;
+        let limit = self.visitor.limit();
+        // Nothing is within NaN.
+        (!ends && limit <= N::INFINITY).then_some(limit)
+    }
+
+    fn visit(&mut self, id: u32) {
+        self.visitor.visit(if self.which == 0 { [0, id] } else { [id, 0] });
+    }
+}
+
 /// The best pair of parts so far.
 struct NearestPart<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
@@ -225,6 +335,10 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         if is_known { -N::ONE } else { loosened(max(limit, N::ZERO)) }
     }
 
+    fn normal(&self) -> Option<Vector<N, D>> {
+        self.best.map(|best| best.separation.normal)
+    }
+
     fn visit(&mut self, parts: [u32; 2]) {
         if self.best.is_some_and(|best| best.parts == parts) {
             return;
@@ -240,7 +354,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
 
 impl<N: Real, const D: usize> PartSeparation<N, D> {
     /// Nearer, or as near and earlier by number.
-    fn is_before(&self, other: &Self) -> bool {
+    pub(super) fn is_before(&self, other: &Self) -> bool {
         let (distance, others) = (self.separation.distance, other.separation.distance);
         distance < others || (distance == others && self.parts < other.parts)
     }

@@ -13,18 +13,20 @@ const ROUNDING: f64 = 128.0;
 /// Slabs that a solid lies in, in the frame of the composite that it is held against, while it moves.
 pub(crate) struct AxisSlabs<N: Real, const D: usize> {
     /// Heights are measured from here.
-    origin: Vector<N, D>,
+    pub(super) origin: Vector<N, D>,
     /// A length that the rounding of the solid's place is in proportion to.
-    size: N,
+    pub(super) size: N,
     /// Those of a triangle: across each side and, in 3D, across its plane.
-    slabs: SmallVec<[Slab<N, D>; 4]>,
+    pub(super) slabs: SmallVec<[Slab<N, D>; 5]>,
+    /// Those of the solid as seen from the origin, if it is at rest.
+    pub(super) corners: Option<[Vector<N, D>; 3]>,
 }
 
 /// What lies between two planes across a unit vector.
-struct Slab<N: Real, const D: usize> {
-    along: Vector<N, D>,
-    lowest: N,
-    highest: N,
+pub(super) struct Slab<N: Real, const D: usize> {
+    pub(super) along: Vector<N, D>,
+    pub(super) lowest: N,
+    pub(super) highest: N,
 }
 
 impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
@@ -39,7 +41,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         // What is unbounded goes anywhere, so far at most.
         let highest = sweep.map_or(N::ZERO, |sweep| sweep.spread);
         let slab = Slab { along, lowest: -N::INFINITY, highest };
-        Self { origin, size: highest, slabs: smallvec![slab] }
+        Self { origin, size: highest, slabs: smallvec![slab], corners: None }
     }
 
     /// Of a part of the first shape (0) or the second (1); none of parts without corners.
@@ -49,8 +51,8 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         part: u32,
         sweep: Option<&PartSweep<N, D>>,
     ) -> Self {
-        let mut slabs =
-            Self { origin: Vector::<N, D>::zeros(), size: N::ZERO, slabs: SmallVec::new() };
+        let (origin, none) = (Vector::<N, D>::zeros(), SmallVec::new());
+        let mut slabs = Self { origin, size: N::ZERO, slabs: none, corners: None };
         let Some((part, pose)) = between.part_in_other(which, part) else { return slabs };
         let Some(corners) = corners(&part.solid, &pose) else { return slabs };
         let own = max_component(&part.pose.translation);
@@ -60,8 +62,18 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         let all = corners.iter().chain(&ends);
         slabs.size = all.fold(place, |size, at| max(max_component(at), size));
         let spread = sweep.map_or(N::ZERO, |sweep| sweep.spread);
-        slabs.surround(&corners.map(|at| at - corners[0]), &ends.map(|at| at - corners[0]), spread);
+        let seen = corners.map(|at| at - corners[0]);
+        slabs.surround(&seen, &ends.map(|at| at - corners[0]), spread);
+        slabs.corners = sweep.is_none().then_some(seen);
         slabs
+    }
+
+    /// Adds one across another unit vector, of a solid at rest.
+    pub(super) fn add(&mut self, along: &Vector<N, D>) {
+        if let Some(corners) = &self.corners {
+            let [lowest, highest] = range(corners, along);
+            self.slabs.push(Slab { along: *along, lowest, highest });
+        }
     }
 
     /// Adds slabs around corners that are seen from the first of them, and around where they go, up to a spread.
@@ -88,8 +100,13 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         });
         // Lengths that are subnormal numbers are not precise.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
-        is_precise && gap - size * N::lit(ROUNDING) * N::EPSILON > limit
+        is_precise && gap - size * rounding_unit() > limit
     }
+}
+
+/// What rounding adds to gaps, in units of all lengths.
+pub(super) fn rounding_unit<N: Real>() -> N {
+    N::lit(ROUNDING) * N::EPSILON
 }
 
 /// Unit vectors across each side of a triangle whose first corner is the origin and, in 3D, across its plane.

@@ -1,0 +1,176 @@
+//! Slabs around one part against eight others at a time, and the axes of these as well.
+//!
+//! Two triangles in space overlap iff neither normal and no direction perpendicular to a side of each parts them, and if
+//! they do the one of these along which they overlap least is the shortest way out (Gottschalk, Lin and Manocha,
+//! "`OBBTree`", 1996); two in the plane, iff no direction across a side of either does.
+
+use super::slabs::{AxisSlabs, rounding_unit};
+use crate::collide::packet::{LANES, Tiles};
+use crate::math::lanes::{bits, cross, dot, load, minus, spread, with_lanes};
+use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::{Real, Vector, Wide};
+
+/// Parts as they are seen from the origin of slabs, by corner and axis.
+type Corners<V, const D: usize> = [[V; D]; 3];
+
+/// How far each of eight parts in the plane is from what is in the slabs, or less; overlaps count as negative. Where no
+/// gap along the slabs is within the limit others are not asked.
+pub(crate) fn part_gaps2<N: Real>(
+    slabs: &AxisSlabs<N, 2>,
+    tiles: &Tiles<N, 2>,
+    limit: N,
+) -> [N; LANES] {
+    with_lanes!(Level::new(), simd => in_plane::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit))
+}
+
+/// [`part_gaps2`], in 3D.
+pub(crate) fn part_gaps3<N: Real>(
+    slabs: &AxisSlabs<N, 3>,
+    tiles: &Tiles<N, 3>,
+    limit: N,
+) -> [N; LANES] {
+    with_lanes!(Level::new(), simd => in_space::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit))
+}
+
+#[inline(always)]
+fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    slabs: &AxisSlabs<N, 2>,
+    tiles: &Tiles<N, 2>,
+    limit: N,
+) -> [N; LANES] {
+    let corners = seen::<S, N, V, 2>(simd, slabs, tiles);
+    let mut gaps = SlabGaps { simd, corners, gaps: V::all(simd, -N::INFINITY) };
+    gaps.along(slabs);
+    if let Some(own) = slabs.corners.as_ref().filter(|_| gaps.are_within(slabs, limit)) {
+        let own = spread_corners(simd, own);
+        for side in sides(&gaps.corners) {
+            gaps.across(&own, &[-side[1], side[0]]);
+        }
+    }
+    gaps.certain(slabs)
+}
+
+#[inline(always)]
+fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    slabs: &AxisSlabs<N, 3>,
+    tiles: &Tiles<N, 3>,
+    limit: N,
+) -> [N; LANES] {
+    let corners = seen::<S, N, V, 3>(simd, slabs, tiles);
+    let mut gaps = SlabGaps { simd, corners, gaps: V::all(simd, -N::INFINITY) };
+    gaps.along(slabs);
+    let Some(own) = &slabs.corners else { return gaps.certain(slabs) };
+    if !gaps.are_within(slabs, limit) {
+        return gaps.certain(slabs);
+    }
+    let (own, others) = (spread_corners(simd, own), sides(&gaps.corners));
+    gaps.across(&own, &cross(&others[0], &others[1]));
+    if gaps.are_within(slabs, limit) {
+        let own_sides = sides(&own);
+        for own_side in &own_sides {
+            for side in &others {
+                gaps.across(&own, &cross(own_side, side));
+            }
+        }
+    }
+    gaps.certain(slabs)
+}
+
+/// The gaps of eight parts so far.
+struct SlabGaps<S, V, const D: usize> {
+    simd: S,
+    corners: Corners<V, D>,
+    gaps: V,
+}
+
+impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D> {
+    #[inline(always)]
+    fn along(&mut self, slabs: &AxisSlabs<N, D>) {
+        for slab in &slabs.slabs {
+            let [low, high] = extent(&self.corners, &spread(self.simd, &slab.along));
+            let above = low - V::all(self.simd, slab.highest);
+            let below = V::all(self.simd, slab.lowest) - high;
+            self.gaps = above.larger(below).larger(self.gaps);
+        }
+    }
+
+    /// Takes the gaps along directions of any length into account.
+    #[inline(always)]
+    fn across(&mut self, own: &Corners<V, D>, along: &[V; D]) {
+        let squared = dot(along, along);
+        let ([low, high], [own_low, own_high]) = (extent(&self.corners, along), extent(own, along));
+        let gap = (low - own_high).larger(own_low - high) / squared.sqrt();
+        let simd = self.simd;
+        let is_length = squared.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
+            & squared.simd_lt(V::all(simd, N::INFINITY));
+        self.gaps = is_length.select(gap, -V::all(simd, N::INFINITY)).larger(self.gaps);
+    }
+
+    #[inline(always)]
+    fn are_within(&self, slabs: &AxisSlabs<N, D>, limit: N) -> bool {
+        let beyond = V::all(self.simd, limit) + self.slack(slabs);
+        bits(self.gaps.simd_gt(beyond)) != u8::MAX
+    }
+
+    /// What rounding may have added to the gaps.
+    #[inline(always)]
+    fn slack(&self, slabs: &AxisSlabs<N, D>) -> V {
+        let mut size = V::all(self.simd, slabs.size);
+        for corner in &self.corners {
+            for value in corner {
+                size = value.abs().larger(size);
+            }
+        }
+        size * V::all(self.simd, rounding_unit())
+    }
+
+    /// The gaps without what rounding may have added.
+    #[inline(always)]
+    fn certain(&self, slabs: &AxisSlabs<N, D>) -> [N; LANES] {
+        let (simd, slack) = (self.simd, self.slack(slabs));
+        // Lengths that are subnormal numbers are not precise.
+        let least = N::MIN_POSITIVE / N::EPSILON * rounding_unit::<N>();
+        let is_precise = slack.simd_gt(V::all(simd, least));
+        let gaps = is_precise.select(self.gaps - slack, -V::all(simd, N::INFINITY));
+        let mut lanes = [N::ZERO; LANES];
+        gaps.store(&mut lanes);
+        lanes
+    }
+}
+
+#[inline(always)]
+fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    slabs: &AxisSlabs<N, D>,
+    tiles: &Tiles<N, D>,
+) -> Corners<V, D> {
+    let origin: [V; D] = spread(simd, &slabs.origin);
+    let [a, b, c] = &tiles.corners;
+    let (a, b, c) = (load(simd, a), load(simd, b), load(simd, c));
+    [minus(&a, &origin), minus(&b, &origin), minus(&c, &origin)]
+}
+
+#[inline(always)]
+fn spread_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    [a, b, c]: &[Vector<N, D>; 3],
+) -> Corners<V, D> {
+    [spread(simd, a), spread(simd, b), spread(simd, c)]
+}
+
+#[inline(always)]
+fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &Corners<V, D>) -> Corners<V, D> {
+    [minus(b, a), minus(c, b), minus(a, c)]
+}
+
+/// How low and how high corners lie along a direction.
+#[inline(always)]
+fn extent<S: Simd, V: Wide<S>, const D: usize>(
+    [a, b, c]: &Corners<V, D>,
+    along: &[V; D],
+) -> [V; 2] {
+    let (a, b, c) = (dot(a, along), dot(b, along), dot(c, along));
+    [a.smaller(b).smaller(c), a.larger(b).larger(c)]
+}
