@@ -7,9 +7,9 @@ use super::MAX_LENGTH;
 use super::obstacles::{InReach, LaneObstacle, Surroundings};
 use super::robot::{BallGroup, GroupPair, RobotFilter};
 use super::search::{Distances, Other, PairSearch};
-use crate::checker::chain::{LANES, LaneRow, PoseRows, forward};
+use crate::checker::chain::{LANES, LaneRow, PoseRows, forward, store};
 use crate::math::Wide;
-use crate::math::lanes::{LanePose, bits, by_axis, dot, lit, load, minus, with_lanes};
+use crate::math::lanes::{by_axis, dot, load, minus, with_lanes};
 use crate::math::simd::{Eight, Level, Simd};
 
 /// Where everything is in eight configurations.
@@ -79,11 +79,16 @@ impl<const D: usize> Scan<'_, D> {
         search: &mut PairSearch,
     ) {
         forward::<S, f32, V, D>(simd, &self.robot.nodes, &scratch.numbers, &mut scratch.rows);
-        search.leave_out(usable_lanes::<S, V, D>(simd, &scratch.rows));
+        let mut usable = u8::MAX;
+        for block in &scratch.rows {
+            usable &= block.lanes_within::<S, V>(simd, MAX_LENGTH);
+        }
+        search.leave_out(usable);
         scratch.placed.fill(0);
         for (index, group) in self.robot.groups.iter().enumerate() {
-            let pose: LanePose<V, D> = scratch.rows[group.node].load(simd);
-            put(&pose.point(&spread(simd, &group.center)), &mut scratch.centers[index]);
+            let center: [V; D] = spread(simd, &group.center);
+            let center = scratch.rows[group.node].point(simd, &center);
+            store(&center, &mut scratch.centers[index]);
         }
         self.meet_obstacles::<S, V>(simd, scratch, search);
         self.meet_itself::<S, V>(simd, scratch, search);
@@ -103,9 +108,9 @@ impl<const D: usize> Scan<'_, D> {
         }
         scratch.placed[index] |= 1 << lane;
         let group = &self.robot.groups[index];
-        let pose: LanePose<V, D> = scratch.rows[group.node].spread(simd, lane);
-        let centers = pose.point(&load(simd, &group.centers));
-        put(&centers, place);
+        let local: [V; D] = load(simd, &group.centers);
+        let centers = scratch.rows[group.node].points_in(simd, lane, &local);
+        store(&centers, place);
         centers
     }
 
@@ -235,24 +240,6 @@ impl<const D: usize> Scan<'_, D> {
     }
 }
 
-/// The lanes in which all numbers are finite and have squares.
-#[inline(always)]
-fn usable_lanes<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
-    simd: S,
-    rows: &[PoseRows<f32, D>],
-) -> u8 {
-    let most: V = V::all(simd, MAX_LENGTH);
-    let mut usable = lit::<S, f32, V>(simd, 0.0).simd_le(most);
-    for block in rows {
-        let pose: LanePose<V, D> = block.load(simd);
-        usable &= pose.rotation[0][0].abs().simd_le(most);
-        for axis in 0..D {
-            usable &= pose.translation[axis].abs().simd_le(most);
-        }
-    }
-    bits(usable)
-}
-
 #[inline(always)]
 fn squared_between<S: Simd, V: Wide<S>, const D: usize>(one: &[V; D], other: &[V; D]) -> V {
     let way = minus(other, one);
@@ -265,14 +252,4 @@ fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; 
         #[inline(always)]
         |axis| V::all(simd, v[axis]),
     )
-}
-
-#[inline(always)]
-fn put<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
-    from: &[V; D],
-    to: &mut [LaneRow<f32>; D],
-) {
-    for axis in 0..D {
-        from[axis].store(&mut to[axis]);
-    }
 }
