@@ -64,6 +64,14 @@ impl<N: Real, const D: usize> Node<N, D> {
         Some(Self { parent, origin: origin.translation, rotation })
     }
 
+    /// Its rotation on its parent, if no number changes it.
+    pub(super) const fn constant_rotation(&self) -> Option<Matrix<N, D>> {
+        match &self.rotation {
+            Swing::Slide(turned, _) => Some(*turned),
+            Swing::Turn(_) => None,
+        }
+    }
+
     /// Its number is a length.
     pub(super) const fn slides(&self) -> bool {
         matches!(self.rotation, Swing::Slide(..))

@@ -178,7 +178,7 @@ impl<const D: usize> Scan<'_, D> {
             if search.is_done() {
                 return;
             }
-            if crossing.gap > search.farthest {
+            if crossing.gap > search.farthest + crossing.sliding * search.slide {
                 continue;
             }
             let [first, second] = crossing.groups;
