@@ -47,6 +47,8 @@ pub(super) struct GroupPair {
     pub(super) gap: f32,
     /// How many of the two may slide away from where they were.
     pub(super) sliding: f32,
+    /// The sum of the radii of their balls and of the margins.
+    pub(super) radius: f32,
     /// For each ball of the first group the balls of the second that must not touch it.
     pub(super) wanted: [u8; LANES],
 }
@@ -228,7 +230,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             };
             let gap = gap - one.margin - other.margin;
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
-            self.filter.crossings.push(GroupPair { groups, gap, sliding, wanted });
+            let radius = one.radius + other.radius + (one.margin + other.margin);
+            self.filter.crossings.push(GroupPair { groups, gap, sliding, radius, wanted });
         }
     }
 
@@ -276,6 +279,12 @@ impl<const D: usize> BallGroup<D> {
         self.bodies[lane] = u32::try_from(body.number).expect("32 bits can number the bodies");
         self.exact |= u8::from(body.is_ball) << lane;
         self.count += 1;
+    }
+
+    /// A bit for each ball.
+    #[inline(always)]
+    pub(super) const fn present(&self) -> u8 {
+        u8::MAX >> (LANES - self.count)
     }
 
     fn center_of(&self, ball: usize) -> Vector<f32, D> {

@@ -121,16 +121,16 @@ impl<const D: usize> Scan<'_, D> {
         scratch: &mut ScanScratch<D>,
         search: &mut PairSearch,
     ) {
-        for (index, group) in self.robot.groups.iter().enumerate() {
+        // What moves farthest hits most often.
+        for (index, group) in self.robot.groups.iter().enumerate().rev() {
             let center: [V; D] = load(simd, &scratch.centers[index]);
             for within in &self.around.within[index] {
                 if search.is_done() || within.gap > search.farthest + search.slide {
                     break;
                 }
-                let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
+                let outline = &self.around.obstacles[within.obstacle].outline;
                 let squared = outline.core.squared(simd, &center);
-                let radius = group.radius + outline.radius + (group.margin + margin);
-                let mut near = search.near_lanes(simd, squared, radius);
+                let mut near = search.near_lanes(simd, squared, within.radius);
                 while near != 0 {
                     let lane = near.trailing_zeros() as usize;
                     near &= near - 1;
@@ -182,11 +182,9 @@ impl<const D: usize> Scan<'_, D> {
                 continue;
             }
             let [first, second] = crossing.groups;
-            let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
             let center: [V; D] = load(simd, &scratch.centers[first]);
             let squared = squared_between(&center, &load(simd, &scratch.centers[second]));
-            let radius = one.radius + other.radius + (one.margin + other.margin);
-            let mut near = search.near_lanes(simd, squared, radius);
+            let mut near = search.near_lanes(simd, squared, crossing.radius);
             while near != 0 {
                 let lane = near.trailing_zeros() as usize;
                 near &= near - 1;
@@ -206,22 +204,26 @@ impl<const D: usize> Scan<'_, D> {
     ) {
         let [first, second] = crossing.groups;
         let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
-        let _: [V; D] = self.balls(simd, (first, lane), scratch);
+        let balls: [V; D] = self.balls(simd, (first, lane), scratch);
+        let there: [V; D] = spread_lane(simd, &scratch.centers[second], lane);
+        let margin = one.margin + other.margin;
+        let radii = (V::load(simd, &one.radii), other.radius + margin);
+        let mut near =
+            search.near_balls(simd, lane, squared_between(&there, &balls), radii) & one.present();
+        if near == 0 {
+            return;
+        }
         let balls: [V; D] = self.balls(simd, (second, lane), scratch);
         let radii = V::load(simd, &other.radii);
-        for ball in 0..one.count {
-            if !search.is_live(lane) {
-                return;
-            }
+        while near != 0 && search.is_live(lane) {
+            let ball = near.trailing_zeros() as usize;
+            near &= near - 1;
             let centers = &scratch.balls[first][lane];
-            let center: [V; D] = by_axis(
-                #[inline(always)]
-                |axis| V::all(simd, centers[axis][ball]),
-            );
+            let center: [V; D] = spread_lane(simd, centers, ball);
             let distances = Distances {
                 squared: squared_between(&center, &balls),
                 radius: radii + V::all(simd, one.radii[ball]),
-                margin: one.margin + other.margin,
+                margin,
                 wanted: crossing.wanted[ball],
                 exact: if one.exact >> ball & 1 == 1 { other.exact } else { 0 },
             };
@@ -251,5 +253,18 @@ fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; 
     by_axis(
         #[inline(always)]
         |axis| V::all(simd, v[axis]),
+    )
+}
+
+/// What is in one lane in all lanes.
+#[inline(always)]
+fn spread_lane<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
+    simd: S,
+    rows: &[LaneRow<f32>; D],
+    lane: usize,
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| V::all(simd, rows[axis][lane]),
     )
 }
