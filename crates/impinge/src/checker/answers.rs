@@ -65,14 +65,14 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
     /// The numbers of the nodes in `f32`; returns how far things slide in each lane.
     fn read_numbers(&mut self, eight: &Range<usize>) -> LaneRow<f32> {
         let tree = &self.checker.tree;
-        let mut slides = [0.0; LANES];
+        let (width, mut slides) = (tree.columns(), [0.0; LANES]);
         for (index, joint) in tree.joints.iter().enumerate() {
             let column = joint.column().expect("a node has a joint that moves");
             let row = &mut self.scratch.numbers[index];
             let slides_here = tree.nodes[index].slides();
             for lane in 0..LANES {
                 let configuration = (eight.start + lane).min(eight.end - 1);
-                let given = self.configurations[configuration * tree.columns() + column];
+                let given = self.configurations[configuration * width + column];
                 let value = joint.value_at(given);
                 if slides_here {
                     row[lane] = value.as_f32();

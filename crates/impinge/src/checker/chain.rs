@@ -10,7 +10,7 @@
 //! a joint's rotation in its parent is A + sin θ B + cos θ C with constant matrices.
 
 use super::joint::{Frame, JointMotion};
-use crate::math::lanes::{LanePose, by_axis, plus, times};
+use crate::math::lanes::{bits, by_axis, load, plus};
 use crate::math::simd::Simd;
 use crate::math::trigonometry::sine_cosine;
 use crate::math::{Matrix, Pose, Real, Vector, Wide};
@@ -64,6 +64,14 @@ impl<N: Real, const D: usize> Node<N, D> {
         Some(Self { parent, origin: origin.translation, rotation })
     }
 
+    /// Its rotation on its parent, if no number changes it.
+    pub(super) const fn constant_rotation(&self) -> Option<Matrix<N, D>> {
+        match &self.rotation {
+            Swing::Slide(turned, _) => Some(*turned),
+            Swing::Turn(_) => None,
+        }
+    }
+
     /// Its number is a length.
     pub(super) const fn slides(&self) -> bool {
         matches!(self.rotation, Swing::Slide(..))
@@ -79,42 +87,40 @@ impl<N: Real, const D: usize> Node<N, D> {
         Node { parent: self.parent, origin: origin.map(N::as_f32), rotation }
     }
 
-    /// Its pose on its parent for eight numbers.
+    /// One column of its rotation on its parent, by the sine and the cosine of its number.
     #[inline(always)]
-    fn moved<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> LanePose<V, D> {
-        let all = |number: N| V::all(simd, number);
-        let origin: [V; D] = by_axis(
+    fn column<S: Simd, V: Wide<S, Scalar = N>>(
+        &self,
+        simd: S,
+        column: usize,
+        [sine, cosine]: &[V; 2],
+    ) -> [V; D] {
+        let all = |matrix: &Matrix<N, D>, row: usize| V::all(simd, matrix[(row, column)]);
+        by_axis(
             #[inline(always)]
-            |axis| all(self.origin[axis]),
-        );
-        match &self.rotation {
-            Swing::Turn([still, with_sine, with_cosine]) => {
-                let [sine, cosine] = sine_cosine(simd, number);
-                let rotation = by_axis(
-                    #[inline(always)]
-                    |column| {
-                        by_axis(
-                            #[inline(always)]
-                            |row| {
-                                let place = (row, column);
-                                (all(still[place]) + sine * all(with_sine[place]))
-                                    + cosine * all(with_cosine[place])
-                            },
-                        )
-                    },
-                );
-                LanePose { rotation, translation: origin }
-            }
-            Swing::Slide(turned, way) => {
-                let way: [V; D] = by_axis(
-                    #[inline(always)]
-                    |axis| all(way[axis]),
-                );
-                let place = Pose { rotation: *turned, translation: Vector::<N, D>::zeros() };
-                let LanePose { rotation, .. } = LanePose::of(simd, &place);
-                LanePose { rotation, translation: plus(&origin, &times(&way, number)) }
-            }
-        }
+            |row| match &self.rotation {
+                Swing::Slide(turned, _) => all(turned, row),
+                Swing::Turn([still, with_sine, with_cosine]) => {
+                    (all(still, row) + *sine * all(with_sine, row))
+                        + *cosine * all(with_cosine, row)
+                }
+            },
+        )
+    }
+
+    /// Where it is on its parent.
+    #[inline(always)]
+    fn place<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
+        by_axis(
+            #[inline(always)]
+            |row| {
+                let origin = V::all(simd, self.origin[row]);
+                match &self.rotation {
+                    Swing::Slide(_, way) => origin + V::all(simd, way[row]) * number,
+                    Swing::Turn(_) => origin,
+                }
+            },
+        )
     }
 }
 
@@ -138,55 +144,57 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         }
     }
 
+    /// A local direction in each lane, in the outer frame.
     #[inline(always)]
-    pub(super) fn load<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
-        let rotation = by_axis(
+    fn vector<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, local: &[V; D]) -> [V; D] {
+        by_axis(
             #[inline(always)]
-            |column| {
-                by_axis(
-                    #[inline(always)]
-                    |row| V::load(simd, &self.rotation[column][row]),
-                )
+            |row| {
+                let mut sum = V::load(simd, &self.rotation[0][row]) * local[0];
+                for (column, &x) in local.iter().enumerate().skip(1) {
+                    sum += V::load(simd, &self.rotation[column][row]) * x;
+                }
+                sum
             },
-        );
-        let translation = by_axis(
-            #[inline(always)]
-            |row| V::load(simd, &self.translation[row]),
-        );
-        LanePose { rotation, translation }
+        )
     }
 
-    /// The pose in one lane in all lanes.
+    /// A local point in each lane, in the outer frame.
     #[inline(always)]
-    pub(super) fn spread<S: Simd, V: Wide<S, Scalar = N>>(
+    pub(super) fn point<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, local: &[V; D]) -> [V; D] {
+        plus(&self.vector(simd, local), &load(simd, &self.translation))
+    }
+
+    /// Eight local points by the pose in one lane, in the outer frame.
+    #[inline(always)]
+    pub(super) fn points_in<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         lane: usize,
-    ) -> LanePose<V, D> {
-        let rotation = by_axis(
+        local: &[V; D],
+    ) -> [V; D] {
+        by_axis(
             #[inline(always)]
-            |column| {
-                by_axis(
-                    #[inline(always)]
-                    |row| V::all(simd, self.rotation[column][row][lane]),
-                )
+            |row| {
+                let mut sum = V::all(simd, self.rotation[0][row][lane]) * local[0];
+                for (column, &x) in local.iter().enumerate().skip(1) {
+                    sum += V::all(simd, self.rotation[column][row][lane]) * x;
+                }
+                sum + V::all(simd, self.translation[row][lane])
             },
-        );
-        let translation = by_axis(
-            #[inline(always)]
-            |row| V::all(simd, self.translation[row][lane]),
-        );
-        LanePose { rotation, translation }
+        )
     }
 
+    /// The lanes in which no coordinate is above a length, or NaN.
     #[inline(always)]
-    fn store<S: Simd, V: Wide<S, Scalar = N>>(&mut self, pose: &LanePose<V, D>) {
-        for column in 0..D {
-            for row in 0..D {
-                pose.rotation[column][row].store(&mut self.rotation[column][row]);
-            }
-            pose.translation[column].store(&mut self.translation[column]);
+    pub(super) fn lanes_within<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, most: N) -> u8 {
+        let most = V::all(simd, most);
+        // What is no angle makes no number of the rotation.
+        let mut within = V::load(simd, &self.rotation[0][0]).abs().simd_le(most);
+        for axis in 0..D {
+            within &= V::load(simd, &self.translation[axis]).abs().simd_le(most);
         }
+        bits(within)
     }
 }
 
@@ -200,17 +208,30 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     rows: &mut [PoseRows<N, D>],
 ) {
     for (index, node) in nodes.iter().enumerate() {
-        let inner: LanePose<V, D> = node.moved(simd, V::load(simd, &numbers[index]));
-        let pose = if node.parent == 0 {
-            inner
-        } else {
-            let outer: LanePose<V, D> = rows[node.parent].load(simd);
-            let rotation = by_axis(
-                #[inline(always)]
-                |column| outer.vector(&inner.rotation[column]),
-            );
-            LanePose { rotation, translation: outer.point(&inner.translation) }
-        };
-        rows[index + 1].store(&pose);
+        let number = V::load(simd, &numbers[index]);
+        let swing = if node.slides() { [number; 2] } else { sine_cosine(simd, number) };
+        let (before, own) = rows.split_at_mut(index + 1);
+        let (parent, own) = (&before[node.parent], &mut own[0]);
+        // On the world as it is: that changes no bit.
+        let is_inner = node.parent != 0;
+        for column in 0..D {
+            let inner = node.column(simd, column, &swing);
+            let outer = if is_inner { parent.vector(simd, &inner) } else { inner };
+            store(&outer, &mut own.rotation[column]);
+        }
+        let inner = node.place(simd, number);
+        let outer = if is_inner { parent.point(simd, &inner) } else { inner };
+        store(&outer, &mut own.translation);
+    }
+}
+
+/// Writes vectors, one in each lane.
+#[inline(always)]
+pub(super) fn store<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    from: &[V; D],
+    to: &mut [LaneRow<N>; D],
+) {
+    for axis in 0..D {
+        from[axis].store(&mut to[axis]);
     }
 }

@@ -122,6 +122,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
     }
 
     /// How many numbers a configuration has.
+    #[inline]
     #[must_use]
     pub const fn columns(&self) -> usize {
         self.columns

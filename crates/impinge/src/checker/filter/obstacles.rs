@@ -38,6 +38,8 @@ pub(super) struct InReach {
     pub(super) number: u32,
     /// The balls of the group whose bodies must not touch it.
     pub(super) wanted: u8,
+    /// The sum of the radii of the group and of the obstacle, and of the margins.
+    pub(super) radius: f32,
 }
 
 impl<const D: usize> Surroundings<D> {
@@ -74,12 +76,15 @@ impl<const D: usize> Surroundings<D> {
             if wanted == 0 {
                 continue;
             }
-            let margin = f64::from(self.obstacles[index].margin + group.margin);
-            let gap = distance_from(&way.anchor, obstacle).as_f64() - way.length - margin;
+            let LaneObstacle { outline, margin } = &self.obstacles[index];
+            let margin = margin + group.margin;
+            let radius = group.radius + outline.radius + margin;
+            let gap =
+                distance_from(&way.anchor, obstacle).as_f64() - way.length - f64::from(margin);
             let gap = N::lit(gap).as_f32_below();
             // What has no end is everywhere.
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
-            all.push(InReach { gap, obstacle: index, number, wanted });
+            all.push(InReach { gap, obstacle: index, number, wanted, radius });
         }
         all.sort_by_key(|within| (order_of(within.gap), within.obstacle));
         all

@@ -8,7 +8,7 @@ use super::{MAX_LENGTH, margin};
 use crate::checker::chain::{LANES, LaneRow, Node};
 use crate::checker::frames::{FrameTree, OnNode};
 use crate::math::order::order_of;
-use crate::math::{Pose, Real, Space, Vector};
+use crate::math::{Matrix, Point, Pose, Real, Space, Vector};
 use crate::shape::Shape;
 
 /// A robot as the scan sees it.
@@ -43,8 +43,12 @@ pub(super) struct BallGroup<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct GroupPair {
     pub(super) groups: [usize; 2],
-    /// How far apart all pairs are at least at all times.
+    /// How far apart all pairs are at least at all times, if nothing slides.
     pub(super) gap: f32,
+    /// How many of the two may slide away from where they were.
+    pub(super) sliding: f32,
+    /// The sum of the radii of their balls and of the margins.
+    pub(super) radius: f32,
     /// For each ball of the first group the balls of the second that must not touch it.
     pub(super) wanted: [u8; LANES],
 }
@@ -57,12 +61,15 @@ struct Covered<N: Real, const D: usize> {
     is_ball: bool,
 }
 
-/// How long the way to a group is.
+/// Where a group can be.
 pub(super) struct Way<N: Real, const D: usize> {
-    /// The first joint, or the center of what does not move.
+    /// The first joint that turns, or the center of what none turns, where nothing slides.
     pub(super) anchor: Vector<N, D>,
     /// Of the group's ball from there, but for what slides: its center and its radius.
     pub(super) length: f64,
+    /// The first joint, or the center of what does not move, and the length from there: margins are made of them.
+    first: Vector<N, D>,
+    from_first: f64,
     joints: usize,
 }
 
@@ -71,6 +78,8 @@ struct Builder<'a, N: Real, const D: usize> {
     tree: &'a FrameTree<N, D>,
     shift: Vector<N, D>,
     filter: RobotFilter<D>,
+    /// Where each group can be: all of it is within the length of the anchor.
+    ways: Vec<Way<N, D>>,
     /// The group and the balls, by bits, of each body of the user's.
     places: Vec<(usize, u8)>,
 }
@@ -116,18 +125,36 @@ pub(super) fn way_to<N: Real, const D: usize>(
     node: usize,
     (center, radius): (&[f32; D], f32),
 ) -> Way<N, D> {
-    let center = Vector::<N, D>::from_fn(|axis, _| N::lit(f64::from(center[axis])));
-    let own = f64::from(radius);
+    let mut center = Vector::<N, D>::from_fn(|axis, _| N::lit(f64::from(center[axis])));
     if node == 0 {
-        return Way { anchor: center + shift_of(tree), length: own, joints: 0 };
+        center += shift_of(tree);
     }
-    let (mut length, mut joints, mut at) = (own + center.norm().as_f64(), 1, node);
-    while tree.nodes[at - 1].parent != 0 {
-        length += tree.nodes[at - 1].origin.norm().as_f64();
-        joints += 1;
+    let (mut chain, mut at) = (Vec::new(), node);
+    while at != 0 {
+        chain.push(&tree.nodes[at - 1]);
         at = tree.nodes[at - 1].parent;
     }
-    Way { anchor: tree.nodes[at - 1].origin, length, joints }
+    let own = f64::from(radius) + if node == 0 { 0.0 } else { center.norm().as_f64() };
+    let lengths = chain.iter().rev().skip(1).map(|node| node.origin.norm().as_f64());
+    let from_first = own + lengths.sum::<f64>();
+    // What slides only has no rotation but a constant one.
+    let mut pose = Pose::identity();
+    let mut turning = chain.iter().rev().skip_while(|node| {
+        let rotation = node.constant_rotation();
+        pose.translation = pose.point(&Point::from(node.origin)).coords;
+        pose.rotation *= rotation.unwrap_or_else(Matrix::<N, D>::identity);
+        rotation.is_some()
+    });
+    let is_turned = turning.next().is_some();
+    let beyond: f64 = turning.map(|node| node.origin.norm().as_f64()).sum();
+    let center_at_zero = pose.point(&Point::from(center)).coords;
+    let (anchor, length) = if is_turned {
+        (pose.translation, own + beyond)
+    } else {
+        (center_at_zero, f64::from(radius))
+    };
+    let first = chain.last().map_or(center, |node| node.origin);
+    Way { anchor, length, first, from_first, joints: chain.len() }
 }
 
 impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
@@ -139,7 +166,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             crossings: Vec::new(),
             slide_margin: margin::<N>(tree.nodes.len(), 1.0, 1.0),
         };
-        Self { tree, shift, filter, places: vec![(0, 0); bodies] }
+        Self { tree, shift, filter, ways: Vec::new(), places: vec![(0, 0); bodies] }
     }
 
     /// Makes groups of bodies of one node: one, or those of its halves along the longest side.
@@ -150,7 +177,10 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         }
         let axis = longest_axis(&bodies);
         bodies.sort_by_key(|body| (order_of(body.balls[0].center[axis]), body.number));
-        let back = bodies.split_off(bodies.len() / 2);
+        // Full groups are fewer.
+        let half = bodies.len().div_ceil(2);
+        let full = half.next_multiple_of(LANES);
+        let back = bodies.split_off(if full < bodies.len() { full } else { half });
         self.divide(bodies);
         self.divide(back);
     }
@@ -172,10 +202,11 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         }
         (group.center, group.radius) = in_f32(&around(&all));
         let way = way_to(self.tree, node, (&group.center, group.radius));
-        let near = way.length + (way.anchor - self.shift).norm().as_f64();
+        let near = way.from_first + (way.first - self.shift).norm().as_f64();
         let far = near + self.shift.norm().as_f64();
         group.margin = margin::<N>(way.joints, near, far);
         self.filter.groups.push(group);
+        self.ways.push(way);
     }
 
     /// Puts pairs of bodies in order of their groups.
@@ -191,26 +222,37 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             }
         }
         for (groups, wanted) in by_groups {
-            let gap = self.gap_between(groups, &wanted);
-            self.filter.crossings.push(GroupPair { groups, gap, wanted });
+            let [one, other] = groups.map(|group| &self.filter.groups[group]);
+            let (gap, sliding) = if one.node == other.node {
+                (gap_on_node([one, other], &wanted), 0.0)
+            } else {
+                (self.gap_between(groups), 2.0)
+            };
+            let gap = gap - one.margin - other.margin;
+            let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
+            let radius = one.radius + other.radius + (one.margin + other.margin);
+            self.filter.crossings.push(GroupPair { groups, gap, sliding, radius, wanted });
         }
     }
 
-    /// How far apart balls on one node are at least; nothing is known of others.
-    fn gap_between(&self, groups: [usize; 2], wanted: &[u8; LANES]) -> f32 {
-        let [one, other] = groups.map(|group| &self.filter.groups[group]);
-        if one.node != other.node {
-            return -f32::INFINITY;
-        }
-        let mut least = f32::INFINITY;
-        for (ball1, others) in wanted.iter().enumerate() {
-            for ball2 in (0..LANES).filter(|ball| others >> ball & 1 == 1) {
-                let way = one.center_of(ball1) - other.center_of(ball2);
-                least = least.min(way.norm() - one.radii[ball1] - other.radii[ball2]);
-            }
-        }
-        least - one.margin - other.margin
+    /// How far apart what two groups can reach is at least.
+    fn gap_between(&self, groups: [usize; 2]) -> f32 {
+        let [one, other] = groups.map(|group| &self.ways[group]);
+        let apart = (one.anchor - other.anchor).norm().as_f64();
+        N::lit(apart - one.length - other.length).as_f32_below()
     }
+}
+
+/// How far apart the balls of two groups of one node are at least.
+fn gap_on_node<const D: usize>([one, other]: [&BallGroup<D>; 2], wanted: &[u8; LANES]) -> f32 {
+    let mut least = f32::INFINITY;
+    for (ball1, others) in wanted.iter().enumerate() {
+        for ball2 in (0..LANES).filter(|ball| others >> ball & 1 == 1) {
+            let way = one.center_of(ball1) - other.center_of(ball2);
+            least = least.min(way.norm() - one.radii[ball1] - other.radii[ball2]);
+        }
+    }
+    least
 }
 
 impl<const D: usize> BallGroup<D> {
@@ -237,6 +279,12 @@ impl<const D: usize> BallGroup<D> {
         self.bodies[lane] = u32::try_from(body.number).expect("32 bits can number the bodies");
         self.exact |= u8::from(body.is_ball) << lane;
         self.count += 1;
+    }
+
+    /// A bit for each ball.
+    #[inline(always)]
+    pub(super) const fn present(&self) -> u8 {
+        u8::MAX >> (LANES - self.count)
     }
 
     fn center_of(&self, ball: usize) -> Vector<f32, D> {

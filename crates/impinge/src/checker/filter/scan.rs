@@ -7,9 +7,9 @@ use super::MAX_LENGTH;
 use super::obstacles::{InReach, LaneObstacle, Surroundings};
 use super::robot::{BallGroup, GroupPair, RobotFilter};
 use super::search::{Distances, Other, PairSearch};
-use crate::checker::chain::{LANES, LaneRow, PoseRows, forward};
+use crate::checker::chain::{LANES, LaneRow, PoseRows, forward, store};
 use crate::math::Wide;
-use crate::math::lanes::{LanePose, bits, by_axis, dot, lit, load, minus, with_lanes};
+use crate::math::lanes::{by_axis, dot, load, minus, with_lanes};
 use crate::math::simd::{Eight, Level, Simd};
 
 /// Where everything is in eight configurations.
@@ -79,11 +79,16 @@ impl<const D: usize> Scan<'_, D> {
         search: &mut PairSearch,
     ) {
         forward::<S, f32, V, D>(simd, &self.robot.nodes, &scratch.numbers, &mut scratch.rows);
-        search.leave_out(usable_lanes::<S, V, D>(simd, &scratch.rows));
+        let mut usable = u8::MAX;
+        for block in &scratch.rows {
+            usable &= block.lanes_within::<S, V>(simd, MAX_LENGTH);
+        }
+        search.leave_out(usable);
         scratch.placed.fill(0);
         for (index, group) in self.robot.groups.iter().enumerate() {
-            let pose: LanePose<V, D> = scratch.rows[group.node].load(simd);
-            put(&pose.point(&spread(simd, &group.center)), &mut scratch.centers[index]);
+            let center: [V; D] = spread(simd, &group.center);
+            let center = scratch.rows[group.node].point(simd, &center);
+            store(&center, &mut scratch.centers[index]);
         }
         self.meet_obstacles::<S, V>(simd, scratch, search);
         self.meet_itself::<S, V>(simd, scratch, search);
@@ -103,9 +108,9 @@ impl<const D: usize> Scan<'_, D> {
         }
         scratch.placed[index] |= 1 << lane;
         let group = &self.robot.groups[index];
-        let pose: LanePose<V, D> = scratch.rows[group.node].spread(simd, lane);
-        let centers = pose.point(&load(simd, &group.centers));
-        put(&centers, place);
+        let local: [V; D] = load(simd, &group.centers);
+        let centers = scratch.rows[group.node].points_in(simd, lane, &local);
+        store(&centers, place);
         centers
     }
 
@@ -116,16 +121,16 @@ impl<const D: usize> Scan<'_, D> {
         scratch: &mut ScanScratch<D>,
         search: &mut PairSearch,
     ) {
-        for (index, group) in self.robot.groups.iter().enumerate() {
+        // What moves farthest hits most often.
+        for (index, group) in self.robot.groups.iter().enumerate().rev() {
             let center: [V; D] = load(simd, &scratch.centers[index]);
             for within in &self.around.within[index] {
                 if search.is_done() || within.gap > search.farthest + search.slide {
                     break;
                 }
-                let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
+                let outline = &self.around.obstacles[within.obstacle].outline;
                 let squared = outline.core.squared(simd, &center);
-                let radius = group.radius + outline.radius + (group.margin + margin);
-                let mut near = search.near_lanes(simd, squared, radius);
+                let mut near = search.near_lanes(simd, squared, within.radius);
                 while near != 0 {
                     let lane = near.trailing_zeros() as usize;
                     near &= near - 1;
@@ -173,15 +178,13 @@ impl<const D: usize> Scan<'_, D> {
             if search.is_done() {
                 return;
             }
-            if crossing.gap > search.farthest {
+            if crossing.gap > search.farthest + crossing.sliding * search.slide {
                 continue;
             }
             let [first, second] = crossing.groups;
-            let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
             let center: [V; D] = load(simd, &scratch.centers[first]);
             let squared = squared_between(&center, &load(simd, &scratch.centers[second]));
-            let radius = one.radius + other.radius + (one.margin + other.margin);
-            let mut near = search.near_lanes(simd, squared, radius);
+            let mut near = search.near_lanes(simd, squared, crossing.radius);
             while near != 0 {
                 let lane = near.trailing_zeros() as usize;
                 near &= near - 1;
@@ -201,22 +204,26 @@ impl<const D: usize> Scan<'_, D> {
     ) {
         let [first, second] = crossing.groups;
         let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);
-        let _: [V; D] = self.balls(simd, (first, lane), scratch);
+        let balls: [V; D] = self.balls(simd, (first, lane), scratch);
+        let there: [V; D] = spread_lane(simd, &scratch.centers[second], lane);
+        let margin = one.margin + other.margin;
+        let radii = (V::load(simd, &one.radii), other.radius + margin);
+        let mut near =
+            search.near_balls(simd, lane, squared_between(&there, &balls), radii) & one.present();
+        if near == 0 {
+            return;
+        }
         let balls: [V; D] = self.balls(simd, (second, lane), scratch);
         let radii = V::load(simd, &other.radii);
-        for ball in 0..one.count {
-            if !search.is_live(lane) {
-                return;
-            }
+        while near != 0 && search.is_live(lane) {
+            let ball = near.trailing_zeros() as usize;
+            near &= near - 1;
             let centers = &scratch.balls[first][lane];
-            let center: [V; D] = by_axis(
-                #[inline(always)]
-                |axis| V::all(simd, centers[axis][ball]),
-            );
+            let center: [V; D] = spread_lane(simd, centers, ball);
             let distances = Distances {
                 squared: squared_between(&center, &balls),
                 radius: radii + V::all(simd, one.radii[ball]),
-                margin: one.margin + other.margin,
+                margin,
                 wanted: crossing.wanted[ball],
                 exact: if one.exact >> ball & 1 == 1 { other.exact } else { 0 },
             };
@@ -235,24 +242,6 @@ impl<const D: usize> Scan<'_, D> {
     }
 }
 
-/// The lanes in which all numbers are finite and have squares.
-#[inline(always)]
-fn usable_lanes<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
-    simd: S,
-    rows: &[PoseRows<f32, D>],
-) -> u8 {
-    let most: V = V::all(simd, MAX_LENGTH);
-    let mut usable = lit::<S, f32, V>(simd, 0.0).simd_le(most);
-    for block in rows {
-        let pose: LanePose<V, D> = block.load(simd);
-        usable &= pose.rotation[0][0].abs().simd_le(most);
-        for axis in 0..D {
-            usable &= pose.translation[axis].abs().simd_le(most);
-        }
-    }
-    bits(usable)
-}
-
 #[inline(always)]
 fn squared_between<S: Simd, V: Wide<S>, const D: usize>(one: &[V; D], other: &[V; D]) -> V {
     let way = minus(other, one);
@@ -267,12 +256,15 @@ fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; 
     )
 }
 
+/// What is in one lane in all lanes.
 #[inline(always)]
-fn put<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
-    from: &[V; D],
-    to: &mut [LaneRow<f32>; D],
-) {
-    for axis in 0..D {
-        from[axis].store(&mut to[axis]);
-    }
+fn spread_lane<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
+    simd: S,
+    rows: &[LaneRow<f32>; D],
+    lane: usize,
+) -> [V; D] {
+    by_axis(
+        #[inline(always)]
+        |axis| V::all(simd, rows[axis][lane]),
+    )
 }

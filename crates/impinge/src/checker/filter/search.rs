@@ -143,6 +143,19 @@ impl PairSearch {
         !bits(squared.simd_gt(reach * reach)) & self.live
     }
 
+    /// The balls that are near a ball of this radius in a configuration, with the margin in the radius.
+    #[inline(always)]
+    pub(super) fn near_balls<S: Simd, V: Wide<S, Scalar = f32>>(
+        &self,
+        simd: S,
+        lane: usize,
+        squared: V,
+        (radii, radius): (V, f32),
+    ) -> u8 {
+        let reach = radii + V::all(simd, radius + self.outer[lane]);
+        !bits(squared.simd_gt(reach * reach))
+    }
+
     /// Keeps the balls that are near in a configuration; `pair_of` has the pair of a ball.
     #[inline(always)]
     pub(super) fn settle<S: Simd, V: Wide<S, Scalar = f32>>(
@@ -152,8 +165,8 @@ impl PairSearch {
         distances: &Distances<V>,
         pair_of: impl Fn(usize) -> (u32, Other),
     ) {
-        let reach = distances.radius + V::all(simd, distances.margin + self.outer[lane]);
-        let near = !bits(distances.squared.simd_gt(reach * reach)) & distances.wanted;
+        let radii = (distances.radius, distances.margin);
+        let near = self.near_balls(simd, lane, distances.squared, radii) & distances.wanted;
         if near == 0 {
             return;
         }

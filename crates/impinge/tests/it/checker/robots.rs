@@ -59,7 +59,7 @@ fn robot<N: Space<D>, const D: usize>(
     }
     let count = u32::try_from(bodies.len()).expect("a few");
     let all = (0..count).flat_map(|one| (0..one).map(move |other| [one, other]));
-    let pairs: Vec<[u32; 2]> = all.filter(|_| random.bits() & 7 == 0).collect();
+    let pairs: Vec<[u32; 2]> = all.filter(|_| random.bits() & 63 == 0).collect();
     let tree = FrameTree::try_new(&frames, COLUMNS).expect("a tree");
     let mut checker = Checker::try_new(tree, bodies, &pairs).expect("bodies");
     let obstacles: Vec<_> =
@@ -90,10 +90,10 @@ fn obstacle<N: Space<D>, const D: usize>(
     pose: fn(&mut Random) -> Pose<N, D>,
 ) -> Obstacle<N, D> {
     let mut place = pose(random);
-    place.translation = base + place.translation.normalize() * N::lit(random.within(1.5, 4.0));
+    place.translation = base + place.translation.normalize() * N::lit(random.within(3.0, 7.0));
     if *name == "plane" {
         place = Pose::from_translation(*base);
-        place.translation[1] -= N::lit(3.0);
+        place.translation[1] -= N::lit(6.0);
     }
     Obstacle { shape: shape.clone(), pose: place }
 }
