@@ -63,7 +63,7 @@ pub use kernel::Lanes;
 pub(crate) use near_first::{GROUP, RayProbe};
 pub(crate) use near_pairs::{TreePair, visit_pairs};
 pub(crate) use ordered::{Frontier, Keys};
-pub(crate) use ranked::{Ranking, visit_ranked};
+pub(crate) use ranked::{BoxRanking, visit_ranked};
 pub(crate) use slabs::Slabs;
 pub(crate) use tree::{NONE, Tree};
 pub(crate) use triangles::{ShearedLine, Triangles};

@@ -17,7 +17,7 @@ use crate::math::{Real, max};
 const EXPECTED: usize = 128;
 
 /// What is asked about the objects of a tree.
-pub(crate) trait Ranking<N: Real, const D: usize> {
+pub(crate) trait BoxRanking<N: Real, const D: usize> {
     /// A number that the rank of nothing in the box is below.
     fn of_box(&self, aabb: &Aabb<N, D>) -> N;
 
@@ -33,7 +33,7 @@ pub(crate) trait Ranking<N: Real, const D: usize> {
 
 /// A block or an object by its bound. Of equal ones objects come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Entry {
+struct RankedNode {
     /// In the order of the bounds.
     rank: i64,
     /// Zero of an object, one more than its layer of a block.
@@ -47,8 +47,8 @@ struct Entry {
 struct RankedSearch<'a, 'q, N: Real, const D: usize> {
     tree: &'a Tree<D>,
     gaps: Gaps<D>,
-    queue: BinaryHeap<Reverse<Entry>>,
-    question: &'q mut dyn Ranking<N, D>,
+    queue: BinaryHeap<Reverse<RankedNode>>,
+    question: &'q mut dyn BoxRanking<N, D>,
 }
 
 /// Visits the objects of a tree whose ranks may be within the limit of the question, those of least bound first.
@@ -56,7 +56,7 @@ struct RankedSearch<'a, 'q, N: Real, const D: usize> {
 pub(crate) fn visit_ranked<N: Real, const D: usize>(
     tree: &Tree<D>,
     around: &Aabb<N, D>,
-    question: &mut dyn Ranking<N, D>,
+    question: &mut dyn BoxRanking<N, D>,
 ) {
     if tree.is_empty() || !around.holds_finite_point() {
         return;
@@ -65,7 +65,7 @@ pub(crate) fn visit_ranked<N: Real, const D: usize>(
     let (gaps, queue) = (Gaps::new(around, tree.size()), BinaryHeap::with_capacity(EXPECTED));
     let mut search = RankedSearch { tree, gaps, queue, question };
     let height = tree.top_layer() + 1;
-    search.queue.push(Reverse(Entry { rank: i64::MIN, height, at: 0, is_rough: false }));
+    search.queue.push(Reverse(RankedNode { rank: i64::MIN, height, at: 0, is_rough: false }));
     search.run();
 }
 
@@ -92,8 +92,8 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
     }
 
     /// Puts what has a bound within the limit back into the queue by that.
-    fn refine(&mut self, entry: Entry, limit: N) {
-        let Entry { height, at, rank, .. } = entry;
+    fn refine(&mut self, entry: RankedNode, limit: N) {
+        let RankedNode { height, at, rank, .. } = entry;
         let bound = match height.checked_sub(1) {
             Some(layer) => {
                 let bounds = self.tree.layers[usize::from(layer)].bounds[at as usize];
@@ -107,12 +107,12 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         let is_beyond = bound > limit;
         if !is_beyond {
             let rank = rank_of(bound).max(rank);
-            self.queue.push(Reverse(Entry { rank, is_rough: false, ..entry }));
+            self.queue.push(Reverse(RankedNode { rank, is_rough: false, ..entry }));
         }
     }
 
     /// Puts what is in a block into the queue.
-    fn open(&mut self, Entry { rank, height, at, .. }: Entry, limit: N) {
+    fn open(&mut self, RankedNode { rank, height, at, .. }: RankedNode, limit: N) {
         let layer = usize::from(height - 1);
         let within = self.gaps.limit(max(limit, N::ZERO));
         let Open { keys, mut mask, first } = self.tree.opened_around(&self.gaps, layer, at, within);
@@ -120,9 +120,9 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
             let distance: N = self.gaps.distance(keys[lane as usize]);
-            let entry = Entry { rank, height: height - 1, at: first + lane, is_rough: true };
+            let entry = RankedNode { rank, height: height - 1, at: first + lane, is_rough: true };
             if distance > N::ZERO {
-                self.queue.push(Reverse(Entry { rank: rank_of(distance).max(rank), ..entry }));
+                self.queue.push(Reverse(RankedNode { rank: rank_of(distance).max(rank), ..entry }));
             } else {
                 self.refine(entry, limit);
             }
@@ -153,7 +153,7 @@ mod tests {
         found: Vec<u32>,
     }
 
-    impl Ranking<f64, 3> for ByFirst<'_> {
+    impl BoxRanking<f64, 3> for ByFirst<'_> {
         fn of_box(&self, aabb: &Aabb<f64, 3>) -> f64 {
             let apart = aabb.distance_to_aabb(&self.place);
             if apart > 0.0 { apart } else { aabb.mins().x - 100.0 }

@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use super::chain::{LANES, LaneRow};
 use super::exact::Exact;
-use super::filter::{NearPair, Other, PairSearch, ScanScratch, SearchMode, scan_at};
+use super::filter::{CollisionSearch, NearPair, Other, ScanScratch, SearchMode, scan_at};
 use super::{Checker, NO_PAIR, NearestColumns};
 use crate::batch::{BatchError, Control, Progress};
 use crate::math::simd::Level;
@@ -20,7 +20,7 @@ struct EightByEight<'a, N: Space<D>, const D: usize> {
     configurations: &'a [N],
     exact: Exact<'a, N, D>,
     scratch: ScanScratch<D>,
-    search: PairSearch,
+    search: CollisionSearch,
     level: Level,
 }
 
@@ -31,7 +31,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
             configurations,
             exact: Exact::new(checker, configurations),
             scratch: ScanScratch::new(&checker.robot),
-            search: PairSearch::new(mode),
+            search: CollisionSearch::new(mode),
             level: Level::new(),
         }
     }

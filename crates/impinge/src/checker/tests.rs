@@ -1,7 +1,7 @@
 //! Every instruction set finds the same.
 
 use super::chain::{LANES, LaneRow};
-use super::filter::{PairSearch, ScanScratch, SearchMode, scan_at};
+use super::filter::{CollisionSearch, ScanScratch, SearchMode, scan_at};
 use super::{Body, Checker, Frame, FrameTree, Joint, Obstacle};
 use crate::collide::separation::hulls::tests::Random;
 use crate::math::simd::Level;
@@ -54,7 +54,7 @@ fn found<N: Space<D>, const D: usize>(
 ) -> (String, u32) {
     let mut scratch = ScanScratch::new(&checker.robot);
     scratch.numbers.copy_from_slice(numbers);
-    let mut search = PairSearch::new(mode);
+    let mut search = CollisionSearch::new(mode);
     search.begin(u8::MAX, 0.05, (&[0.5; LANES], checker.robot.slide_margin()));
     scan_at(level, &checker.robot, &checker.surroundings, &mut scratch, &mut search);
     (format!("{search:?}"), search.hits.count_ones())

@@ -24,7 +24,7 @@ mod search;
 pub(super) use self::obstacles::Surroundings;
 pub(super) use self::robot::RobotFilter;
 pub(super) use self::scan::{ScanScratch, scan_at};
-pub(super) use self::search::{NearPair, Other, PairSearch, SearchMode};
+pub(super) use self::search::{CollisionSearch, NearPair, Other, SearchMode};
 
 use crate::math::Real;
 

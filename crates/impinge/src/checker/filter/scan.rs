@@ -6,7 +6,7 @@
 use super::MAX_LENGTH;
 use super::obstacles::{InReach, LaneObstacle, Surroundings};
 use super::robot::{BallGroup, GroupPair, RobotFilter};
-use super::search::{Distances, Other, PairSearch};
+use super::search::{CollisionSearch, Distances, Other};
 use crate::checker::chain::{LANES, LaneRow, PoseRows, forward, store};
 use crate::math::Wide;
 use crate::math::lanes::{by_axis, dot, load, minus, with_lanes};
@@ -52,7 +52,7 @@ pub(in crate::checker) fn scan_at<const D: usize>(
     robot: &RobotFilter<D>,
     around: &Surroundings<D>,
     scratch: &mut ScanScratch<D>,
-    search: &mut PairSearch,
+    search: &mut CollisionSearch,
 ) {
     let scan = Scan { robot, around };
     with_lanes!(level, simd => run(simd, scan, scratch, search));
@@ -65,7 +65,7 @@ fn run<S: Simd, const D: usize>(
     simd: S,
     scan: Scan<'_, D>,
     scratch: &mut ScanScratch<D>,
-    search: &mut PairSearch,
+    search: &mut CollisionSearch,
 ) {
     scan.run::<S, <f32 as Eight>::Lanes<S>>(simd, scratch, search);
 }
@@ -76,7 +76,7 @@ impl<const D: usize> Scan<'_, D> {
         self,
         simd: S,
         scratch: &mut ScanScratch<D>,
-        search: &mut PairSearch,
+        search: &mut CollisionSearch,
     ) {
         forward::<S, f32, V, D>(simd, &self.robot.nodes, &scratch.numbers, &mut scratch.rows);
         let mut usable = u8::MAX;
@@ -119,7 +119,7 @@ impl<const D: usize> Scan<'_, D> {
         self,
         simd: S,
         scratch: &mut ScanScratch<D>,
-        search: &mut PairSearch,
+        search: &mut CollisionSearch,
     ) {
         // What moves farthest hits most often.
         for (index, group) in self.robot.groups.iter().enumerate().rev() {
@@ -148,7 +148,7 @@ impl<const D: usize> Scan<'_, D> {
         simd: S,
         lane: usize,
         (group, balls, within): (&BallGroup<D>, &[V; D], &InReach),
-        search: &mut PairSearch,
+        search: &mut CollisionSearch,
     ) {
         let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
         let distances = Distances {
@@ -172,7 +172,7 @@ impl<const D: usize> Scan<'_, D> {
         self,
         simd: S,
         scratch: &mut ScanScratch<D>,
-        search: &mut PairSearch,
+        search: &mut CollisionSearch,
     ) {
         for crossing in &self.robot.crossings {
             if search.is_done() {
@@ -200,7 +200,7 @@ impl<const D: usize> Scan<'_, D> {
         simd: S,
         (crossing, lane): (&GroupPair, usize),
         scratch: &mut ScanScratch<D>,
-        search: &mut PairSearch,
+        search: &mut CollisionSearch,
     ) {
         let [first, second] = crossing.groups;
         let (one, other) = (&self.robot.groups[first], &self.robot.groups[second]);

@@ -36,7 +36,7 @@ pub(in crate::checker) enum Other {
 
 /// A search in eight configurations.
 #[derive(Debug)]
-pub(in crate::checker) struct PairSearch {
+pub(in crate::checker) struct CollisionSearch {
     mode: SearchMode,
     /// The lanes that are looked at.
     live: u8,
@@ -69,7 +69,7 @@ pub(super) struct Distances<V> {
     pub(super) exact: u8,
 }
 
-impl PairSearch {
+impl CollisionSearch {
     pub(in crate::checker) fn new(mode: SearchMode) -> Self {
         let zero = [0.0; LANES];
         Self {

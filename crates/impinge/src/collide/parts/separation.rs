@@ -8,7 +8,7 @@ use super::slabs::{AxisSlabs, corners};
 use super::solid_bounds::SolidBounds;
 use super::sweep::PartSweep;
 use crate::bounding_volume::Aabb;
-use crate::bvh::{Ranking, TreePair, visit_pairs, visit_ranked};
+use crate::bvh::{BoxRanking, TreePair, visit_pairs, visit_ranked};
 use crate::collide::Pair;
 use crate::collide::packet::{LANES, Tiles};
 use crate::collide::separation::separation as of_convex;
@@ -295,7 +295,7 @@ struct RankedParts<'a, 'q, N: Real, const D: usize> {
     visitor: &'q mut dyn PairVisitor<N, D>,
 }
 
-impl<N: Space<D>, const D: usize> Ranking<N, D> for RankedParts<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D> {
     fn of_box(&self, aabb: &Aabb<N, D>) -> N {
         self.bounds.of_box(aabb)
     }

@@ -9,7 +9,7 @@
 //! - [`apart`] searches the nearest points of triangles, boxes and hulls in 3D that are well apart, of one pair or eight;
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D, `triangles` and `chain` test eight
 //!   parts of a surface at once;
-//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps, `coaxial`
+//! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps, `revolved::coaxial`
 //!   those about one axis;
 //! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` the rest, by GJK and EPA, smooth ones `eroded`.
 //!
@@ -21,7 +21,6 @@ pub(crate) mod apart;
 pub(crate) mod balls;
 pub(crate) mod boxes;
 mod chain;
-mod coaxial;
 mod eroded;
 mod flat_core;
 mod general;

@@ -8,9 +8,10 @@
 //! deep there holds such a ball. What is not proved is left to the general algorithm, such as two rims
 //! that overlap.
 
+use super::coaxial;
 use crate::collide::Pair;
 use crate::collide::separation::hulls::{in_first_frame, noise, out_of_reach};
-use crate::collide::separation::{coaxial, wrong_kinds};
+use crate::collide::separation::wrong_kinds;
 use crate::convex::{Separation, Units};
 use crate::math::{Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::shape::{Cylinder, Kind, SupportMap};

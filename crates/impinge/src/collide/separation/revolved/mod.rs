@@ -12,6 +12,7 @@
 //! not proved like that, an edge across a rim above all, is left to the arcs of [`ridges`].
 
 mod chord;
+pub(super) mod coaxial;
 pub(super) mod cylinder_cylinder;
 mod faces;
 mod profile;
@@ -21,7 +22,6 @@ mod tests;
 
 use self::cylinder_cylinder::{RevolvedFound, RevolvedResult};
 use self::profile::{Profile, ProfilePart, ProfileView};
-use super::coaxial;
 use super::flat_core::FlatCore;
 use super::general;
 use super::hulls::{noise, out_of_reach};

@@ -7,12 +7,12 @@
 
 use smallvec::SmallVec;
 
-use super::flat_core::FlatCore;
-use super::general;
-use super::hulls::noise;
-use super::ridges::Round;
-use super::wrong_kinds;
 use crate::collide::Pair;
+use crate::collide::separation::flat_core::FlatCore;
+use crate::collide::separation::general;
+use crate::collide::separation::hulls::noise;
+use crate::collide::separation::ridges::Round;
+use crate::collide::separation::wrong_kinds;
 use crate::convex::{self, Peak, Peaks, Separation};
 use crate::math::{Pose, Real, Vector, cross, max, perpendicular_to, unit};
 use crate::shape::{Geometry, Kind};
@@ -23,7 +23,10 @@ const NEAR: f64 = 1.0 / 4096.0;
 const SAME_RING: f64 = 1.0 / 16.0;
 
 /// The separation of two cylinders or cones by the general algorithm.
-pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+pub(in crate::collide::separation) fn separation<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<Separation<N, 3>> {
     let (first, second) = (Geometry(pair.first), Geometry(pair.second));
     let (Some(map1), Some(map2)) = (first.as_support_map(), second.as_support_map()) else {
         wrong_kinds(pair)
@@ -46,16 +49,19 @@ impl<N: Real> Peaks<N, 3> for CoaxialPeaks<'_, '_, N> {
 
 /// The best normal of the cores of a segment, capsule, cylinder or cone and another that overlap; `None` of other
 /// solids, and of those that are not about one axis. `shrink` takes lengths to units of the pair.
-pub(super) fn peak<N: Real>(pair: &Pair<'_, N, 3>, shrink: N) -> Option<Peak<N, 3>> {
+pub(in crate::collide::separation) fn peak<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    shrink: N,
+) -> Option<Peak<N, 3>> {
     let own_frame = Pose::identity();
-    let first = Outline::of(pair.first, &own_frame, shrink)?;
-    let second = Outline::of(pair.second, &pair.pose12, shrink)?;
+    let first = AxialOutline::of(pair.first, &own_frame, shrink)?;
+    let second = AxialOutline::of(pair.second, &pair.pose12, shrink)?;
     Coaxial::new(first, second)?.peak()
 }
 
 /// A solid about an axis, in the frame of the first and units of the pair: in a half-plane of the axis the hull
 /// of two points and of those across the axis.
-struct Outline<N: Real> {
+struct AxialOutline<N: Real> {
     middle: Vector<N, 3>,
     /// Unit.
     axis: Vector<N, 3>,
@@ -63,7 +69,7 @@ struct Outline<N: Real> {
     corners: [Vector<N, 2>; 2],
 }
 
-impl<N: Real> Outline<N> {
+impl<N: Real> AxialOutline<N> {
     /// `None` of other kinds, and of one without a size.
     fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
         let place = pose.translation * shrink;
@@ -133,9 +139,9 @@ impl<N: Real> Outline<N> {
 
 /// Two solids about one axis.
 struct Coaxial<N: Real> {
-    first: Outline<N>,
+    first: AxialOutline<N>,
     /// Its axis runs as that of the first.
-    second: Outline<N>,
+    second: AxialOutline<N>,
     /// From the middle of the first to that of the second, across the axis, and how far the solids are from having
     /// one axis.
     offset: Vector<N, 3>,
@@ -143,7 +149,7 @@ struct Coaxial<N: Real> {
 }
 
 impl<N: Real> Coaxial<N> {
-    fn new(first: Outline<N>, mut second: Outline<N>) -> Option<Self> {
+    fn new(first: AxialOutline<N>, mut second: AxialOutline<N>) -> Option<Self> {
         if first.axis.dot(&second.axis) < N::ZERO {
             let [top, bottom] = second.corners;
             second.axis = -second.axis;
@@ -167,13 +173,13 @@ impl<N: Real> Coaxial<N> {
     fn direction(
         &self,
         normal: Vector<N, 2>,
-        whose: &Outline<N>,
+        whose: &AxialOutline<N>,
         aside: &Vector<N, 3>,
-    ) -> WayOut<N> {
+    ) -> AxialExit<N> {
         let lifted = whose.lifted(&normal, aside);
         let along = unit(&lifted).map_or(*aside, |(along, _)| along);
         let depth = self.first.extent(&along) + self.second.extent(&-along);
-        WayOut { normal, along, depth }
+        AxialExit { normal, along, depth }
     }
 
     /// `None` where a ring of normals that differ may have a better one than the best that is known.
@@ -183,12 +189,12 @@ impl<N: Real> Coaxial<N> {
         let across = |n: Vector<N, 2>| Vector::<N, 2>::new(n.x, -n.y);
         let others = self.second.normals();
         let others = others.map(|n| self.direction(across(n), &self.second, &aside));
-        let ways: SmallVec<[WayOut<N>; 6]> = own.chain(others).collect();
-        let shorter = |a: WayOut<N>, b: WayOut<N>| if b.depth < a.depth { b } else { a };
+        let ways: SmallVec<[AxialExit<N>; 6]> = own.chain(others).collect();
+        let shorter = |a: AxialExit<N>, b: AxialExit<N>| if b.depth < a.depth { b } else { a };
         let best = ways.iter().copied().reduce(shorter)?;
         let is_exact = self.apart <= noise();
         let slack = self.apart * N::lit(4.0);
-        let is_rival = |other: &WayOut<N>| {
+        let is_rival = |other: &AxialExit<N>| {
             let is_other_ring = (other.normal - best.normal).norm() > N::lit(SAME_RING);
             other.normal.x > N::ZERO && is_other_ring && other.depth < best.depth + slack
         };
@@ -208,7 +214,7 @@ impl<N: Real> Coaxial<N> {
 
 /// A direction out of an overlap.
 #[derive(Clone, Copy)]
-struct WayOut<N: Real> {
+struct AxialExit<N: Real> {
     /// In the half-plane of the axis.
     normal: Vector<N, 2>,
     /// Unit.
