@@ -9,15 +9,19 @@ const SHARE: f64 = 1023.0 / 1024.0;
 
 /// Whether balls inside the two solids certainly overlap. `false` says nothing.
 pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
-    let ((center1, radius1), (center2, radius2)) = (of(pair.first), of(pair.second));
+    let (Some((center1, radius1)), Some((center2, radius2))) = (of(pair.first), of(pair.second))
+    else {
+        return false;
+    };
     let reach = (radius1 + radius2) * N::lit(SHARE);
     (pair.pose12.point(&center2) - center1).norm_squared() < reach * reach
 }
 
-/// A ball inside a solid, about its middle; one without size where none is known.
-fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Point<N, D>, N) {
+/// A ball inside a solid, about its middle, if one is known; that of a segment has no size.
+fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Option<(Point<N, D>, N)> {
     let least = |sizes: &Vector<N, D>| sizes.iter().fold(N::MAX, |least, &size| min(size, least));
-    match kind {
+    Some(match kind {
+        Kind::Segment(segment) => (segment.center(), N::ZERO),
         Kind::Capsule(capsule) => (capsule.center(), capsule.radius()),
         Kind::Cuboid(cuboid) => (Point::origin(), least(cuboid.half_extents())),
         Kind::Polytope(polytope) => (polytope.center(), polytope.inner_radius()),
@@ -27,11 +31,11 @@ fn of<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> (Point<N, D>, N) {
         Kind::Cone(cone, _) => of_cone(cone),
         Kind::Ellipsoid(ellipsoid) => (Point::origin(), least(ellipsoid.half_axes())),
         Kind::Rounded(solid) => {
-            let (center, radius) = of(solid.inner().0);
+            let (center, radius) = of(solid.inner().0)?;
             (center, radius + solid.radius())
         }
-        _ => (Point::origin(), N::ZERO),
-    }
+        _ => return None,
+    })
 }
 
 /// The ball that touches the cap and the side: in the half-plane of the axis the circle in a triangle.
@@ -48,7 +52,9 @@ fn of_cone<N: Real, const D: usize>(cone: &Cone<N>) -> (Point<N, D>, N) {
 mod tests {
     use super::*;
     use crate::math::Pose;
-    use crate::shape::{Capsule, ConvexHull, Cuboid, Cylinder, Ellipsoid, Rounded, Shape};
+    use crate::shape::{
+        Capsule, ConvexHull, Cuboid, Cylinder, Ellipsoid, Rounded, Segment, Shape, Triangle,
+    };
 
     #[test]
     fn balls_touch_the_surface() {
@@ -65,7 +71,7 @@ mod tests {
         ];
         // The middle of the hull is the mean of its corners, not that of the largest ball.
         for (solid, expected) in solids {
-            let (_, radius) = of(solid.geometry().0);
+            let (_, radius) = of(solid.geometry().0).expect("a ball is known");
             assert!((radius - expected).abs() < 1e-14, "{radius} in {solid:?}");
         }
     }
@@ -81,5 +87,18 @@ mod tests {
         assert!(inner_balls_meet(&at(2.49)), "1 and 1.5 are more than the way");
         assert!(!inner_balls_meet(&at(2.51)), "though the solids overlap");
         assert!(!inner_balls_meet(&at(f64::NAN)), "nowhere");
+    }
+
+    #[test]
+    fn what_lies_beside_its_origin_has_its_ball_there() {
+        let at = |x: f64| Point::<f64, 3>::new(x, 0.0, 0.0);
+        let (far, ball) = (Segment::new(at(5.0), at(7.0)), Capsule::<f64, 3>::new(1.0, 1.0));
+        let (first, second) = (far.geometry().0, ball.geometry().0);
+        let place = |x: f64| Pose::from_translation(Vector::<f64, 3>::new(x, 0.0, 0.0));
+        assert!(!inner_balls_meet(&Pair { first, second, pose12: place(0.0) }), "it begins at 5");
+        assert!(inner_balls_meet(&Pair { first, second, pose12: place(6.0) }), "in its middle");
+        let tip = Triangle::new(at(5.0), at(6.0), at(7.0));
+        let first = tip.geometry().0;
+        assert!(!inner_balls_meet(&Pair { first, second, pose12: place(0.0) }), "none is known");
     }
 }
