@@ -53,9 +53,9 @@ type Answer<'py> = PyResult<Object<'py>>;
 ///
 /// Returns a float, or an array (n,) if an argument has many elements, a length in the unit of the shapes.
 ///
-/// Errors: ValueError names the argument and the row of a matrix that is no pose (not finite, not a rotation), an array of
-/// another shape, and lengths that differ; TypeError a thing of another kind, and a shape of another dim or dtype.
-/// KeyboardInterrupt on Ctrl-C, and what `progress` raises, end the work.
+/// Errors: `ValueError` names the argument and the row of a matrix that is no pose (not finite, not a rotation), an array of
+/// another shape, and lengths that differ; `TypeError` a thing of another kind, and a shape of another dim or dtype.
+/// `KeyboardInterrupt` on Ctrl-C, and what `progress` raises, end the work.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 2, 5]
@@ -229,7 +229,7 @@ fn nearest<'py>(
 /// When two moving solids first come within `target_distance`.
 ///
 /// Arguments and errors as of `distance`; the velocities are (D,) or (n, D), in the world frame per unit of time.
-/// angular_velocity1, angular_velocity2: in 2D a number or (n,) in radians, counter-clockwise; in 3D (3,) or (n, 3), the
+/// `angular_velocity1`, `angular_velocity2`: in 2D a number or (n,) in radians, counter-clockwise; in 3D (3,) or (n, 3), the
 /// axis in the world frame times radians. They turn about the origins of the shapes' frames; without both nothing turns.
 /// Returns `Impact(time, normal, point1, point2, is_reached)`, points and normal at that time; without an impact by
 /// `max_time` the time is infinite. `is_reached` is false where the search ended early: the solids do not meet before
@@ -271,7 +271,7 @@ fn impact<'py>(
 /// The pairs of elements that are at most `distance` apart, as an ascending array (m, 2) of uint32.
 ///
 /// With one side: its pairs [i, j] with i < j. With two: i of the first and j of the second, all against all. Arguments and
-/// errors as of `distance`; ValueError too if `distance` is negative or NaN.
+/// errors as of `distance`; `ValueError` too if `distance` is negative or NaN.
 ///
 /// >>> import impinge, numpy as np
 /// >>> poses = np.tile(np.eye(4), (3, 1, 1)); poses[:, 0, 3] = [0, 3, 6.5]

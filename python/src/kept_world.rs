@@ -12,8 +12,8 @@ use crate::space::Numeric;
 
 /// A world, which is read through [`Deref`] and changed by the methods: a recorder hears of every change.
 pub(crate) enum KeptWorld<N: Numeric<D>, const D: usize> {
-    Plain(CollisionWorld<N, D, ()>),
-    Recorded(Recorder<N, D, ()>),
+    Plain(Box<CollisionWorld<N, D, ()>>),
+    Recorded(Box<Recorder<N, D, ()>>),
 }
 
 impl<N: Numeric<D>, const D: usize> Deref for KeptWorld<N, D> {
@@ -107,11 +107,11 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
     /// Begins to record, with an update; a world that is recorded goes on as it is.
     pub(crate) fn record(&mut self, margin: N) -> Result<(), RecordError> {
         let Self::Plain(world) = self else { return Ok(()) };
-        let world = std::mem::replace(world, CollisionWorld::new(N::ZERO));
+        let world = *std::mem::replace(world, Box::new(CollisionWorld::new(N::ZERO)));
         match Recorder::of_world(world, margin, Registry::new()) {
-            Ok(recorder) => *self = Self::Recorded(recorder),
+            Ok(recorder) => *self = Self::Recorded(Box::new(recorder)),
             Err(refused) => {
-                *self = Self::Plain(*refused.world);
+                *self = Self::Plain(refused.world);
                 return Err(refused.error);
             }
         }
@@ -120,7 +120,7 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
 
     /// Ends to record: the bytes of the recording, if there is one.
     pub(crate) fn stop(&mut self) -> Option<Vec<u8>> {
-        let none = Self::Plain(CollisionWorld::new(N::ZERO));
+        let none = Self::Plain(Box::new(CollisionWorld::new(N::ZERO)));
         match std::mem::replace(self, none) {
             Self::Plain(world) => {
                 *self = Self::Plain(world);
@@ -128,7 +128,7 @@ impl<N: Numeric<D>, const D: usize> KeptWorld<N, D> {
             }
             Self::Recorded(recorder) => {
                 let recording = recorder.finish();
-                *self = Self::Plain(recording.world);
+                *self = Self::Plain(Box::new(recording.world));
                 Some(recording.bytes)
             }
         }

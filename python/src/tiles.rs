@@ -54,7 +54,7 @@ fn boxes<'py>(
 /// of 0 or more, one for each object, no two equal. tiles: a `Tiles`. tile: its number.
 ///
 /// Each row has the lower id first. All tiles together have each pair once, those that `pairs_within` finds among all
-/// objects, whatever the tiles. ValueError and TypeError name the argument, the row and the value.
+/// objects, whatever the tiles. `ValueError` and `TypeError` name the argument, the row and the value.
 ///
 /// >>> import impinge
 /// >>> ball, poses = impinge.Ball(1), impinge.Poses([[0, 0, 0], [2.5, 0, 0], [6, 0, 0], [8.5, 0, 0]])

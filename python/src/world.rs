@@ -73,7 +73,7 @@ impl Task for MakeWorld {
         let margin = convert::<f64, N>(self.0);
         let world = CollisionWorld::try_new(margin);
         let world = world.map_err(|error| PyValueError::new_err(error.to_string()))?;
-        Ok(Box::new(TypedWorld::new(KeptWorld::<N, D>::Plain(world), margin)))
+        Ok(Box::new(TypedWorld::new(KeptWorld::<N, D>::Plain(Box::new(world)), margin)))
     }
 }
 
