@@ -178,13 +178,13 @@ fn turned<N: Real>(random: &mut Random) -> Pose<N, 2> {
 
 #[test]
 fn no_part_is_nearer_than_the_one_that_is_found() {
-    searches::<f32, 3>(&in_space(), |random| random.vector(), |random| random.turn());
+    searches::<f32, 3>(&in_space(), Random::vector, Random::turn);
     searches::<f32, 2>(&in_plane(), |random| random.vector().xy(), turned);
 }
 
 #[cfg(feature = "f64")]
 #[test]
 fn no_part_is_nearer_in_double_precision() {
-    searches::<f64, 3>(&in_space(), |random| random.vector(), |random| random.turn());
+    searches::<f64, 3>(&in_space(), Random::vector, Random::turn);
     searches::<f64, 2>(&in_plane(), |random| random.vector().xy(), turned);
 }
