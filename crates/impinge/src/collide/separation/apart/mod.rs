@@ -24,7 +24,7 @@ mod tests;
 use self::core::{CorePoints, LaneCore};
 pub(crate) use self::packet::distances;
 #[cfg(test)]
-use self::search::LEAST_GAP;
+use self::search::MIN_GAP;
 use self::search::{LaneCores, LaneGap};
 use super::boxes::cuboid_cuboid;
 use super::flat_core::FlatCore;

@@ -12,7 +12,7 @@ use crate::math::{Real, Wide, max};
 const ROUNDS: usize = 32;
 
 /// Cores nearer than this, in units of the pair, are left to algorithms that decide about touching: 2⁻⁶.
-pub(super) const LEAST_GAP: f64 = 1.0 / 64.0;
+pub(super) const MIN_GAP: f64 = 1.0 / 64.0;
 
 /// Edges that turn by less than this from each other count as parallel: the square of the sine is 2⁻²⁰.
 const PARALLEL: f64 = 1.0 / 1_048_576.0;
@@ -47,7 +47,7 @@ pub(super) struct LaneGap<V, M> {
 }
 
 impl<N: Real, V: Copy> LaneCores<'_, N, V> {
-    /// Runs the search; without `with_overlap` lanes that come nearer than [`LEAST_GAP`] are given up at once.
+    /// Runs the search; without `with_overlap` lanes that come nearer than [`MIN_GAP`] are given up at once.
     ///
     /// A lane that is done keeps what it has, so that no lane depends on its neighbours.
     #[inline(always)]
@@ -55,7 +55,7 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
     where
         V: Wide<S, Scalar = N>,
     {
-        let (zero, least) = (V::all(simd, N::ZERO), lit::<S, N, V>(simd, LEAST_GAP));
+        let (zero, least) = (V::all(simd, N::ZERO), lit::<S, N, V>(simd, MIN_GAP));
         let none = zero.simd_gt(zero);
         let start = over(&self.between, dot(&self.between, &self.between).sqrt());
         let mut simplex = LaneSimplex::new(simd, self.corner(simd, &start));

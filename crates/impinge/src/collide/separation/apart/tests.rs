@@ -53,7 +53,7 @@ fn answers_are_those_of_the_test_of_axes<N: Real>() {
             let expected = nearer(pair)(pair, N::INFINITY).expect("finite");
             let size = FlatPair::of(pair).expect("faceted").units.scale;
             let tolerance = N::lit(64.0) * N::EPSILON * size;
-            all += usize::from(expected.distance > size * N::lit(LEAST_GAP));
+            all += usize::from(expected.distance > size * N::lit(MIN_GAP));
             let pose12 = &pair.pose12;
             match result(pair, N::INFINITY, true) {
                 GapResult::Apart(found) => {
