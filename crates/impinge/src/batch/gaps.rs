@@ -9,11 +9,10 @@ use crate::collide::pair::Ordered;
 use crate::math::{Space, max};
 
 /// The distance of each pair of a range, zero where the shapes touch or overlap, with the bits of the single call;
-/// `None` without an answer, and perhaps where composites are farther apart than `limit`.
+/// `None` without an answer.
 pub(super) fn distances<N: Space<D>, const D: usize>(
     sides: &[PreparedSide<'_, N, D>; 2],
     range: Range<usize>,
-    limit: N,
 ) -> Vec<Option<N>> {
     let mut found = vec![None; range.len()];
     let placed = [sides[0].placed(range.clone()), sides[1].placed(range)];
@@ -23,7 +22,7 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
             [0, 1].map(|side| &placed[side][index_in(placed[side].len(), slot)]);
         let ordered = Ordered::new(placed1, placed2);
         if ordered.has_composite() {
-            *found = (N::tables().distance_in_world)(placed1, placed2, limit);
+            *found = (N::tables().distance_in_world)(placed1, placed2, N::INFINITY);
             continue;
         }
         let pair = ordered.pair();

@@ -239,7 +239,7 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     out.check(batch.len)?;
     batch.each_chunk(control, out, |sides, range, out| {
-        let found = gaps::distances(sides, range, N::INFINITY);
+        let found = gaps::distances(sides, range);
         for (slot, distance) in out.iter_mut().zip(found) {
             *slot = distance.unwrap_or(N::INFINITY);
         }

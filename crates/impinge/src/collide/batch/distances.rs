@@ -1,6 +1,7 @@
 //! The distances of many pairs of convex solids, eight at a time where their kinds have lanes.
 
 use super::LANES;
+use super::gather::put;
 use super::segments3::nearest_of_segments;
 use super::vectors::{bits, dot, minus};
 use crate::collide::Pair;
@@ -8,7 +9,7 @@ use crate::collide::separation::segments::nearest::core;
 use crate::collide::separation::{apart, distance_in_plane, distance_in_space, is_usual};
 use crate::math::lanes::{load, with_lanes};
 use crate::math::simd::{Level, Simd};
-use crate::math::{Real, Vector, Wide};
+use crate::math::{Real, Wide};
 use crate::shape::{Geometry, Kind, ShapeKind};
 
 /// A pair of convex solids and the slot of its answer.
@@ -102,11 +103,4 @@ fn between<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let squared = dot(&between, &between);
     squared.sqrt().store(distances);
     bits(is_moderate & is_usual(simd, squared))
-}
-
-#[inline(always)]
-fn put<N: Real>(rows: &mut [[N; LANES]; 3], lane: usize, vector: &Vector<N, 3>) {
-    for axis in 0..3 {
-        rows[axis][lane & (LANES - 1)] = vector[axis];
-    }
 }

@@ -155,8 +155,13 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     }
 }
 
+/// Puts a vector into a lane.
 #[inline(always)]
-fn put<N: Real, const D: usize>(rows: &mut LaneRows<N, D>, lane: usize, vector: &Vector<N, D>) {
+pub(super) fn put<N: Real, const D: usize>(
+    rows: &mut LaneRows<N, D>,
+    lane: usize,
+    vector: &Vector<N, D>,
+) {
     for axis in 0..D {
         rows[axis][lane & (LANES - 1)] = vector[axis];
     }
