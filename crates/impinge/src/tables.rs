@@ -21,9 +21,10 @@ use crate::collide::separation::{
     touching_in_world,
 };
 use crate::collide::{
-    ManifoldRequest, OnFace, Pair, Placed, RawManifold, SlottedPair, Solid, between2, build3,
-    contact_in_world, contacts2, contacts3, distances2, distances3, on_face2, on_face3, tangents2,
-    tangents3, witness_feature2, witness_feature3, witness_features2, witness_features3,
+    ConvexPair, ManifoldRequest, OnFace, Pair, Placed, RawManifold, Solid, between2, build3,
+    contact_in_world, contacts2, contacts3, distances2, distances3, on_face2, on_face3,
+    separations2, separations3, tangents2, tangents3, witness_feature2, witness_feature3,
+    witness_features2, witness_features3,
 };
 use crate::convex::Separation;
 #[cfg(feature = "debug_render")]
@@ -96,8 +97,10 @@ pub struct Tables<N: Space<D>, const D: usize> {
     pub(crate) is_crossed: fn(&dyn CompositeShape<N, D>, &Ray<N, D>, N) -> bool,
     /// The contact points of a pair.
     pub(crate) contacts: ContactsFn<N, D>,
-    /// The distances of many pairs.
+    /// The distances of many pairs of convex solids, up to a limit.
     pub(crate) distances: DistancesOfPairsFn<N, D>,
+    /// Their separations.
+    pub(crate) separations: SeparationsOfPairsFn<N, D>,
     /// Those of some pairs of a group, several at a time, if that can be done.
     pub(crate) update_lanes: UpdateLanesFn<N, D>,
     /// The same of pairs of a batch.
@@ -133,7 +136,9 @@ type InWorldFn<N, const D: usize> =
 type DistanceInWorldFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N) -> Option<N>;
 type DistanceFn<N, const D: usize> = fn(&Pair<'_, N, D>, N) -> Option<N>;
-type DistancesOfPairsFn<N, const D: usize> = fn(&mut [SlottedPair<'_, N, D>], &mut [Option<N>]);
+type DistancesOfPairsFn<N, const D: usize> = fn(&mut [ConvexPair<'_, N, D>], N, &mut [Option<N>]);
+type SeparationsOfPairsFn<N, const D: usize> =
+    fn(&mut [ConvexPair<'_, N, D>], N, &mut [Option<Separation<N, D>>]);
 type SeenFn<N, const D: usize> = fn(Kind<'_, N, D>, &Point<N, D>) -> Option<Projection<N, D>>;
 type WitnessFn<N, const D: usize> =
     fn(&Placed<'_, N, D>, &Placed<'_, N, D>, N, bool) -> Option<Witness<N, D>>;
@@ -273,6 +278,7 @@ struct Particular<N: Space<D>, const D: usize> {
     update_quickly: QuickFn<N, D>,
     distance: DistanceFn<N, D>,
     distances: DistancesOfPairsFn<N, D>,
+    separations: SeparationsOfPairsFn<N, D>,
     seen: SeenFn<N, D>,
     contacts: ContactsFn<N, D>,
     update_lanes: UpdateLanesFn<N, D>,
@@ -299,6 +305,7 @@ impl<N: Real> Particular<N, 2> {
         update_quickly: update_chain,
         distance: distance_in_plane,
         distances: distances2,
+        separations: separations2,
         seen: seen_in_plane,
         contacts: contacts2,
         update_lanes: update_lanes2,
@@ -326,6 +333,7 @@ impl<N: Real> Particular<N, 3> {
         update_quickly: update_on_surface,
         distance: distance_in_space,
         distances: distances3,
+        separations: separations3,
         seen: seen_in_space,
         contacts: contacts3,
         update_lanes: update_lanes3,
@@ -355,6 +363,7 @@ impl<N: Space<D>, const D: usize> Tables<N, D> {
             update_quickly: particular.update_quickly,
             distance: particular.distance,
             distances: particular.distances,
+            separations: particular.separations,
             seen: particular.seen,
             are_beyond,
             separation_in_world: in_world,

@@ -39,10 +39,10 @@
 mod columns;
 mod control;
 mod error;
-mod gaps;
 mod manifolds;
 mod matrices;
 mod pairs;
+mod placed;
 mod points;
 mod poses;
 mod rays;

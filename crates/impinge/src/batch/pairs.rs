@@ -5,18 +5,19 @@ use std::sync::{Mutex, PoisonError};
 
 use super::columns::{AnswerColumns, as_long_as};
 use super::control::Progress;
+use super::placed::{PairFinding, PlacedPairs};
 use super::side::{Element, PreparedSide, common_length, index_in, pair_at};
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, Side,
-    WitnessColumns, gaps,
+    WitnessColumns,
 };
 use crate::chunks::Cut;
 use crate::collide::Placing;
 use crate::math::{Real, Space, Vector, max};
 use crate::narrow_phase::ContactPrediction;
 use crate::query::{
-    ImpactOptions, Moving, Proximity, contact_between, distance_within, impact_of_pair,
-    proximity_between, separation_between, witness_between,
+    Contact, ImpactOptions, Moving, NO_FEATURES, Proximity, Witness, distance_within,
+    impact_of_pair, witness_between,
 };
 
 /// Two sides whose elements with one index are a pair.
@@ -219,6 +220,37 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
+    /// Calls with the pairs of each chunk that may be at most a limit apart, and the columns of their answers.
+    fn each_placed<C: AnswerColumns>(
+        &self,
+        limit: N,
+        control: &Control<'_>,
+        out: C,
+        answer: impl Fn(&PlacedPairs<'a, N, D>, &mut C) + Sync,
+    ) -> Result<(), BatchError> {
+        out.check(self.len)?;
+        self.each_chunk(control, out, |sides, range, columns| {
+            answer(&PlacedPairs::new(sides, range, limit), columns);
+        })
+    }
+
+    /// Calls with the slot of each pair and nothing, then with that of each that may be at most a limit apart and
+    /// what is known of it.
+    fn each_separation<C: AnswerColumns>(
+        &self,
+        limit: N,
+        control: &Control<'_>,
+        out: C,
+        answer: impl Fn(&mut C, usize, Option<PairFinding<'_, 'a, N, D>>) + Sync,
+    ) -> Result<(), BatchError> {
+        out.check(self.len)?;
+        self.each_chunk(control, out, |sides, range, columns| {
+            (0..range.len()).for_each(|slot| answer(columns, slot, None));
+            let pairs = PlacedPairs::new(sides, range, limit);
+            pairs.separations(|slot, found| answer(columns, slot, Some(found)));
+        })
+    }
+
     fn each_chunk<C: Cut>(
         &self,
         control: &Control<'_>,
@@ -237,12 +269,9 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
     control: &Control<'_>,
     out: &mut [N],
 ) -> Result<(), BatchError> {
-    out.check(batch.len)?;
-    batch.each_chunk(control, out, |sides, range, out| {
-        let found = gaps::distances(sides, range);
-        for (slot, distance) in out.iter_mut().zip(found) {
-            *slot = distance.unwrap_or(N::INFINITY);
-        }
+    batch.each_placed(N::INFINITY, control, out, |pairs, out| {
+        out.fill(N::INFINITY);
+        pairs.distances(|slot, distance| out[slot] = max(distance, N::ZERO));
     })
 }
 
@@ -253,21 +282,37 @@ pub(super) fn closest_points<N: Space<D>, const D: usize>(
     control: &Control<'_>,
     out: ClosestColumns<'_, N, D>,
 ) -> Result<(), BatchError> {
-    batch.each(control, out, |[one, other], out, slot| {
-        out.put(slot, separation_between(&one, &other, max_distance).as_ref());
+    let limit = max(max_distance, N::ZERO);
+    batch.each_separation(limit, control, out, |out, slot, found| match found {
+        None => out.put(slot, None),
+        Some(PairFinding::Convex(found)) => out.put(slot, Some(found)),
+        Some(PairFinding::Composites([one, other])) => {
+            out.put(slot, (N::tables().touching_in_world)(one, other, limit).as_ref());
+        }
     })
 }
 
 /// See [`PairBatch::witnesses`].
 pub(super) fn witnesses<N: Space<D>, const D: usize>(
     batch: &PairBatch<'_, N, D>,
-    max_distance: N,
+    limit: N,
     control: &Control<'_>,
     out: WitnessColumns<'_, N, D>,
 ) -> Result<(), BatchError> {
-    batch.each(control, out, |[one, other], out, slot| {
-        let with_features = !(out.feature1.is_empty() && out.feature2.is_empty());
-        out.put(slot, witness_between(&one, &other, max_distance, with_features).as_ref());
+    if !(out.feature1.is_empty() && out.feature2.is_empty()) {
+        return batch.each(control, out, |[one, other], out, slot| {
+            out.put(slot, witness_between(&one, &other, limit, true).as_ref());
+        });
+    }
+    batch.each_separation(limit, control, out, |out, slot, found| match found {
+        None => out.put(slot, None),
+        Some(PairFinding::Convex(found)) => {
+            let found = found.distance.is_finite_number().then_some(found);
+            out.put(slot, found.map(|found| Witness::new(found, [0; 2], NO_FEATURES)).as_ref());
+        }
+        Some(PairFinding::Composites([one, other])) => {
+            out.put(slot, (N::tables().witness_in_world)(one, other, limit, false).as_ref());
+        }
     })
 }
 
@@ -278,8 +323,9 @@ pub(super) fn proximities<N: Space<D>, const D: usize>(
     control: &Control<'_>,
     out: &mut [Proximity],
 ) -> Result<(), BatchError> {
-    batch.each(control, out, |[one, other], out, slot| {
-        out[slot] = proximity_between(&one, &other, margin);
+    batch.each_placed(max(margin, N::ZERO), control, out, |pairs, out| {
+        out.fill(Proximity::Disjoint);
+        pairs.distances(|slot, distance| out[slot] = Proximity::within(distance));
     })
 }
 
@@ -290,8 +336,14 @@ pub(super) fn contacts<N: Space<D>, const D: usize>(
     control: &Control<'_>,
     out: ContactColumns<'_, N, D>,
 ) -> Result<(), BatchError> {
-    batch.each(control, out, |[one, other], out, slot| {
-        out.put(slot, contact_between(&one, &other, prediction).as_ref());
+    batch.each_separation(prediction, control, out, |out, slot, found| match found {
+        None => out.put(slot, None),
+        Some(PairFinding::Convex(found)) => out.put(slot, Contact::of_separation(found).as_ref()),
+        Some(PairFinding::Composites([one, other])) => {
+            let found = (N::tables().contact_in_world)(one, other, prediction);
+            let contact = found.as_ref().and_then(Contact::of_separation);
+            out.put(slot, contact.as_ref());
+        }
     })
 }
 

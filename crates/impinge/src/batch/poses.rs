@@ -98,12 +98,18 @@ pub trait PoseSource<N: Real, const D: usize>: Sync {
 
     /// Appends the poses of a range of indices: one call for many where a source is known by its methods alone.
     fn append(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
-        out.extend(range.map(|index| self.pose(index)));
+        out.reserve(range.len());
+        for index in range {
+            out.push(self.pose(index));
+        }
     }
 
     /// Appends what [`Self::unturned`] has of a range of indices.
     fn append_unturned(&self, range: Range<usize>, out: &mut Vec<Pose<N, D>>) {
-        out.extend(range.map(|index| self.unturned(index)));
+        out.reserve(range.len());
+        for index in range {
+            out.push(self.unturned(index));
+        }
     }
 }
 

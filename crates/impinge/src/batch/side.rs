@@ -194,23 +194,22 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         }
     }
 
-    /// The shapes of a range of elements where they are; a single element once.
-    pub(super) fn placed(&self, range: Range<usize>) -> Vec<Placed<'a, N, D>> {
-        if let Some((_, placed)) = &self.only {
-            return vec![*placed];
-        }
-        let (poses, mut found) = (self.side.poses, Vec::with_capacity(range.len()));
-        match &self.shape {
-            Some((_, shape)) if self.poses > 1 => {
+    /// The shapes of a range of elements where they are.
+    pub(super) fn placed(&self, range: Range<usize>) -> PlacedSide<'a, N, D> {
+        let mut found = PlacedSide { shapes: Vec::new(), poses: Vec::new() };
+        match (&self.only, &self.shape) {
+            (Some((_, placed)), _) => found.push(placed),
+            (_, Some((_, shape))) if self.poses > 1 => {
+                found.shapes.push(*shape);
                 if shape.turns() {
-                    poses.append(range, &mut found);
+                    self.side.poses.append(range, &mut found.poses);
                 } else {
-                    poses.append_unturned(range, &mut found);
+                    self.side.poses.append_unturned(range, &mut found.poses);
                 }
-                found.into_iter().map(|pose| Placed { pose, shape: *shape }).collect()
             }
-            _ => range.map(|element| self.element(element).placed()).collect(),
+            _ => range.for_each(|element| found.push(&self.element(element).placed())),
         }
+        found
     }
 
     /// An element, which is placed when it is near enough.
@@ -221,6 +220,42 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
             None => self.side.shapes.at(element).geometry(),
         };
         Element { side: self, shape, pose: index_in(self.poses, element) }
+    }
+}
+
+/// Elements of a side where they are placed, known by numbers.
+pub(super) struct PlacedSide<'a, N: Real, const D: usize> {
+    /// One for each element, or one for all.
+    shapes: Vec<Geometry<'a, N, D>>,
+    /// The same. The rotation of a ball is none.
+    poses: Vec<Pose<N, D>>,
+}
+
+impl<'a, N: Real, const D: usize> PlacedSide<'a, N, D> {
+    /// No element, and room for some.
+    pub(super) fn with_capacity(len: usize) -> Self {
+        Self { shapes: Vec::with_capacity(len), poses: Vec::with_capacity(len) }
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, placed: &Placed<'a, N, D>) {
+        self.shapes.push(placed.shape);
+        self.poses.push(placed.pose);
+    }
+
+    #[inline]
+    pub(super) fn shape(&self, number: usize) -> Geometry<'a, N, D> {
+        self.shapes[index_in(self.shapes.len(), number)]
+    }
+
+    #[inline]
+    pub(super) fn pose(&self, number: usize) -> &Pose<N, D> {
+        &self.poses[index_in(self.poses.len(), number)]
+    }
+
+    #[inline]
+    pub(super) fn placed(&self, number: usize) -> Placed<'a, N, D> {
+        Placed { pose: *self.pose(number), shape: self.shape(number) }
     }
 }
 

@@ -24,7 +24,7 @@ use crate::collide::Placing;
 use crate::collide::parts::bounds::enclosing;
 use crate::math::{Real, Space, max};
 use crate::partitioning::BoxTree;
-use crate::query::{Proximity, proximity_between};
+use crate::query::distance_within;
 
 /// Boxes are grown by so many rounding errors of the lengths that they stand for.
 const ROUNDING_ERRORS: f64 = 1024.0;
@@ -226,7 +226,7 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
             let pair = named(number_of(walker), numbers[index])?;
             let (one, found) =
                 (self.side.element(walker), other.side.element(numbers[index] as usize));
-            let is_near = proximity_between(&one, &found, distance) != Proximity::Disjoint;
+            let is_near = distance_within(&one, &found, distance).is_some();
             is_near.then_some(pair)
         };
         let search = |walker: usize, pairs: &mut Vec<[u32; 2]>| {

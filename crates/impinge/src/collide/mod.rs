@@ -22,8 +22,8 @@ mod raw_manifold;
 pub(crate) mod separation;
 
 pub(crate) use batch::{
-    KeptPairs, PairQuestion, SlottedPair, Solid, distances2, distances3, update_pairs2,
-    update_pairs3,
+    ConvexPair, KeptPairs, PairQuestion, Solid, distances2, distances3, separations2, separations3,
+    update_pairs2, update_pairs3,
 };
 pub(crate) use manifold::{
     OnFace, between2, build3, contacts2, contacts3, on_face2, on_face3, tangents2, tangents3,

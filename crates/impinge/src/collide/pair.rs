@@ -79,6 +79,7 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
 /// which a ball has none, then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
 /// (Of a support map of the user's own the numbers are its rounding and its support points along the
 /// axes and the diagonals; of a composite they are those of its parts.)
+#[inline]
 pub(crate) fn canonical<'a, N: Real, const D: usize>(
     pose1: &Pose<N, D>,
     shape1: Geometry<'a, N, D>,

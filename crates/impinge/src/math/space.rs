@@ -33,6 +33,10 @@ pub trait Space<const D: usize>: Real {
     /// The isometry that a pose describes, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
 
+    /// The determinant of a matrix.
+    #[doc(hidden)]
+    fn determinant(matrix: &Matrix<Self, D>) -> Self;
+
     /// The entry points compiled in this crate for this scalar and dimension.
     #[doc(hidden)]
     fn tables() -> &'static Tables<Self, D>;
@@ -75,6 +79,11 @@ impl<N: Real> Space<2> for N {
     }
 
     #[inline]
+    fn determinant(matrix: &Matrix<N, 2>) -> N {
+        matrix.determinant()
+    }
+
+    #[inline]
     fn tables() -> &'static Tables<N, 2> {
         N::plane()
     }
@@ -103,6 +112,11 @@ impl<N: Real> Space<3> for N {
         let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
         let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
         Isometry3::from_parts(pose.translation.into(), rotation)
+    }
+
+    #[inline]
+    fn determinant(matrix: &Matrix<N, 3>) -> N {
+        matrix.determinant()
     }
 
     #[inline]

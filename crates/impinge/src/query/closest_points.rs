@@ -1,7 +1,6 @@
 //! The points of two solids that are nearest to each other.
 
-use crate::collide::{AtIsometry, Placed, Placing};
-use crate::convex::Separation;
+use crate::collide::{AtIsometry, Placed};
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
 use crate::shape::Shape;
 
@@ -53,23 +52,13 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> ClosestPoints<N, D> {
+    let limit = max(max_distance, N::ZERO);
     let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
-    match separation_between(&one, &other, max_distance) {
+    let found = Placed::within(&one, &other, limit)
+        .and_then(|[placed1, placed2]| (N::tables().touching_in_world)(&placed1, &placed2, limit));
+    match found {
         None => ClosestPoints::Disjoint,
         Some(found) if found.distance <= N::ZERO => ClosestPoints::Intersecting,
         Some(found) => ClosestPoints::WithinMargin(found.point1, found.point2),
     }
-}
-
-/// What [`closest_points`] is made of, for shapes that are placed in any way. Where they overlap, the points mean
-/// nothing.
-#[inline]
-pub(crate) fn separation_between<'a, N: Space<D>, const D: usize>(
-    one: &impl Placing<'a, N, D>,
-    other: &impl Placing<'a, N, D>,
-    max_distance: N,
-) -> Option<Separation<N, D>> {
-    let limit = max(max_distance, N::ZERO);
-    let [placed1, placed2] = Placed::within(one, other, limit)?;
-    (N::tables().touching_in_world)(&placed1, &placed2, limit)
 }

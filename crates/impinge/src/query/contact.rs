@@ -1,6 +1,7 @@
 //! A contact: two points and a normal.
 
-use crate::collide::{AtIsometry, Placed, Placing};
+use crate::collide::{AtIsometry, Placed};
+use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::Shape;
 
@@ -69,22 +70,20 @@ pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     prediction: N,
 ) -> Option<Contact<N, D>> {
-    contact_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), prediction)
+    let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
+    let [placed1, placed2] = Placed::within(&one, &other, prediction)?;
+    Contact::of_separation(&(N::tables().contact_in_world)(&placed1, &placed2, prediction)?)
 }
 
-/// [`contact`] of shapes that are placed in any way.
-#[inline]
-pub(crate) fn contact_between<'a, N: Space<D>, const D: usize>(
-    one: &impl Placing<'a, N, D>,
-    other: &impl Placing<'a, N, D>,
-    prediction: N,
-) -> Option<Contact<N, D>> {
-    let [placed1, placed2] = Placed::within(one, other, prediction)?;
-    let found = (N::tables().contact_in_world)(&placed1, &placed2, prediction)?;
-    found.distance.is_finite_number().then(|| Contact {
-        world1: found.point1,
-        world2: found.point2,
-        normal: Unit::new_unchecked(found.normal),
-        depth: -found.distance,
-    })
+impl<N: Real, const D: usize> Contact<N, D> {
+    /// Of a separation in the world; `None` of half-spaces that overlap without bound.
+    #[inline]
+    pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
+        found.distance.is_finite_number().then(|| Self {
+            world1: found.point1,
+            world2: found.point2,
+            normal: Unit::new_unchecked(found.normal),
+            depth: -found.distance,
+        })
+    }
 }

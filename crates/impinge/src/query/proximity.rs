@@ -1,8 +1,8 @@
 //! Whether two solids intersect, are within a margin, or are disjoint.
 
 use super::distance::distance_within;
-use crate::collide::{AtIsometry, Placing};
-use crate::math::{AbstractRotation, Isometry, Space, max};
+use crate::collide::AtIsometry;
+use crate::math::{AbstractRotation, Isometry, Real, Space, max};
 use crate::shape::Shape;
 
 /// Whether two solids touch, are near, or are neither.
@@ -29,6 +29,14 @@ pub enum Proximity {
     Disjoint,
 }
 
+impl Proximity {
+    /// Of solids that are at most the margin apart.
+    #[inline]
+    pub(crate) fn within<N: Real>(distance: N) -> Self {
+        if distance <= N::ZERO { Self::Intersecting } else { Self::WithinMargin }
+    }
+}
+
 /// Whether two solids touch or overlap, are at most `margin` apart, or neither.
 ///
 /// Touching counts as intersecting and a distance equal to `margin` as within it. A negative or NaN
@@ -42,19 +50,9 @@ pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
     margin: N,
 ) -> Proximity {
-    proximity_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), margin)
-}
-
-/// [`proximity`] of shapes that are placed in any way.
-#[inline]
-pub(crate) fn proximity_between<'a, N: Space<D>, const D: usize>(
-    one: &impl Placing<'a, N, D>,
-    other: &impl Placing<'a, N, D>,
-    margin: N,
-) -> Proximity {
-    match distance_within(one, other, max(margin, N::ZERO)) {
+    let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
+    match distance_within(&one, &other, max(margin, N::ZERO)) {
         None => Proximity::Disjoint,
-        Some(distance) if distance <= N::ZERO => Proximity::Intersecting,
-        Some(_) => Proximity::WithinMargin,
+        Some(distance) => Proximity::within(distance),
     }
 }

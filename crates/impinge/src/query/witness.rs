@@ -1,11 +1,15 @@
 //! The nearest points of two shapes with all that is known about them.
 
-use crate::collide::parts::{Between, PartPair, PartSeparation, Wanted, nearest_between};
-use crate::collide::separation::placed;
-use crate::collide::{AtIsometry, Placed, Placing};
+use crate::collide::pair::Ordered;
+use crate::collide::parts::{Between, Wanted, nearest_between};
+use crate::collide::separation::{placed, separation};
+use crate::collide::{AtIsometry, Pair, Placed, Placing};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Shape};
+
+/// What stands for features that are not asked for.
+pub(crate) const NO_FEATURES: [FeatureId; 2] = [FeatureId::Face(u32::MAX); 2];
 
 /// The points of two shapes that are nearest to each other, or deepest in each other, and what they
 /// belong to.
@@ -121,44 +125,76 @@ pub(crate) fn in_world<N: Space<D>, const D: usize>(
     limit: N,
     with_features: bool,
 ) -> Option<Witness<N, D>> {
-    let (between, swapped) = Between::canonical(placed1, placed2);
+    let ordered = Ordered::new(placed1, placed2);
+    let found = if ordered.has_composite() {
+        of_composites(&Between::of_ordered(&ordered), limit, with_features)
+    } else {
+        of_convex(&ordered.pair(), limit, with_features)
+    };
+    let (separation, mut parts, mut features) = found?;
+    if !separation.distance.is_finite_number() {
+        return None;
+    }
+    if ordered.swapped {
+        parts.reverse();
+        features.reverse();
+    }
+    let separation = placed(&separation, ordered.first, ordered.swapped);
+    Some(Witness::new(&separation, parts, features))
+}
+
+/// A separation in the frame of the first shape, the parts that it is of, and their features.
+type Found<N, const D: usize> = (Separation<N, D>, [u32; 2], [FeatureId; 2]);
+
+/// Of two convex solids.
+#[inline]
+fn of_convex<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    limit: N,
+    with_features: bool,
+) -> Option<Found<N, D>> {
+    if !pair.pose12.is_finite() {
+        return None;
+    }
+    let found = separation(pair, limit)?;
+    let features = features(with_features, pair, &found);
+    Some((found, [0; 2], features))
+}
+
+/// Of two shapes, at least one of them a composite.
+fn of_composites<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    limit: N,
+    with_features: bool,
+) -> Option<Found<N, D>> {
     if !between.pair.pose12.is_finite() {
         return None;
     }
-    let found = nearest_between(&between, limit, Wanted::Deepest, None)?;
-    if !found.separation.distance.is_finite_number() {
-        return None;
-    }
-    let features = if with_features {
-        features(&between.parts(found.parts), &found.local)
-    } else {
-        [FeatureId::Face(u32::MAX); 2]
-    };
-    let first = if swapped { placed2 } else { placed1 };
-    let witness = joined(&placed(&found.separation, first, false), &found, features);
-    Some(if swapped { witness.flipped() } else { witness })
+    let found = nearest_between(between, limit, Wanted::Deepest, None)?;
+    let features = features(with_features, &between.parts(found.parts).pair(), &found.local);
+    Some((found.separation, found.parts, features))
 }
 
+/// The features of a pair of convex solids, from their separation.
+#[inline]
 fn features<N: Space<D>, const D: usize>(
-    parts: &PartPair<'_, N, D>,
+    is_wanted: bool,
+    pair: &Pair<'_, N, D>,
     found: &Separation<N, D>,
 ) -> [FeatureId; 2] {
-    (N::tables().witness_features)(&parts.pair(), found)
+    if is_wanted { (N::tables().witness_features)(pair, found) } else { NO_FEATURES }
 }
 
-fn joined<N: Real, const D: usize>(
-    in_world: &Separation<N, D>,
-    found: &PartSeparation<N, D>,
-    features: [FeatureId; 2],
-) -> Witness<N, D> {
-    Witness {
-        point1: in_world.point1,
-        point2: in_world.point2,
-        normal: Unit::new_unchecked(in_world.normal),
-        distance: in_world.distance,
-        part1: found.parts[0],
-        part2: found.parts[1],
-        feature1: features[0],
-        feature2: features[1],
+impl<N: Real, const D: usize> Witness<N, D> {
+    /// Of a separation in the world.
+    #[inline]
+    pub(crate) fn new(
+        in_world: &Separation<N, D>,
+        [part1, part2]: [u32; 2],
+        [feature1, feature2]: [FeatureId; 2],
+    ) -> Self {
+        let &Separation { distance, normal, point1, point2 } = in_world;
+        let normal = Unit::new_unchecked(normal);
+        Self { point1, point2, normal, distance, part1, part2, feature1, feature2 }
     }
 }

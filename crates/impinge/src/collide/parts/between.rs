@@ -10,7 +10,7 @@
 use super::bounds::{aabb_of, enclosing, extent, rounding};
 use crate::bounding_volume::Aabb;
 use crate::collide::Pair;
-use crate::collide::pair::{Ordered, Placed};
+use crate::collide::pair::Ordered;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max_component};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
@@ -48,15 +48,6 @@ pub(crate) struct PartPair<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Between<'a, N, D> {
-    /// Two placed shapes in their canonical order, and whether that is the opposite of theirs.
-    pub(crate) fn canonical(
-        placed1: &Placed<'a, N, D>,
-        placed2: &Placed<'a, N, D>,
-    ) -> (Self, bool) {
-        let ordered = Ordered::new(placed1, placed2);
-        (Self::of_ordered(&ordered), ordered.swapped)
-    }
-
     /// Two placed shapes whose canonical order is known.
     pub(crate) fn of_ordered(ordered: &Ordered<'_, 'a, N, D>) -> Self {
         let pose21 = Pose::relative(&ordered.second.pose, &ordered.first.pose);

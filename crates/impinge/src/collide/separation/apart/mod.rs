@@ -22,7 +22,6 @@ mod simplex;
 mod tests;
 
 use self::core::{CorePoints, LaneCore};
-pub(crate) use self::packet::distances;
 #[cfg(test)]
 use self::search::MIN_GAP;
 use self::search::{LaneCores, LaneGap};
@@ -34,6 +33,7 @@ use crate::convex::{Separation, Units, safe_reach};
 use crate::math::arrays::Arrays;
 use crate::math::lanes::{LanePose, minus};
 use crate::math::lone::Lone;
+use crate::math::simd::{Level, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide};
 use crate::shape::{Kind, SupportMap};
 
@@ -47,25 +47,46 @@ const MAX_VERTICES: usize = 128;
 /// apart by the search, of others by the algorithm of their kinds.
 #[inline]
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-    match result(pair, limit, false) {
-        GapResult::Beyond => None,
-        GapResult::Apart(found) => Some(found).filter(|found| found.distance <= limit),
-        GapResult::Overlap | GapResult::Unproved => nearer(pair)(pair, limit),
-    }
+    result(pair, limit, false).separation(pair, limit)
 }
 
 /// The distance in [`separation`], or zero if the cores certainly overlap.
 pub(super) fn distance<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
-    let distance = match result(pair, limit, limit >= N::ZERO) {
-        GapResult::Beyond => None,
-        GapResult::Apart(found) => Some(found.distance),
-        GapResult::Overlap => Some(N::ZERO),
-        GapResult::Unproved => match (pair.first, pair.second) {
-            (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::distance(pair, limit),
-            _ => nearer(pair)(pair, limit).map(|found| found.distance),
-        },
-    };
-    distance.filter(|distance| *distance <= limit)
+    result(pair, limit, limit >= N::ZERO).distance(pair, limit)
+}
+
+/// Of up to eight pairs of the same kinds what [`separation`] has of each, to the bit; `None` for those
+/// that have to be asked one by one.
+pub(crate) fn separations<'p, 'a: 'p, N: Real>(
+    pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
+    limit: N,
+) -> [Option<Option<Separation<N, 3>>>; LANES] {
+    each(pairs, limit, false, |result, pair| result.separation(pair, limit))
+}
+
+/// The same of [`distance`], for a limit of zero or more.
+pub(crate) fn distances<'p, 'a: 'p, N: Real>(
+    pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
+    limit: N,
+) -> [Option<Option<N>>; LANES] {
+    each(pairs, limit, true, |result, pair| result.distance(pair, limit))
+}
+
+/// What follows from the result of each of up to eight pairs.
+#[inline]
+fn each<'p, 'a: 'p, N: Real, T: Copy>(
+    pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
+    limit: N,
+    with_overlap: bool,
+    settle: impl Fn(&GapResult<N>, &Pair<'a, N, 3>) -> Option<T>,
+) -> [Option<Option<T>>; LANES] {
+    let mut settled = [None; LANES];
+    if let Some(results) = packet::results(Level::new(), pairs.clone(), limit, with_overlap) {
+        for ((settled, result), pair) in settled.iter_mut().zip(&results).zip(pairs) {
+            *settled = Some(settle(result, pair));
+        }
+    }
+    settled
 }
 
 /// A triangle, a box or a hull.
@@ -82,6 +103,7 @@ fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
 }
 
 /// What is known of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum GapResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
@@ -90,6 +112,33 @@ enum GapResult<N: Real> {
     Overlap,
     /// No answer is proved.
     Unproved,
+}
+
+impl<N: Real> GapResult<N> {
+    /// The separation of the pair that this is known of.
+    #[inline]
+    fn separation(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+        match self {
+            Self::Beyond => None,
+            Self::Apart(found) => Some(*found).filter(|found| found.distance <= limit),
+            Self::Overlap | Self::Unproved => nearer(pair)(pair, limit),
+        }
+    }
+
+    /// Its distance, or zero if the cores certainly overlap.
+    #[inline]
+    fn distance(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+        let distance = match self {
+            Self::Beyond => None,
+            Self::Apart(found) => Some(found.distance),
+            Self::Overlap => Some(N::ZERO),
+            Self::Unproved => match (pair.first, pair.second) {
+                (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::distance(pair, limit),
+                _ => nearer(pair)(pair, limit).map(|found| found.distance),
+            },
+        };
+        distance.filter(|distance| *distance <= limit)
+    }
 }
 
 /// The result of the search for a lone pair.
@@ -162,9 +211,14 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
     }
 
+    /// The separation of the solids, from that of their cores in units of the pair.
+    #[inline]
+    fn apart(&self, core: &Separation<N, 3>) -> GapResult<N> {
+        GapResult::Apart(core.scaled(self.units.scale).rounded(self.radii[0], self.radii[1]))
+    }
+
     #[inline]
     fn result(&self, found: &LaneGap<Lone<N>, <Lone<N> as Wide<Arrays>>::Mask>) -> GapResult<N> {
-        use crate::math::simd::SimdMask;
         let is = |mask| SimdMask::<Arrays>::any_true(mask);
         if is(found.is_beyond) {
             return GapResult::Beyond;
@@ -177,13 +231,12 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
         let vector = |v: &[Lone<N>; 3]| Vector::<N, 3>::new(v[0].0, v[1].0, v[2].0);
         let [point1, point2] = &found.points;
-        let core = Separation {
+        self.apart(&Separation {
             distance: found.distance.0,
             normal: vector(&found.normal),
             point1: Point::from(vector(point1)),
             point2: Point::from(vector(point2)),
-        };
-        GapResult::Apart(core.scaled(self.units.scale).rounded(self.radii[0], self.radii[1]))
+        })
     }
 }
 

@@ -4,12 +4,13 @@ use core::array::from_fn;
 
 use super::core::LaneCore;
 use super::search::LaneCores;
-use super::{FlatPair, LANES, vertices};
+use super::{FlatPair, GapResult, LANES, vertices};
 use crate::collide::Pair;
 use crate::collide::separation::flat_core::FlatCore;
+use crate::convex::Separation;
 use crate::math::lanes::{LanePose, by_axis, load, minus, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Real, Vector, Wide};
+use crate::math::{Point, Real, Vector, Wide};
 
 /// A vector in each lane, by coordinates.
 type LaneVectors<N> = [[N; LANES]; 3];
@@ -24,41 +25,80 @@ struct Packet<'a, N: Real> {
     half_extents: [LaneVectors<N>; 2],
     middles: [LaneVectors<N>; 2],
     shrink: [N; LANES],
+    limit: [N; LANES],
 }
 
-/// The distances of up to eight pairs of the same kinds as [`super::distance`] has them without a limit, to the bit;
-/// `None` for those that have to be asked one by one.
-pub(crate) fn distances<'p, 'a: 'p, N: Real>(
-    pairs: impl Iterator<Item = &'p Pair<'a, N, 3>>,
-) -> [Option<N>; LANES] {
-    distances_at(Level::new(), pairs)
+/// What the search found of each lane, in units of its pair.
+struct PacketGap<N: Real> {
+    distance: [N; LANES],
+    normal: LaneVectors<N>,
+    points: [LaneVectors<N>; 2],
+    /// A bit for each lane.
+    is_apart: u64,
+    is_beyond: u64,
+    is_overlap: u64,
 }
 
-/// [`distances`] with the vectors of an instruction set, on which they do not depend.
-pub(super) fn distances_at<'p, 'a: 'p, N: Real>(
+/// The results of up to eight pairs of the same kinds as [`super::result`] has them, to the bit, with the vectors of an
+/// instruction set, on which they do not depend; `None` if the pairs do not fit into lanes.
+pub(super) fn results<'p, 'a: 'p, N: Real>(
     level: Level,
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>>,
-) -> [Option<N>; LANES] {
-    let packet = Packet::new(pairs);
+    limit: N,
+    with_overlap: bool,
+) -> Option<[GapResult<N>; LANES]> {
+    let packet = Packet::new(pairs, limit);
     if !packet.shares_vertices() {
-        return [None; LANES];
+        return None;
     }
-    let mut core_distances = [N::ZERO; LANES];
-    let [is_apart, is_overlap] =
-        with_lanes!(level, simd => packet.search::<_, N::Lanes<_>>(simd, &mut core_distances));
-    from_fn(|lane| {
-        let solids = packet.pairs[lane].as_ref()?;
-        if is_apart >> lane & 1 == 1 {
-            let [radius1, radius2] = solids.radii;
-            Some(core_distances[lane] * solids.units.scale - radius1 - radius2)
-        } else {
-            (is_overlap >> lane & 1 == 1).then_some(N::ZERO)
+    let mut found = PacketGap::new();
+    with_lanes!(level, simd => packet.search::<_, N::Lanes<_>>(simd, with_overlap, &mut found));
+    Some(from_fn(|lane| match &packet.pairs[lane] {
+        Some(solids) => found.result(lane, solids),
+        None => GapResult::Unproved,
+    }))
+}
+
+impl<N: Real> PacketGap<N> {
+    const fn new() -> Self {
+        let row = [N::ZERO; LANES];
+        Self {
+            distance: row,
+            normal: [row; 3],
+            points: [[row; 3]; 2],
+            is_apart: 0,
+            is_beyond: 0,
+            is_overlap: 0,
         }
-    })
+    }
+
+    /// The result of one lane, as `FlatPair::result` has it.
+    #[inline]
+    fn result(&self, lane: usize, solids: &FlatPair<'_, N>) -> GapResult<N> {
+        let is = |lanes: u64| lanes >> lane & 1 == 1;
+        if is(self.is_beyond) {
+            return GapResult::Beyond;
+        }
+        if is(self.is_overlap) {
+            return GapResult::Overlap;
+        }
+        if !is(self.is_apart) {
+            return GapResult::Unproved;
+        }
+        let vector = |rows: &LaneVectors<N>| {
+            Vector::<N, 3>::new(rows[0][lane], rows[1][lane], rows[2][lane])
+        };
+        solids.apart(&Separation {
+            distance: self.distance[lane],
+            normal: vector(&self.normal),
+            point1: Point::from(vector(&self.points[0])),
+            point2: Point::from(vector(&self.points[1])),
+        })
+    }
 }
 
 impl<'a, N: Real> Packet<'a, N> {
-    fn new<'p>(given: impl Iterator<Item = &'p Pair<'a, N, 3>>) -> Self
+    fn new<'p>(given: impl Iterator<Item = &'p Pair<'a, N, 3>>, limit: N) -> Self
     where
         'a: 'p,
     {
@@ -70,18 +110,20 @@ impl<'a, N: Real> Packet<'a, N> {
             half_extents: [[row; 3]; 2],
             middles: [[row; 3]; 2],
             shrink: row,
+            limit: row,
         };
         for (lane, pair) in given.take(LANES).enumerate() {
-            packet.put(lane, pair);
+            packet.put(lane, pair, limit);
         }
         packet
     }
 
     /// Puts a pair into its lane.
-    fn put(&mut self, lane: usize, pair: &Pair<'a, N, 3>) {
+    fn put(&mut self, lane: usize, pair: &Pair<'a, N, 3>, limit: N) {
         let Some(solids) = FlatPair::of(pair) else { return };
         let (pose12, shrink) = (&pair.pose12, solids.units.shrink);
         self.shrink[lane] = shrink;
+        self.limit[lane] = solids.limit_of_cores(limit);
         put(&mut self.translation, lane, &(pose12.translation * shrink));
         for column in 0..3 {
             put(&mut self.rotation[column], lane, &pose12.rotation.column(column).into());
@@ -109,13 +151,13 @@ impl<'a, N: Real> Packet<'a, N> {
         solids.all(|other| is_same(0, other) && is_same(1, other))
     }
 
-    /// Runs the search; returns the lanes that are apart and those that overlap.
     #[inline(always)]
     fn search<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        distances: &mut [N; LANES],
-    ) -> [u64; 2] {
+        with_overlap: bool,
+        out: &mut PacketGap<N>,
+    ) {
         let rotation = by_axis(
             #[inline(always)]
             |column| load(simd, &self.rotation[column]),
@@ -124,10 +166,17 @@ impl<'a, N: Real> Packet<'a, N> {
         let (middle1, middle2) = (load(simd, &self.middles[0]), load(simd, &self.middles[1]));
         let between = minus(&pose12.point(&middle2), &middle1);
         let cores = [self.core(simd, 0), self.core(simd, 1)];
-        let limit = V::all(simd, N::INFINITY);
-        let found = LaneCores { cores, pose12, between, limit }.gap(simd, true);
-        found.distance.store(distances);
-        [found.is_apart.to_bitmask(), found.is_overlap.to_bitmask()]
+        let limit = V::load(simd, &self.limit);
+        let found = LaneCores { cores, pose12, between, limit }.gap(simd, with_overlap);
+        found.distance.store(&mut out.distance);
+        for axis in 0..3 {
+            found.normal[axis].store(&mut out.normal[axis]);
+            found.points[0][axis].store(&mut out.points[0][axis]);
+            found.points[1][axis].store(&mut out.points[1][axis]);
+        }
+        out.is_apart = found.is_apart.to_bitmask();
+        out.is_beyond = found.is_beyond.to_bitmask();
+        out.is_overlap = found.is_overlap.to_bitmask();
     }
 
     #[inline(always)]

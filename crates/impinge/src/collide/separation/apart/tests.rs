@@ -88,14 +88,15 @@ fn lanes_have_the_bits_of_lone_pairs<N: Real>() {
             .chunks(7)
             .flat_map(|packet| Level::available().into_iter().map(move |level| (packet, level)))
         {
-            let found = packet::distances_at(level, packet.iter());
-            for (pair, found) in packet.iter().zip(found) {
-                let expected = match result(pair, N::INFINITY, true) {
-                    GapResult::Apart(found) => Some(found.distance),
-                    GapResult::Overlap => Some(N::ZERO),
-                    GapResult::Beyond | GapResult::Unproved => None,
-                };
-                assert_eq!(found, expected, "at {:?} with {level:?}", pair.pose12);
+            for (limit, with_overlap) in
+                [(N::INFINITY, true), (N::INFINITY, false), (N::HALF, false)]
+            {
+                let found = packet::results(level, packet.iter(), limit, with_overlap);
+                let found = found.expect("solids of the same kinds fit");
+                for (pair, found) in packet.iter().zip(found) {
+                    let expected = result(pair, limit, with_overlap);
+                    assert_eq!(found, expected, "at {:?} with {level:?}", pair.pose12);
+                }
             }
         }
     });

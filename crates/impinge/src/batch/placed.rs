@@ -1,0 +1,102 @@
+//! The pairs of a chunk that are near enough, placed: those of convex solids are found together.
+
+use core::ops::Range;
+
+use super::side::{PlacedSide, PreparedSide, pair_at};
+use crate::collide::pair::canonical;
+use crate::collide::separation::placed;
+use crate::collide::{ConvexPair, Placed};
+use crate::convex::Separation;
+use crate::math::{Real, Space};
+
+/// The pairs of a chunk that are not certainly farther apart than a limit, where they stand.
+pub(super) struct PlacedPairs<'a, N: Real, const D: usize> {
+    /// The slots of their answers in the chunk.
+    slots: Vec<usize>,
+    /// The elements of each side by the index of their slot.
+    sides: [PlacedSide<'a, N, D>; 2],
+    limit: N,
+}
+
+/// What is known of a pair.
+pub(super) enum PairFinding<'p, 'a, N: Real, const D: usize> {
+    /// The separation of two convex solids, in the world and in the order given.
+    Convex(&'p Separation<N, D>),
+    /// One is a composite: it is asked alone.
+    Composites([&'p Placed<'a, N, D>; 2]),
+}
+
+impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
+    /// Those of a range of elements. Without a limit all poses are read at once, else only those of what is near.
+    pub(super) fn new(sides: &[PreparedSide<'a, N, D>; 2], range: Range<usize>, limit: N) -> Self {
+        if limit == N::INFINITY {
+            let slots = (0..range.len()).collect();
+            let sides = [sides[0].placed(range.clone()), sides[1].placed(range)];
+            return Self { slots, sides, limit };
+        }
+        let len = range.len();
+        let mut slots = Vec::with_capacity(len);
+        let mut near = [PlacedSide::with_capacity(len), PlacedSide::with_capacity(len)];
+        for (slot, index) in range.enumerate() {
+            let [one, other] = pair_at(sides, index);
+            if let Some([placed1, placed2]) = Placed::within(&one, &other, limit) {
+                slots.push(slot);
+                near[0].push(&placed1);
+                near[1].push(&placed2);
+            }
+        }
+        Self { slots, sides: near, limit }
+    }
+
+    /// The pairs of convex solids, each with its index here as slot. Calls with the slot of each other pair.
+    fn convex(
+        &self,
+        mut of_composites: impl FnMut(usize, [&Placed<'a, N, D>; 2]),
+    ) -> Vec<ConvexPair<'a, N, D>> {
+        let [side1, side2] = &self.sides;
+        let mut convex = Vec::with_capacity(self.slots.len());
+        for (index, &slot) in self.slots.iter().enumerate() {
+            let (shape1, shape2) = (side1.shape(index), side2.shape(index));
+            if shape1.as_composite().is_some() || shape2.as_composite().is_some() {
+                of_composites(slot, [&side1.placed(index), &side2.placed(index)]);
+                continue;
+            }
+            let (pose1, pose2) = (side1.pose(index), side2.pose(index));
+            let (pair, swapped) = canonical(pose1, shape1, pose2, shape2);
+            if pair.pose12.is_finite() {
+                convex.push(ConvexPair { slot: index, swapped, pair });
+            }
+        }
+        convex
+    }
+
+    /// Calls with the slot and the distance of each pair that is at most the limit apart, which is not positive where the
+    /// shapes touch or overlap.
+    pub(super) fn distances(&self, mut put: impl FnMut(usize, N)) {
+        let mut convex = self.convex(|slot, [placed1, placed2]| {
+            if let Some(found) = (N::tables().distance_in_world)(placed1, placed2, self.limit) {
+                put(slot, found);
+            }
+        });
+        let mut found = vec![None; self.slots.len()];
+        (N::tables().distances)(&mut convex, self.limit, &mut found);
+        for (&slot, found) in self.slots.iter().zip(found) {
+            if let Some(distance) = found {
+                put(slot, distance);
+            }
+        }
+    }
+
+    /// Calls with the slot of each pair that may be at most the limit apart, and what is known of it.
+    pub(super) fn separations(&self, mut put: impl FnMut(usize, PairFinding<'_, 'a, N, D>)) {
+        let mut convex = self.convex(|slot, placed| put(slot, PairFinding::Composites(placed)));
+        let mut found = vec![None; self.slots.len()];
+        (N::tables().separations)(&mut convex, self.limit, &mut found);
+        for ConvexPair { slot: index, swapped, .. } in convex {
+            if let Some(found) = &found[index] {
+                let first = self.sides[usize::from(swapped)].placed(index);
+                put(self.slots[index], PairFinding::Convex(&placed(found, &first, swapped)));
+            }
+        }
+    }
+}
