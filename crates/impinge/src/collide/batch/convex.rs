@@ -6,13 +6,14 @@ use super::segments3::nearest_of_segments;
 use super::vectors::{bits, dot, minus};
 use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::core;
+use crate::collide::separation::segments::segment_segment::of_points;
 use crate::collide::separation::{
     apart, distance_in_plane, distance_in_space, is_usual, separation_in_plane, separation_in_space,
 };
 use crate::convex::Separation;
 use crate::math::lanes::{load, with_lanes};
 use crate::math::simd::{Level, Simd};
-use crate::math::{Real, Wide};
+use crate::math::{Point, Real, Wide};
 use crate::shape::{Geometry, Kind, ShapeKind};
 
 /// A pair of convex solids in canonical order and the slot of its answer.
@@ -60,7 +61,7 @@ pub(crate) fn distances3<N: Real>(
 ) {
     each_packet(pairs, |packet| {
         let found = if are(packet, is_segment) {
-            of_segments(packet, limit)
+            SegmentPacket::new(packet).distances(limit)
         } else if are(packet, apart::is_faceted) {
             apart::distances(packet.iter().map(|one| &one.pair), limit)
         } else {
@@ -77,7 +78,9 @@ pub(crate) fn separations3<N: Real>(
     out: &mut [Option<Separation<N, 3>>],
 ) {
     each_packet(pairs, |packet| {
-        let found = if are(packet, apart::is_faceted) {
+        let found = if are(packet, is_segment) {
+            SegmentPacket::new(packet).separations(limit)
+        } else if are(packet, apart::is_faceted) {
             apart::separations(packet.iter().map(|one| &one.pair), limit)
         } else {
             [None; LANES]
@@ -123,46 +126,89 @@ fn fill<'a, N: Real, T>(
     }
 }
 
-/// The distances of segments and capsules, as `segment_segment::distance` has them, without those beyond the limit;
-/// `None` where a lone pair has to be asked.
-fn of_segments<N: Real>(packet: &[ConvexPair<'_, N, 3>], limit: N) -> [Option<Option<N>>; LANES] {
-    let mut ends = [[[[N::ZERO; LANES]; 3]; 2]; 2];
-    let mut radii = [[N::ZERO; 2]; LANES];
-    for (lane, ConvexPair { pair, .. }) in packet.iter().enumerate() {
-        let (ends1, radius1) = core(pair, &pair.first);
-        let (local2, radius2) = core(pair, &pair.second);
-        let ends2 = [pair.pose12.point(&local2[0]), pair.pose12.point(&local2[1])];
-        radii[lane] = [radius1, radius2];
-        for end in 0..2 {
-            put(&mut ends[0][end], lane, &ends1[end].coords);
-            put(&mut ends[1][end], lane, &ends2[end].coords);
-        }
-    }
-    let mut found = [N::ZERO; LANES];
-    let is_known =
-        with_lanes!(Level::new(), simd => between::<_, N, N::Lanes<_>>(simd, &ends, &mut found));
-    let mut distances = [None; LANES];
-    for (lane, distance) in distances.iter_mut().enumerate() {
-        let [radius1, radius2] = radii[lane];
-        let known = found[lane] - radius1 - radius2;
-        *distance =
-            (is_known >> lane & 1 == 1).then_some(Some(known).filter(|known| *known <= limit));
-    }
-    distances
+/// Up to eight pairs of segments or capsules.
+struct SegmentPacket<N: Real> {
+    ends: [[[Point<N, 3>; 2]; 2]; LANES],
+    radii: [[N; 2]; LANES],
+    /// The nearest points of the segments in the middle, by coordinates.
+    points: [[[N; LANES]; 3]; 2],
+    distances: [N; LANES],
+    /// The lanes in which these are known; others have to be asked alone.
+    is_known: u8,
 }
 
-/// The distances of segments, and the lanes in which they are known.
-#[inline(always)]
-fn between<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    ends: &[[[[N; LANES]; 3]; 2]; 2],
-    distances: &mut [N; LANES],
-) -> u8 {
-    let ends1: [[V; 3]; 2] = [load(simd, &ends[0][0]), load(simd, &ends[0][1])];
-    let ends2: [[V; 3]; 2] = [load(simd, &ends[1][0]), load(simd, &ends[1][1])];
-    let (points, is_moderate) = nearest_of_segments(simd, &ends1, &ends2);
-    let between = minus(&points[1], &points[0]);
-    let squared = dot(&between, &between);
-    squared.sqrt().store(distances);
-    bits(is_moderate & is_usual(simd, squared))
+impl<N: Real> SegmentPacket<N> {
+    fn new(packet: &[ConvexPair<'_, N, 3>]) -> Self {
+        let row = [N::ZERO; LANES];
+        let mut found = Self {
+            ends: [[[Point::origin(); 2]; 2]; LANES],
+            radii: [[N::ZERO; 2]; LANES],
+            points: [[row; 3]; 2],
+            distances: row,
+            is_known: 0,
+        };
+        let mut ends = [[[row; 3]; 2]; 2];
+        for (lane, ConvexPair { pair, .. }) in packet.iter().enumerate() {
+            let (ends1, radius1) = core(pair, &pair.first);
+            let (local2, radius2) = core(pair, &pair.second);
+            let ends2 = [pair.pose12.point(&local2[0]), pair.pose12.point(&local2[1])];
+            found.radii[lane] = [radius1, radius2];
+            for end in 0..2 {
+                put(&mut ends[0][end], lane, &ends1[end].coords);
+                put(&mut ends[1][end], lane, &ends2[end].coords);
+            }
+            found.ends[lane] = [ends1, ends2];
+        }
+        with_lanes!(Level::new(), simd => found.search::<_, N::Lanes<_>>(simd, &ends));
+        found
+    }
+
+    #[inline(always)]
+    fn search<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        ends: &[[[[N; LANES]; 3]; 2]; 2],
+    ) {
+        let ends1: [[V; 3]; 2] = [load(simd, &ends[0][0]), load(simd, &ends[0][1])];
+        let ends2: [[V; 3]; 2] = [load(simd, &ends[1][0]), load(simd, &ends[1][1])];
+        let (points, is_moderate) = nearest_of_segments(simd, &ends1, &ends2);
+        let between = minus(&points[1], &points[0]);
+        let squared = dot(&between, &between);
+        squared.sqrt().store(&mut self.distances);
+        for axis in 0..3 {
+            points[0][axis].store(&mut self.points[0][axis]);
+            points[1][axis].store(&mut self.points[1][axis]);
+        }
+        self.is_known = bits(is_moderate & is_usual(simd, squared));
+    }
+
+    /// What `answer` has of each lane in which the nearest points are known.
+    #[inline]
+    fn each<T: Copy>(
+        &self,
+        answer: impl Fn(&Self, usize) -> Option<T>,
+    ) -> [Option<Option<T>>; LANES] {
+        let mut answers = [None; LANES];
+        for (lane, slot) in answers.iter_mut().enumerate() {
+            *slot = (self.is_known >> lane & 1 == 1).then(|| answer(self, lane));
+        }
+        answers
+    }
+
+    /// The distances as `segment_segment::distance` has them, without those beyond the limit.
+    fn distances(&self, limit: N) -> [Option<Option<N>>; LANES] {
+        self.each(|packet, lane| {
+            let [radius1, radius2] = packet.radii[lane];
+            Some(packet.distances[lane] - radius1 - radius2).filter(|distance| *distance <= limit)
+        })
+    }
+
+    /// The separations as `segment_segment::separation` has them.
+    fn separations(&self, limit: N) -> [Option<Option<Separation<N, 3>>>; LANES] {
+        self.each(|packet, lane| {
+            let point = |[x, y, z]: &[[N; LANES]; 3]| Point::<N, 3>::new(x[lane], y[lane], z[lane]);
+            let points = (point(&packet.points[0]), point(&packet.points[1]));
+            of_points(&packet.ends[lane], &points, packet.radii[lane], limit)
+        })
+    }
 }

@@ -2,4 +2,4 @@
 
 pub(crate) mod nearest;
 pub(crate) mod segment_lanes;
-pub(super) mod segment_segment;
+pub(crate) mod segment_segment;

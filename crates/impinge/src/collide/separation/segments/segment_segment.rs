@@ -19,11 +19,22 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     let ((ends1, rounding1), (local2, rounding2)) =
         (core(pair, &pair.first), core(pair, &pair.second));
     let ends2 = local2.map(|end| pair.pose12.point(&end));
-    let (point1, point2) = nearest_of_segments(&ends1, &ends2);
+    let points = nearest_of_segments(&ends1, &ends2);
+    of_points(&[ends1, ends2], &points, [rounding1, rounding2], limit)
+}
+
+/// The same of segments, inflated by some radii, whose nearest points are known.
+#[inline]
+pub(in crate::collide) fn of_points<N: Real>(
+    [ends1, ends2]: &[[Point<N, 3>; 2]; 2],
+    &(point1, point2): &(Point<N, 3>, Point<N, 3>),
+    [radius1, radius2]: [N; 2],
+    limit: N,
+) -> Option<Separation<N, 3>> {
     let distance = (point2 - point1).norm();
-    (distance - rounding1 - rounding2 <= limit).then(|| {
-        let normal = best_normal(&ends1, &ends2, &(point2 - point1));
-        Separation { distance, normal, point1, point2 }.rounded(rounding1, rounding2)
+    (distance - radius1 - radius2 <= limit).then(|| {
+        let normal = best_normal(ends1, ends2, &(point2 - point1));
+        Separation { distance, normal, point1, point2 }.rounded(radius1, radius2)
     })
 }
 
