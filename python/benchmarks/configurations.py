@@ -1,6 +1,8 @@
 """How many configurations of a robot are checked in a second: the scenes of MotionBenchMaker, robots as spheres.
 
-    python benchmarks/configurations.py FOLDER [--scenes 70] [--count 4096] [--threads 1]
+    python configurations.py FOLDER [--quick] [--scenes 700] [--count 2048] [--threads 1] [--out FOLDER]
+
+Writes configurations.md.
 
 FOLDER has `vamp_panda.json` and `vamp_panda.npz`, and those of ur5 and fetch: the spherised robots of vamp (W. Thomason, Z.
 Kingston, L. E. Kavraki, 2024) and the problems of MotionBenchMaker (C. Chamzas et al., 2021). Configurations are random
@@ -18,8 +20,13 @@ from typing import Any
 
 import impinge
 import numpy as np
+from timing import arguments, machine, markdown
 
 TARGET = 2e6
+HEADER = (
+    *("robot", "scalar", "scenes", "spheres", "pairs", "part not free"),
+    *("million configurations a second", "of the target", "differing"),
+)
 # Turns y, along which impinge lays cylinders, into z.
 Y_TO_Z = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
 
@@ -128,42 +135,51 @@ def by_pairs(robot: Robot, rows: Any, shapes: list[Any], obstacles: Any) -> Any:
     return free
 
 
-def measure(robot: Robot, arguments: argparse.Namespace) -> tuple[float, float, int]:
+def measure(robot: Robot, options: argparse.Namespace) -> tuple[float, float, int]:
     """Configurations a second, the share that is not free, and how many answers differ from those by pairs."""
     generator, seconds, hits, wrong = np.random.default_rng(7), 0.0, 0, 0
     # One thread is timed by its processor time, so that others on the machine count little.
-    clock = time.process_time if arguments.threads == 1 else time.perf_counter
-    numbers = np.linspace(0, len(robot.scenes["counts"]) - 1, arguments.scenes).astype(int)
+    clock = time.process_time if options.threads == 1 else time.perf_counter
+    numbers = np.linspace(0, len(robot.scenes["counts"]) - 1, options.scenes).astype(int)
     for index, number in enumerate(numbers):
         shapes, obstacles = robot.set_scene(number)
-        rows = robot.random(generator, arguments.count)
+        rows = robot.random(generator, options.count)
         times = []
         for _ in range(3):
             start = clock()
-            free = robot.checker.is_free(rows, threads=arguments.threads)
+            free = robot.checker.is_free(rows, threads=options.threads)
             times.append(clock() - start)
         seconds += min(times)
         hits += int((~free).sum())
         if index % 10 == 0:
             wrong += int((free[:256] != by_pairs(robot, rows[:256], shapes, obstacles)).sum())
-    checked = len(numbers) * arguments.count
+    checked = len(numbers) * options.count
     return checked / seconds, hits / checked, wrong
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = arguments(__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--scenes", type=int, default=70)
-    parser.add_argument("--count", type=int, default=4096)
+    parser.add_argument("--scenes", type=int, default=700, help="of each robot")
+    parser.add_argument("--count", type=int, default=2048, help="of configurations in each scene")
     parser.add_argument("--threads", type=int, default=1)
-    arguments = parser.parse_args()
-    print("robot  scalar   spheres  pairs  not free  million a second  of the target  differing")
+    options = parser.parse_args()
+    if options.quick:
+        options.scenes, options.count = 10, 512
+    options.out.mkdir(parents=True, exist_ok=True)
+    line, rows = machine(("impinge", "numpy")), []
     for name in ("panda", "ur5", "fetch"):
         for dtype in ("float32", "float64"):
-            robot = Robot(arguments.folder, name, dtype)
-            rate, hits, wrong = measure(robot, arguments)
-            sizes = f"{len(robot.spheres):7}  {len(robot.pairs):5}"
-            print(f"{name:6} {dtype}  {sizes}  {hits:8.3f}  {rate / 1e6:16.2f}  {rate / TARGET:13.2f}  {wrong:9}")
+            robot = Robot(options.folder, name, dtype)
+            rate, hits, wrong = measure(robot, options)
+            sizes = [options.scenes, len(robot.spheres), len(robot.pairs)]
+            rows.append([name, dtype, *sizes, hits, rate / 1e6, rate / TARGET, wrong])
+            print(*rows[-1])
+    (options.out / "configurations.md").write_text(
+        f"# Configurations of robots as spheres\n\n{line}. `python configurations.py FOLDER`: {options.count} random "
+        f"configurations in each scene, free or not, {options.threads} thread, the best of three calls. `differing`: answers "
+        f"about 256 configurations of every tenth scene that are not those of single calls.\n\n" + markdown(HEADER, rows)
+    )
 
 
 if __name__ == "__main__":
