@@ -175,9 +175,10 @@ impl<N: Real> SegmentPacket<N> {
         let between = minus(&points[1], &points[0]);
         let squared = dot(&between, &between);
         squared.sqrt().store(&mut self.distances);
-        for axis in 0..3 {
-            points[0][axis].store(&mut self.points[0][axis]);
-            points[1][axis].store(&mut self.points[1][axis]);
+        for (stored, point) in self.points.iter_mut().zip(&points) {
+            for (row, coordinate) in stored.iter_mut().zip(point) {
+                coordinate.store(row);
+            }
         }
         self.is_known = bits(is_moderate & is_usual(simd, squared));
     }
