@@ -137,6 +137,14 @@ impl<const D: usize> Bounds<D> {
         Aabb::new(corner(&self.lo), corner(&self.hi))
     }
 
+    /// How far the box reaches along a direction.
+    pub(super) fn reach<N: Real>(&self, along: &Vector<N, D>) -> N {
+        (0..D).fold(N::ZERO, |sum, axis| {
+            let corner = if along[axis] < N::ZERO { self.lo[axis] } else { self.hi[axis] };
+            sum + along[axis] * N::lit(f64::from(corner))
+        })
+    }
+
     /// The middle; halves are added, so that no finite box overflows.
     #[inline]
     #[must_use]

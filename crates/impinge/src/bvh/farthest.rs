@@ -40,7 +40,7 @@ impl<const D: usize> Tree<D> {
         let lanes = &self.layers[layer].blocks[block];
         let mut farthest: [(N, usize); LANES] = core::array::from_fn(|lane| {
             let bounds = lanes.lane(lane);
-            let far = box_reach(&bounds, &reach.direction);
+            let far = bounds.reach(&reach.direction);
             let far = if far.partial_cmp(&far).is_some() { far } else { -N::INFINITY };
             (if bounds.is_finite() { far } else { -N::INFINITY }, lane)
         });
@@ -59,14 +59,6 @@ impl<const D: usize> Tree<D> {
             }
         }
     }
-}
-
-fn box_reach<N: Real, const D: usize>(bounds: &Bounds<D>, direction: &Vector<N, D>) -> N {
-    let along = |axis: usize| {
-        let corner = if direction[axis] < N::ZERO { bounds.lo[axis] } else { bounds.hi[axis] };
-        direction[axis] * N::lit(f64::from(corner))
-    };
-    (0..D).fold(N::ZERO, |sum, axis| sum + along(axis))
 }
 
 /// What coordinates in the box may lose by rounding is a share of this.

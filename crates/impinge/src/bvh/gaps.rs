@@ -49,6 +49,16 @@ impl<const D: usize> Gaps<D> {
         Self { lo: [-f32::MAX; D], hi: [f32::MAX; D], scale: 1.0, lost }
     }
 
+    /// Those of the boxes that overlap along each axis by a depth of zero or more; what overlaps less is at a distance.
+    pub(super) fn within<N: Real>(mut self, depth: N) -> Self {
+        let depth = depth.as_f64();
+        if depth > 0.0 {
+            self.lo = self.lo.map(|lo| (f64::from(lo) + depth).as_f32_below());
+            self.hi = self.hi.map(|hi| (f64::from(hi) - depth).as_f32_above());
+        }
+        self
+    }
+
     /// The square of a distance of the caller's, or a little more, in the units of this; finite, and
     /// negative for NaN.
     #[expect(clippy::cast_possible_truncation, reason = "the slack is more than the rounding")]

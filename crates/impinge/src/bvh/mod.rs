@@ -32,6 +32,7 @@
 )]
 
 mod block;
+mod block_slabs;
 mod bounds;
 mod farthest;
 mod gaps;
@@ -61,7 +62,7 @@ pub(crate) use gaps::Gaps;
 pub(crate) use join::{Changes, Joiner};
 pub use kernel::Lanes;
 pub(crate) use near_first::{GROUP, RayProbe};
-pub(crate) use near_pairs::{TreePair, visit_pairs};
+pub(crate) use near_pairs::{Toward, TreePair, visit_pairs};
 pub(crate) use ordered::{Frontier, Keys};
 pub(crate) use ranked::{BoxRanking, visit_ranked};
 pub(crate) use slabs::Slabs;

@@ -1,23 +1,30 @@
 //! Pairs of objects of two trees, each in a frame of its own, near ones first.
 //!
 //! Best first over pairs of blocks, one of each tree (Hjaltason and Samet, "Incremental distance join algorithms
-//! for spatial databases", 1998): of the nearest pair the wider block is opened and its lanes are held against the
-//! other block's box, seen from the frame of the lanes. So the axes of both frames part blocks in turn. Of two leaf
-//! blocks each object of the narrower one that is near the other is held against the objects of that one.
+//! for spatial databases", 1998), after a descent straight to two objects, so that there is a nearest pair to hold
+//! others against. The lanes of both blocks are held against each other, or those of the wider block alone if that is
+//! much wider. A box of the one is compared in the frame of the other, so the axes of both frames part blocks in turn,
+//! and so do directions between them, along which what is in a block reaches as far as its box and its slab.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
+use super::block_slabs::SlabBox;
 use super::gaps::Gaps;
 use super::near_first::Open;
-use super::{Bounds, LANES, Tree};
+use super::{Bounds, LANES, NONE, Tree};
 use crate::bounding_volume::Aabb;
-use crate::math::{Real, max};
+use crate::math::{Point, Real, Vector, max, unit};
 
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 64;
+/// Of two blocks only the one is opened whose surface is so many times that of the other, about a layer's worth.
+const MUCH_WIDER: f64 = 8.0;
+
+/// A unit vector toward the other tree in the frame of each: opposites of each other.
+pub(crate) type Toward<N, const D: usize> = [Vector<N, D>; 2];
 
 /// How the trees lie to each other, and what is asked about pairs of their objects.
 pub(crate) trait TreePair<N: Real, const D: usize> {
@@ -31,8 +38,30 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
     /// The largest distance at which boxes still matter, negative to end the search; never grows.
     fn bound(&self) -> N;
 
-    /// Nothing in the boxes, of the first and of the second tree, is near enough to matter; false says nothing.
-    fn are_beyond(&self, boxes: &[Aabb<N, D>; 2]) -> bool;
+    /// The largest signed distance at which objects still matter; never grows.
+    fn limit(&self) -> N;
+
+    /// How deep along every axis the boxes around objects within the limit overlap, or less; zero or more.
+    fn depth(&self) -> N;
+
+    /// The direction that parts the nearest objects so far; `None` as long as there are none.
+    fn best(&self) -> Option<Toward<N, D>>;
+
+    /// A unit vector of the frame of the first (0) or the second (1) tree as a direction toward the other; `None` if
+    /// gaps along it tell nothing, since objects move.
+    fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>>;
+
+    /// The direction from a point of the first tree to one of the second.
+    fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>>;
+
+    /// How far an object of the first (0) or the second (1) tree reaches along a unit vector, or more.
+    fn reach(&self, which: usize, id: u32, along: &Vector<N, D>) -> N;
+
+    /// The signed distance of objects that reach so far toward each other, or less.
+    fn gap(&self, toward: &Toward<N, D>, reaches: [N; 2]) -> N;
+
+    /// Gets two objects first that are likely to be near, [`NONE`] where nothing is known; they are visited again.
+    fn guess(&mut self, objects: [u32; 2]);
 
     /// Gets the pairs whose boxes are within the bound: an object of the first (0) or the second (1) tree and at most
     /// [`LANES`] of the other.
@@ -42,10 +71,14 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
 /// A block of each tree. Of pairs at one distance those in low layers come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct BlockPair {
-    /// The bits of a distance that the boxes have at least: zero or more, so that they order as it does.
+    /// The bits of a distance that the objects have at least: zero or more, so that they order as it does.
     distance: u64,
     layers: [u8; 2],
     blocks: [u32; 2],
+    /// The boxes of the blocks are apart.
+    are_apart: bool,
+    /// The distance is that of the boxes, or of a pair above: more can be known.
+    is_rough: bool,
 }
 
 struct PairSearch<'a, 'q, N: Real, const D: usize> {
@@ -67,14 +100,21 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
         return;
     }
     debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
-    let mut search = PairSearch { trees, queue: BinaryHeap::with_capacity(EXPECTED), question };
+    let queue = BinaryHeap::with_capacity(EXPECTED);
     let (distance, layers) = (N::ZERO.bits(), trees.map(Tree::top_layer));
-    search.queue.push(Reverse(BlockPair { distance, layers, blocks: [0, 0] }));
-    search.run();
+    let whole = BlockPair { distance, layers, blocks: [0, 0], are_apart: false, is_rough: true };
+    PairSearch { trees, queue, question }.run(whole);
 }
 
 impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
-    fn run(&mut self) {
+    fn run(&mut self, whole: BlockPair) {
+        self.queue.push(Reverse(whole));
+        let aabb = self.question.in_other(1, &self.bounds(1, &whole).as_aabb());
+        let is_near = !self.near(0, whole.layers[0], 0, &aabb).is_empty();
+        if is_near && self.question.limit() > N::ZERO {
+            let likely = self.descend(whole);
+            self.question.guess(likely);
+        }
         while let Some(Reverse(pair)) = self.queue.pop() {
             let bound = self.question.bound();
             // Also false for NaN, which ends the search.
@@ -82,72 +122,193 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
             if !is_within {
                 return;
             }
-            if self.question.are_beyond(&[0, 1].map(|which| self.bounds(which, &pair).as_aabb())) {
-                continue;
-            }
-            match self.wider(&pair) {
-                Some(which) => self.open(which, &pair),
-                None => self.meet(&pair),
+            if let Some(pair) = self.first(pair) {
+                self.open(&pair);
             }
         }
     }
 
-    /// Which of the blocks is opened next: the wider one above the lowest layer; `None` for leaf blocks.
-    fn wider(&self, pair: &BlockPair) -> Option<usize> {
-        match pair.layers {
-            [0, 0] => None,
-            [_, 0] => Some(0),
-            [0, _] => Some(1),
-            _ => {
-                let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
-                Some(usize::from(widths[1] > widths[0]))
+    /// Two objects that are likely to be near: each is where a descent ends toward the middle of the other's leaf block,
+    /// the first toward all of the other tree.
+    fn descend(&self, whole: BlockPair) -> [u32; 2] {
+        let (mut pair, mut found) = (whole, [NONE; 2]);
+        for which in [0, 1, 0, 1] {
+            let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, &pair).as_aabb());
+            let (tree, middle) = (self.trees[which], aabb.center());
+            let squared = |bounds: &Bounds<D>| (bounds.as_aabb().center() - middle).norm_squared();
+            let mut block = 0;
+            for layer in (0..usize::from(whole.layers[which])).rev() {
+                let inner =
+                    tree.children(layer, block).map(|(child, inner)| (child, *inner.bounds));
+                block = least(inner, squared).unwrap_or(block);
             }
+            (pair.layers[which], pair.blocks[which]) = (0, block);
+            let slots = block as usize * LANES..(block as usize + 1) * LANES;
+            let objects = slots.map(|slot| (tree.ids[slot], tree.lane(slot)));
+            found[which] = least(objects, squared).unwrap_or(NONE);
         }
+        found
+    }
+
+    /// The pair, if it is within the limit and others do not come before it by what is known now; it goes back into
+    /// the queue if they do.
+    fn first(&mut self, mut pair: BlockPair) -> Option<BlockPair> {
+        let gap = if pair.is_rough { self.gap(&pair) } else { self.best_gap(&pair) };
+        let is_beyond = gap > self.question.limit();
+        if is_beyond {
+            return None;
+        }
+        pair.distance = max(gap, N::ZERO).bits().max(pair.distance);
+        pair.is_rough = false;
+        if self.queue.peek().is_some_and(|Reverse(other)| *other < pair) {
+            self.queue.push(Reverse(pair));
+            return None;
+        }
+        Some(pair)
+    }
+
+    fn slab_box(&self, which: usize, pair: &BlockPair) -> SlabBox<'_, D> {
+        self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which])
     }
 
     fn bounds(&self, which: usize, pair: &BlockPair) -> Bounds<D> {
-        let layer = &self.trees[which].layers[usize::from(pair.layers[which])];
-        layer.bounds[pair.blocks[which] as usize]
+        *self.slab_box(which, pair).bounds
     }
 
-    /// Puts the blocks below one of two into the queue, each with the other.
-    fn open(&mut self, which: usize, pair: &BlockPair) {
-        let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb());
-        for (distance, block) in self.near(which, pair.layers[which], pair.blocks[which], &aabb) {
-            let (mut layers, mut blocks) = (pair.layers, pair.blocks);
-            (layers[which], blocks[which]) = (layers[which] - 1, block);
-            let distance = distance.bits().max(pair.distance);
-            self.queue.push(Reverse(BlockPair { distance, layers, blocks }));
+    fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
+        let reaches = [0, 1].map(|which| self.slab_box(which, pair).reach(&toward[which]));
+        self.question.gap(toward, reaches)
+    }
+
+    /// The gap along the direction between the nearest objects so far, if the boxes of two blocks are apart.
+    fn best_gap(&self, pair: &BlockPair) -> N {
+        let best = self.question.best().filter(|_| pair.are_apart);
+        best.map_or(-N::INFINITY, |toward| self.gap_along(&toward, pair))
+    }
+
+    /// The largest gap of the directions that are likely to part what is in two blocks: along that between their middles
+    /// and between the nearest objects so far if their boxes are apart, else across their slabs.
+    fn gap(&self, pair: &BlockPair) -> N {
+        let gap = self.best_gap(pair);
+        if gap > self.question.limit() {
+            return gap;
+        }
+        let boxes = [0, 1].map(|which| self.slab_box(which, pair));
+        let between = self.question.between(boxes.map(|own| own.bounds.as_aabb().center()));
+        let toward = if pair.are_apart {
+            [between, None]
+        } else {
+            [0, 1].map(|which| {
+                let across = unit(&boxes[which].slab?.across::<N>())?.0;
+                let is_toward = across.dot(&between.as_ref()?[which]) > N::ZERO;
+                self.question.toward(which, &if is_toward { across } else { -across })
+            })
+        };
+        let gaps = toward.into_iter().flatten().map(|toward| self.gap_along(&toward, pair));
+        gaps.fold(gap, max)
+    }
+
+    /// Holds what is in two blocks, or in one of them, against each other: visits objects, and puts pairs of blocks
+    /// into the queue.
+    fn open(&mut self, pair: &BlockPair) {
+        let wider = self.wider(pair);
+        match pair.layers {
+            [0, 0] => self.meet(pair),
+            [_, 0] => self.open_one(0, pair),
+            [0, _] => self.open_one(1, pair),
+            _ if self.is_much_wider(wider, pair) => self.open_one(wider, pair),
+            _ => self.open_both(1 - wider, pair),
         }
     }
 
-    /// Visits the near pairs of objects of two leaf blocks: each object of the narrower block with those of the other.
+    fn wider(&self, pair: &BlockPair) -> usize {
+        let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
+        usize::from(widths[1] >= widths[0])
+    }
+
+    fn is_much_wider(&self, which: usize, pair: &BlockPair) -> bool {
+        let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
+        widths[which] > MUCH_WIDER * widths[1 - which]
+    }
+
+    /// Puts the blocks below one of two into the queue, each with the other.
+    fn open_one(&mut self, which: usize, pair: &BlockPair) {
+        let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb());
+        for (distance, block) in self.near(which, pair.layers[which], pair.blocks[which], &aabb) {
+            let below = below(pair, which, block, distance);
+            let is_beyond = self.best_gap(&below) > self.question.limit();
+            if !is_beyond {
+                self.queue.push(Reverse(below));
+            }
+        }
+    }
+
+    /// Puts the blocks below two blocks into the queue, each of the narrower one with those of the other that are near.
+    fn open_both(&mut self, which: usize, pair: &BlockPair) {
+        let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb());
+        for (distance, block) in self.near(which, pair.layers[which], pair.blocks[which], &aabb) {
+            let below = below(pair, which, block, distance);
+            let is_beyond = self.gap(&below) > self.question.limit();
+            if !is_beyond {
+                self.open_one(1 - which, &below);
+            }
+        }
+    }
+
+    /// Visits the near pairs of objects of two leaf blocks: each object of one block with those of the other.
     fn meet(&mut self, pair: &BlockPair) {
-        let bounds = [0, 1].map(|which| self.bounds(which, pair));
-        let which = usize::from(bounds[1].half_surface() < bounds[0].half_surface());
-        let trees = [self.trees[which], self.trees[1 - which]];
+        let which = 1 - self.wider(pair);
         let [own, other] = [pair.blocks[which], pair.blocks[1 - which]];
-        let aabb = self.question.in_other(1 - which, &bounds[1 - which].as_aabb());
+        let aabb = self.bounds(1 - which, pair).as_aabb();
+        let aabb = self.question.in_other(1 - which, &aabb);
+        let sides = self.sides(1 - which, pair);
         for (distance, slot) in self.near(which, 0, own, &aabb) {
-            let Some(id) = trees[0].id_in(slot) else { continue };
+            let Some(id) = self.trees[which].id_in(slot) else { continue };
             if distance > self.question.bound() {
                 return;
+            }
+            let is_beyond = sides.iter().any(|(toward, of_others)| {
+                let mut reaches = [*of_others; 2];
+                reaches[which] = self.question.reach(which, id, &toward[which]);
+                self.question.gap(toward, reaches) > self.question.limit()
+            });
+            if is_beyond {
+                continue;
             }
             let aabb = self.question.object_in_other(which, id);
             let near = self.near(1 - which, 0, other, &aabb);
             let others: SmallVec<[u32; LANES]> =
-                near.iter().filter_map(|&(_, slot)| trees[1].id_in(slot)).collect();
+                near.iter().filter_map(|&(_, slot)| self.trees[1 - which].id_in(slot)).collect();
             if !others.is_empty() {
                 self.question.visit(which, id, &others);
             }
         }
     }
 
-    /// The lanes of a block of one tree that are within the bound of a box in its frame, near ones first, of several
-    /// at one distance the first. A distance is a little less than the exact one.
+    /// Directions that may part single objects from all of a leaf block, and how far that reaches along them: by its
+    /// objects along that between the nearest objects so far, if they are apart, else by its slab.
+    fn sides(&self, which: usize, pair: &BlockPair) -> SmallVec<[(Toward<N, D>, N); 3]> {
+        let block = self.slab_box(which, pair);
+        let across = block.slab.and_then(|slab| Some(unit(&slab.across::<N>())?.0));
+        let across = across.into_iter().flat_map(|across| [across, -across]);
+        let across = across.filter_map(|across| self.question.toward(which, &across));
+        let mut sides: SmallVec<_> =
+            across.map(|toward| (toward, block.reach(&toward[which]))).collect();
+        if let Some(toward) = self.question.best().filter(|_| self.question.limit() > N::ZERO) {
+            let ids = self.trees[which].leaves()[pair.blocks[which] as usize];
+            let reaches = ids.into_iter().filter(|&id| id != NONE);
+            let reaches = reaches.map(|id| self.question.reach(which, id, &toward[which]));
+            sides.insert(0, (toward, reaches.fold(-N::INFINITY, max)));
+        }
+        sides
+    }
+
+    /// The lanes of a block of one tree that are within the bound of a box in its frame and overlap it as deep as the
+    /// limit asks, near ones first, of several at one distance the first. A distance is a little less than the exact
+    /// one.
     fn near(&self, which: usize, layer: u8, block: u32, aabb: &Aabb<N, D>) -> NearLanes<N> {
         let (tree, layer) = (self.trees[which], usize::from(layer));
-        let gaps = Gaps::new(aabb, tree.size());
+        let gaps = Gaps::new(aabb, tree.size()).within(self.question.depth());
         let Open { keys, mut mask, first } =
             tree.opened_around(&gaps, layer, block, gaps.limit(self.question.bound()));
         let mut near = NearLanes::new();
@@ -160,6 +321,28 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         near.sort_unstable_by_key(|(distance, at)| (distance.bits(), *at));
         near
     }
+}
+
+/// The one of some boxes for which a number is least, the first of several.
+fn least<N: Real, const D: usize>(
+    boxes: impl Iterator<Item = (u32, Bounds<D>)>,
+    number: impl Fn(&Bounds<D>) -> N,
+) -> Option<u32> {
+    let mut least = (N::INFINITY, None);
+    for (id, bounds) in boxes.filter(|(_, bounds)| bounds.is_finite()) {
+        let value = number(&bounds);
+        least = if value < least.0 { (value, Some(id)) } else { least };
+    }
+    least.1
+}
+
+/// A block of one tree below that of a pair, with the other block, and at which distance their boxes are.
+fn below<N: Real>(pair: &BlockPair, which: usize, block: u32, distance: N) -> BlockPair {
+    let (mut layers, mut blocks) = (pair.layers, pair.blocks);
+    (layers[which], blocks[which]) = (layers[which] - 1, block);
+    let are_apart = distance > N::ZERO;
+    let distance = distance.bits().max(pair.distance);
+    BlockPair { distance, layers, blocks, are_apart, is_rough: true }
 }
 
 #[cfg(test)]
@@ -196,8 +379,38 @@ mod tests {
             self.limit
         }
 
-        fn are_beyond(&self, [one, other]: &[Aabb<f64, 3>; 2]) -> bool {
-            one.mins().x - self.shift > other.maxs().x + self.limit + 1e-6
+        fn limit(&self) -> f64 {
+            self.limit
+        }
+
+        fn depth(&self) -> f64 {
+            0.0
+        }
+
+        fn best(&self) -> Option<Toward<f64, 3>> {
+            self.toward(0, &Vector::<f64, 3>::new(1.0, 0.0, 0.0))
+        }
+
+        fn toward(&self, which: usize, along: &Vector<f64, 3>) -> Option<Toward<f64, 3>> {
+            Some(if which == 0 { [*along, -along] } else { [-along, *along] })
+        }
+
+        fn between(&self, points: [Point<f64, 3>; 2]) -> Option<Toward<f64, 3>> {
+            let shift = Vector::<f64, 3>::new(self.shift, 0.0, 0.0);
+            self.toward(0, &unit(&(points[1] + shift - points[0]))?.0)
+        }
+
+        fn reach(&self, which: usize, id: u32, along: &Vector<f64, 3>) -> f64 {
+            let aabb = &self.boxes[which][id as usize];
+            aabb.center().coords.dot(along) + aabb.half_extents().dot(&along.abs())
+        }
+
+        fn gap(&self, toward: &Toward<f64, 3>, [one, other]: [f64; 2]) -> f64 {
+            self.shift * toward[0].x - one - other - 1e-6
+        }
+
+        fn guess(&mut self, objects: [u32; 2]) {
+            assert!(!objects.contains(&NONE), "no object is infinite");
         }
 
         fn visit(&mut self, which: usize, own: u32, others: &[u32]) {

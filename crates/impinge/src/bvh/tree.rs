@@ -1,5 +1,6 @@
 //! The tree: storage and single changes.
 
+use super::block_slabs::BlockSlab;
 use super::order::Load;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
@@ -68,6 +69,8 @@ pub(crate) struct Tree<const D: usize> {
     /// The boxes at the last settling are those of now unless something is said to have changed: so
     /// that a tree in which this seldom happens has no memory for them.
     pub(super) is_sparing: bool,
+    /// By layer and block, if the owner of the tree asked for them: good until the boxes change.
+    pub(super) slabs: Vec<Vec<BlockSlab<D>>>,
     /// [`Self::before`] is in use. Always, unless the tree is sparing.
     pub(super) remembers: bool,
     /// Slot to id.
@@ -117,6 +120,7 @@ impl<const D: usize> Tree<D> {
             layers: vec![Layer::new()],
             before: Vec::new(),
             is_sparing: false,
+            slabs: Vec::new(),
             remembers: true,
             ids: Vec::new(),
             slots: Vec::new(),

@@ -389,6 +389,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
             return Err(BoxTreeError::WrongCount { given, needed });
         }
         check(boxes)?;
+        self.tree.drop_slabs();
         self.unbounded.clear();
         for (id, aabb) in (0..count(given)?).zip(boxes) {
             let (tight, kept) = (Bounds::enclosing(aabb), self.tree.bounds(id));
@@ -449,6 +450,18 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         found: &mut dyn FnMut(u32, N) -> N,
     ) {
         self.search().near_first(sweep, max_time, found);
+    }
+
+    /// Helps searches for near pairs of faces, until the next refit: see [`Tree::add_slabs`]. Of unbounded things
+    /// nothing is known.
+    pub(crate) fn add_slabs(
+        &mut self,
+        normals: &[Vector<N, D>],
+        corners: impl Fn(u32) -> [Point<N, D>; 3],
+    ) {
+        if normals.len() == self.boxes.len() {
+            self.tree.add_slabs(normals, corners);
+        }
     }
 
     pub(crate) const fn packed(&self) -> &Tree<D> {

@@ -7,12 +7,12 @@
 //! The same point serves all parts that one solid is held against, so that triangles that shared a
 //! corner still do.
 
-use super::bounds::{aabb_of, enclosing, extent, rounding};
+use super::bounds::{aabb_of, enclosing};
 use crate::bounding_volume::Aabb;
 use crate::collide::Pair;
 use crate::collide::pair::Ordered;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Space, Vector, max_component};
+use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
 
 /// Two shapes, at least one of them a composite, and how each lies in the frame of the other.
@@ -144,17 +144,6 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
             bounds.distance_to_aabb(&self.whole_in_other(other)) > limit
         };
         is_beyond(parts1, 1) || is_beyond(parts2, 0)
-    }
-
-    /// How far apart a box in the frame of the first shape and one in that of the second are along a unit vector of the
-    /// first, less what rounding may have added; negative where they overlap.
-    pub(super) fn gap_of_boxes(&self, [one, other]: &[Aabb<N, D>; 2], along: &Vector<N, D>) -> N {
-        let Pose { rotation, translation } = &self.pair.pose12;
-        let (half1, half2) = (one.half_extents(), other.half_extents());
-        let center2 = self.pair.pose12.point(&other.center());
-        let swing = along.abs().dot(&half1) + rotation.tr_mul(along).abs().dot(&half2);
-        let size = extent(one) + extent(other) + max_component(translation);
-        along.dot(&(center2 - one.center())) - swing - rounding(size * N::lit(8.0))
     }
 
     /// The first shape (0) or the second (1), and its pose in the frame of the other.

@@ -80,7 +80,7 @@ pub(super) fn extent<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
 }
 
 /// What rounding makes of coordinates of this size.
-pub(super) fn rounding<N: Real>(scale: N) -> N {
+fn rounding<N: Real>(scale: N) -> N {
     N::lit(ROUNDING_ERRORS) * N::EPSILON * scale
 }
 

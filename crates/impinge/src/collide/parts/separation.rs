@@ -3,17 +3,17 @@
 use smallvec::SmallVec;
 
 use super::between::{Between, by_number};
-use super::bounds::loosened;
-use super::slabs::{AxisSlabs, corners};
-use super::solid_bounds::SolidBounds;
+use super::bounds::{extent, loosened};
+use super::slabs::{AxisSlabs, corners, range};
+use super::solid_bounds::{SolidBounds, gap_slack};
 use super::sweep::PartSweep;
 use crate::bounding_volume::Aabb;
-use crate::bvh::{BoxRanking, TreePair, visit_pairs, visit_ranked};
+use crate::bvh::{BoxRanking, NONE, Toward, TreePair, visit_pairs, visit_ranked};
 use crate::collide::Pair;
 use crate::collide::packet::{LANES, Tiles};
 use crate::collide::separation::separation as of_convex;
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space, Vector, max};
+use crate::math::{Point, Real, Space, Vector, max, max_component, unit};
 use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Kind};
 
@@ -61,7 +61,8 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
         None
     }
 
-    /// The unit vector from the first shape to the second between the best parts so far, in the frame of the first.
+    /// The unit vector from the first shape to the second between the best parts so far, in the frame of the first;
+    /// `None` as long as there are none, or if one of them moves.
     fn normal(&self) -> Option<Vector<N, D>> {
         None
     }
@@ -110,7 +111,7 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
             let trees = [parts1, parts2].map(|parts| parts.search().as_tree()?.packed_whole());
             let [Some(tree1), Some(tree2)] = trees else { return search.of_many(parts1, parts2) };
             let NearestSearch { visitor, .. } = search;
-            let mut pairs = TreeParts { between, visitor, parts: [parts1, parts2], slabs: None };
+            let mut pairs = TreeParts::new(between, [parts1, parts2], visitor);
             visit_pairs([tree1, tree2], &mut pairs);
         }
     }
@@ -121,6 +122,8 @@ struct TreeParts<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
+    /// What rounding may add to the gaps along a direction; infinite if these tell nothing, since parts move.
+    slack: N,
     /// Those of the part that was gone through last.
     slabs: Option<PartSlabs<N, D>>,
 }
@@ -131,7 +134,20 @@ struct PartSlabs<N: Real, const D: usize> {
     slabs: AxisSlabs<N, D>,
 }
 
-impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
+impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
+    fn new(
+        between: &'a Between<'a, N, D>,
+        parts: [&'a dyn CompositeShape<N, D>; 2],
+        visitor: &'q mut dyn PairVisitor<N, D>,
+    ) -> Self {
+        let sizes = parts.map(|parts| extent(&parts.search().bounds()));
+        let size = sizes[0] + sizes[1] + max_component(&between.pair.pose12.translation);
+        let is_at_rest = [0, 1].iter().all(|&which| visitor.sweep(which).is_none());
+        let is_known = is_at_rest && (size / N::EPSILON).is_finite_number();
+        let slack = if is_known { gap_slack(size) } else { N::INFINITY };
+        Self { between, visitor, parts, slack, slabs: None }
+    }
+
     /// A box in the frame of the other composite around where the parts in it go.
     fn swept(&self, which: usize, aabb: Aabb<N, D>) -> Aabb<N, D> {
         self.visitor.sweep(which).map_or(aabb, |sweep| sweep.of_box(&aabb))
@@ -151,17 +167,67 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.visitor.bound()
     }
 
-    fn are_beyond(&self, boxes: &[Aabb<N, D>; 2]) -> bool {
-        let moves = [0, 1].map(|which| self.visitor.sweep(which).is_some());
-        let Some(normal) = self.visitor.normal().filter(|_| moves == [false; 2]) else {
-            return false;
+    fn limit(&self) -> N {
+        self.visitor.limit()
+    }
+
+    fn depth(&self) -> N {
+        max(-self.visitor.limit() - self.slack, N::ZERO)
+    }
+
+    fn best(&self) -> Option<Toward<N, D>> {
+        self.toward(0, &self.visitor.normal()?)
+    }
+
+    fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>> {
+        let pose12 = &self.between.pair.pose12;
+        let toward = match which {
+            0 => [*along, pose12.inverse_vector(&-along)],
+            _ => [pose12.vector(&-along), *along],
         };
-        self.between.gap_of_boxes(boxes, &normal) > self.visitor.limit()
+        self.slack.is_finite_number().then_some(toward)
+    }
+
+    fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>> {
+        let way = self.between.pair.pose12.point(&points[1]) - points[0];
+        self.toward(0, &unit(&way)?.0)
+    }
+
+    fn reach(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
+        let part = self.parts[which].part(id);
+        let Some(corners) = corners(&part.solid, &part.pose) else { return N::INFINITY };
+        range(&corners, along)[1]
+    }
+
+    fn gap(&self, toward: &Toward<N, D>, [reach1, reach2]: [N; 2]) -> N {
+        let offset = toward[0].dot(&self.between.pair.pose12.translation);
+        offset - reach1 - reach2 - self.slack
+    }
+
+    fn guess(&mut self, parts: [u32; 2]) {
+        if self.slack.is_finite_number() && !parts.contains(&NONE) {
+            self.visitor.visit(parts);
+        }
     }
 
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
+        let pair = |other: u32| if which == 0 { [own, other] } else { [other, own] };
+        let (best, mut near) = (self.best(), PartGaps::new());
+        for &other in others {
+            let gap =
+                best.as_ref().map_or(-N::INFINITY, |toward| self.gap_along(toward, pair(other)));
+            let is_apart = self.visitor.limit() > N::ZERO && gap <= self.visitor.limit();
+            let gap = if is_apart { max(self.gap_between(pair(other)), gap) } else { gap };
+            let is_beyond = gap > self.visitor.limit();
+            if !is_beyond {
+                near.push((gap, other));
+            }
+        }
+        if near.is_empty() {
+            return;
+        }
         let slabs = self.slabs_of(which, own);
-        let mut near = self.gaps(&slabs, self.parts[1 - which], others);
+        self.add_gaps(&slabs, self.parts[1 - which], &mut near);
         self.slabs = Some(slabs);
         near.sort_unstable_by(|(one, part1), (other, part2)| {
             one.as_f64().total_cmp(&other.as_f64()).then(part1.cmp(part2))
@@ -171,7 +237,11 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
             if is_beyond {
                 return;
             }
-            self.visitor.visit(if which == 0 { [own, other] } else { [other, own] });
+            let best = self.best().map(|toward| self.gap_along(&toward, pair(other)));
+            let is_beyond = best.is_some_and(|gap| gap > self.visitor.limit());
+            if !is_beyond {
+                self.visitor.visit(pair(other));
+            }
         }
     }
 }
@@ -180,6 +250,22 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
+    fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
+        self.gap(toward, [0, 1].map(|which| self.reach(which, parts[which], &toward[which])))
+    }
+
+    /// The gap along the direction from one part to another.
+    fn gap_between(&self, parts: [u32; 2]) -> N {
+        let middles = [0, 1].map(|which| {
+            let part = self.parts[which].part(parts[which]);
+            let [a, b, c] = corners(&part.solid, &part.pose)?;
+            Some(Point::from((a + b + c) * N::lit(1.0 / 3.0)))
+        });
+        let [Some(middle1), Some(middle2)] = middles else { return -N::INFINITY };
+        let toward = self.between([middle1, middle2]);
+        toward.map_or(-N::INFINITY, |toward| self.gap_along(&toward, parts))
+    }
+
     /// Those around a part of the first shape (0) or the second (1).
     fn slabs_of(&mut self, which: usize, part: u32) -> PartSlabs<N, D> {
         // A sweep only gets shorter, so that slabs made before are wide enough.
@@ -188,37 +274,31 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
             return kept;
         }
         let sweep = self.visitor.sweep(which);
-        let mut slabs = AxisSlabs::of_part(self.between, which, part, sweep.as_ref());
-        if let Some(normal) = self.visitor.normal() {
-            let in_other = if which == 0 { self.between.pose21.vector(&normal) } else { normal };
-            slabs.add(&in_other);
-        }
+        let slabs = AxisSlabs::of_part(self.between, which, part, sweep.as_ref());
         PartSlabs { which, part, slabs }
     }
 
-    /// The gaps between what is in slabs and some parts.
-    fn gaps(
+    /// Raises the gaps of some parts to those that axes of theirs and slabs leave.
+    fn add_gaps(
         &self,
         around: &PartSlabs<N, D>,
         parts: &dyn CompositeShape<N, D>,
-        others: &[u32],
-    ) -> PartGaps<N> {
-        let mut near = PartGaps::new();
-        for group in others.chunks(LANES) {
+        near: &mut PartGaps<N>,
+    ) {
+        for group in near.chunks_mut(LANES) {
             let (mut tiles, mut is_known) = (Tiles::blank(), [false; LANES]);
-            for (lane, &other) in group.iter().enumerate() {
-                let part = parts.part(other);
+            for (lane, (_, other)) in group.iter().enumerate() {
+                let part = parts.part(*other);
                 if let Some(corners) = corners(&part.solid, &part.pose) {
                     tiles.put(lane, &corners.map(Point::from));
                     is_known[lane] = true;
                 }
             }
             let gaps = (N::tables().part_gaps)(&around.slabs, &tiles, self.visitor.limit());
-            for ((&other, gap), is_known) in group.iter().zip(gaps).zip(is_known) {
-                near.push((if is_known { gap } else { -N::INFINITY }, other));
+            for (((own, _), gap), is_known) in group.iter_mut().zip(gaps).zip(is_known) {
+                *own = if is_known { max(gap, *own) } else { *own };
             }
         }
-        near
     }
 }
 

@@ -68,14 +68,6 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         slabs
     }
 
-    /// Adds one across another unit vector, of a solid at rest.
-    pub(super) fn add(&mut self, along: &Vector<N, D>) {
-        if let Some(corners) = &self.corners {
-            let [lowest, highest] = range(corners, along);
-            self.slabs.push(Slab { along: *along, lowest, highest });
-        }
-    }
-
     /// Adds slabs around corners that are seen from the first of them, and around where they go, up to a spread.
     fn surround(&mut self, corners: &[Vector<N, D>; 3], ends: &[Vector<N, D>; 3], spread: N) {
         for along in across(corners) {

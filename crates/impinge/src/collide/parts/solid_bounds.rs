@@ -74,12 +74,17 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         let highest = self.map.core_support(&self.pose.inverse_vector(along));
         let height = along.dot(&self.pose.point(&highest).coords) + self.map.rounding();
         let size = self.size + reach;
-        let bound = lowest - height - size * max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED));
+        let bound = lowest - height - gap_slack(size);
         // Lengths that are subnormal numbers are not precise.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
         let is_unit = (along.norm_squared() - N::ONE).abs() < N::lit(64.0) * N::EPSILON;
         if is_precise && is_unit && bound.is_finite_number() { bound } else { -N::INFINITY }
     }
+}
+
+/// What rounding, and what algorithms are content with, may add to gaps between solids with coordinates of this size.
+pub(super) fn gap_slack<N: Real>(size: N) -> N {
+    size * max(N::lit(ROUNDING) * N::EPSILON, N::lit(CURVED))
 }
 
 /// The largest coordinate of a bounded box, but for rounding.

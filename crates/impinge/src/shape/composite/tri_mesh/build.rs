@@ -36,8 +36,9 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         check_parts(&triangles, vertices.len())?;
         let topology = Topology::new(&vertices, &triangles);
         let boxes = boxes_of(&vertices, &triangles);
-        let tree = BoxTree::try_from_vec(boxes).map_err(refused)?;
+        let mut tree = BoxTree::try_from_vec(boxes).map_err(refused)?;
         let normals = normals_of(&vertices, &triangles);
+        tree.add_slabs(&normals, |index| corners_of(&vertices, &triangles[index as usize]));
         Ok(Self {
             is_cycle: topology.is_cycle,
             bends: Bends::new(triangles.len()),
@@ -128,6 +129,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.tree.try_refit(&boxes).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
         self.normals = normals_of(vertices, &self.triangles);
+        let corners = |index: u32| corners_of(vertices, &self.triangles[index as usize]);
+        self.tree.add_slabs(&self.normals, corners);
         self.bends.clear();
         self.topology.is_moved = true;
         self.packed = (table::<N, D>().packed)(&self.tree, vertices, &self.triangles);
@@ -140,8 +143,14 @@ fn boxes_of<N: Space<D>, const D: usize>(
     vertices: &[Point<N, D>],
     triangles: &[[u32; 3]],
 ) -> Vec<Aabb<N, D>> {
-    let one = |corners: &[u32; 3]| box_of_corners(&corners.map(|vertex| vertices[vertex as usize]));
-    triangles.iter().map(one).collect()
+    triangles.iter().map(|triangle| box_of_corners(&corners_of(vertices, triangle))).collect()
+}
+
+fn corners_of<N: Real, const D: usize>(
+    vertices: &[Point<N, D>],
+    triangle: &[u32; 3],
+) -> [Point<N, D>; 3] {
+    triangle.map(|vertex| vertices[vertex as usize])
 }
 
 /// The box of a triangle, as the tree has it.
@@ -154,6 +163,5 @@ fn normals_of<N: Space<D>, const D: usize>(
     triangles: &[[u32; 3]],
 ) -> Vec<Vector<N, D>> {
     let Some(normal) = table::<N, D>().normal else { return Vec::new() };
-    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| vertices[vertex as usize]);
-    triangles.iter().map(|triangle| normal(&corners(triangle))).collect()
+    triangles.iter().map(|triangle| normal(&corners_of(vertices, triangle))).collect()
 }

@@ -1,0 +1,120 @@
+//! Slabs around what is in blocks, across the mean normal of its faces.
+//!
+//! The box of a patch of a surface is as thick as the patch is wide, unless the surface lies along an axis. Its slab is
+//! thin, by the square of the width where the surface is smooth; and along any direction slab and box together reach
+//! little farther than the patch, as oriented boxes do (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
+
+use super::{Bounds, LANES, NONE, Tree};
+use crate::math::{Point, Real, Vector, max, min};
+
+/// What heights lose to rounding, in units of `f64` of the coordinates.
+const ROUNDING: f64 = 16.0;
+
+/// What lies between two planes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BlockSlab<const D: usize> {
+    /// About of unit length; zero without a slab.
+    pub(super) across: [f32; D],
+    low: f32,
+    high: f32,
+}
+
+/// A box and a slab around the same.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SlabBox<'a, const D: usize> {
+    pub(super) bounds: &'a Bounds<D>,
+    pub(super) slab: Option<&'a BlockSlab<D>>,
+}
+
+impl<const D: usize> BlockSlab<D> {
+    pub(super) fn across<N: Real>(&self) -> Vector<N, D> {
+        Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
+    }
+
+    /// The slab across a sum of normals, around what reaches so far along a direction.
+    fn around(sum: &Vector<f64, D>, reach: impl Fn(&Vector<f64, D>) -> f64) -> Self {
+        let length = sum.norm();
+        let is_direction = length > f64::from(f32::MIN_POSITIVE) && length < f64::INFINITY;
+        let scale = if is_direction { 1.0 / length } else { 0.0 };
+        let across = core::array::from_fn(|axis| (sum[axis] * scale).as_f32());
+        let exact = Vector::from_fn(|axis, _| f64::from(across[axis]));
+        Self { across, low: (-reach(&-exact)).as_f32_below(), high: reach(&exact).as_f32_above() }
+    }
+}
+
+impl<const D: usize> SlabBox<'_, D> {
+    /// How far what is in both reaches along a direction, or more.
+    pub(super) fn reach<N: Real>(&self, along: &Vector<N, D>) -> N {
+        let whole = self.bounds.reach(along);
+        let Some(slab) = self.slab else { return whole };
+        // Every share of the slab gives a bound; this one leaves what lies in its plane to the box.
+        let across = slab.across::<N>();
+        let share = along.dot(&across);
+        let height = N::lit(if share < N::ZERO { slab.low } else { slab.high }.into());
+        min(share * height + self.bounds.reach(&(along - across * share)), whole)
+    }
+}
+
+impl<const D: usize> Tree<D> {
+    /// Puts slabs around what is in the blocks: objects with normals and corners.
+    pub(crate) fn add_slabs<N: Real>(
+        &mut self,
+        normals: &[Vector<N, D>],
+        corners: impl Fn(u32) -> [Point<N, D>; 3],
+    ) {
+        let exact = |v: &Vector<N, D>| Vector::<f64, D>::from_fn(|axis, _| v[axis].as_f64());
+        let mut sums: Vec<_> = self
+            .leaves()
+            .iter()
+            .map(|ids| in_use(ids).map(|id| exact(&normals[id as usize])).sum())
+            .collect();
+        let size = f64::from(self.size()) * f64::EPSILON * ROUNDING;
+        self.slabs.clear();
+        let slab = |(ids, sum): (&[u32; LANES], &Vector<f64, D>)| {
+            let corners: Vec<_> =
+                in_use(ids).flat_map(&corners).map(|at| exact(&at.coords)).collect();
+            BlockSlab::around(sum, |along| {
+                corners.iter().fold(-f64::INFINITY, |reach, at| max(at.dot(along), reach)) + size
+            })
+        };
+        self.slabs.push(self.leaves().iter().zip(&sums).map(slab).collect());
+        for layer in 1..self.layers.len() {
+            sums = sums.chunks(LANES).map(|below| below.iter().sum()).collect();
+            let blocks = (0..).zip(&sums);
+            let slab = |(block, sum): (u32, &Vector<f64, D>)| {
+                let below = || self.children(layer - 1, block);
+                BlockSlab::around(sum, |along| {
+                    below().fold(-f64::INFINITY, |reach, (_, below)| max(below.reach(along), reach))
+                        + size
+                })
+            };
+            let slabs = blocks.map(slab).collect();
+            self.slabs.push(slabs);
+        }
+    }
+
+    /// Forgets the slabs.
+    pub(crate) fn drop_slabs(&mut self) {
+        self.slabs.clear();
+    }
+
+    pub(super) fn slab_box(&self, layer: usize, block: u32) -> SlabBox<'_, D> {
+        let slab = self.slabs.get(layer).map(|slabs| &slabs[block as usize]);
+        SlabBox { bounds: &self.layers[layer].bounds[block as usize], slab }
+    }
+
+    /// The blocks of a layer that a block of the layer above holds.
+    pub(super) fn children(
+        &self,
+        layer: usize,
+        above: u32,
+    ) -> impl Iterator<Item = (u32, SlabBox<'_, D>)> {
+        let first = above * super::tree::small(LANES);
+        let blocks = (first..super::tree::small(self.layers[layer].blocks.len())).take(LANES);
+        blocks.map(move |block| (block, self.slab_box(layer, block)))
+    }
+}
+
+fn in_use(ids: &[u32; LANES]) -> impl Iterator<Item = u32> {
+    ids.iter().copied().filter(|&id| id != NONE)
+}
