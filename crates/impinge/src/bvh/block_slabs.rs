@@ -7,6 +7,8 @@
 use super::{Bounds, LANES, NONE, Tree};
 use crate::math::{Point, Real, Vector, max, min};
 
+/// A slab is of use if it is so many times thinner than the box along its normal.
+const THINNER: f64 = 4.0;
 /// What heights lose to rounding, in units of `f64` of the coordinates.
 const ROUNDING: f64 = 16.0;
 
@@ -31,14 +33,24 @@ impl<const D: usize> BlockSlab<D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
 
-    /// The slab across a sum of normals, around what reaches so far along a direction.
-    fn around(sum: &Vector<f64, D>, reach: impl Fn(&Vector<f64, D>) -> f64) -> Self {
+    /// The slab across a sum of normals, around what reaches so far along a direction; none if it is not thin beside a box
+    /// around the same.
+    fn around(
+        sum: &Vector<f64, D>,
+        bounds: &Bounds<D>,
+        reach: impl Fn(&Vector<f64, D>) -> f64,
+    ) -> Self {
         let length = sum.norm();
         let is_direction = length > f64::from(f32::MIN_POSITIVE) && length < f64::INFINITY;
         let scale = if is_direction { 1.0 / length } else { 0.0 };
         let across = core::array::from_fn(|axis| (sum[axis] * scale).as_f32());
         let exact = Vector::from_fn(|axis, _| f64::from(across[axis]));
-        Self { across, low: (-reach(&-exact)).as_f32_below(), high: reach(&exact).as_f32_above() }
+        let (low, high) = (-reach(&-exact), reach(&exact));
+        let of_box = bounds.reach(&exact) + bounds.reach(&-exact);
+        if (high - low) * THINNER > of_box {
+            return Self { across: [0.0; D], low: 0.0, high: 0.0 };
+        }
+        Self { across, low: low.as_f32_below(), high: high.as_f32_above() }
     }
 }
 
@@ -70,20 +82,21 @@ impl<const D: usize> Tree<D> {
             .collect();
         let size = f64::from(self.size()) * f64::EPSILON * ROUNDING;
         self.slabs.clear();
-        let slab = |(ids, sum): (&[u32; LANES], &Vector<f64, D>)| {
+        let slab = |((ids, sum), bounds): ((&[u32; LANES], &Vector<f64, D>), &Bounds<D>)| {
             let corners: Vec<_> =
                 in_use(ids).flat_map(&corners).map(|at| exact(&at.coords)).collect();
-            BlockSlab::around(sum, |along| {
+            BlockSlab::around(sum, bounds, |along| {
                 corners.iter().fold(-f64::INFINITY, |reach, at| max(at.dot(along), reach)) + size
             })
         };
-        self.slabs.push(self.leaves().iter().zip(&sums).map(slab).collect());
+        self.slabs
+            .push(self.leaves().iter().zip(&sums).zip(&self.layers[0].bounds).map(slab).collect());
         for layer in 1..self.layers.len() {
             sums = sums.chunks(LANES).map(|below| below.iter().sum()).collect();
             let blocks = (0..).zip(&sums);
             let slab = |(block, sum): (u32, &Vector<f64, D>)| {
                 let below = || self.children(layer - 1, block);
-                BlockSlab::around(sum, |along| {
+                BlockSlab::around(sum, &self.layers[layer].bounds[block as usize], |along| {
                     below().fold(-f64::INFINITY, |reach, (_, below)| max(below.reach(along), reach))
                         + size
                 })
