@@ -15,8 +15,8 @@ use crate::collide::Placing;
 use crate::math::{Real, Space, Vector, max};
 use crate::narrow_phase::ContactPrediction;
 use crate::query::{
-    ImpactOptions, Moving, Proximity, contact_between, distance_within, impact_of_pair,
-    proximity_between, separation_between, witness_between,
+    ImpactOptions, Moving, Proximity, contact_between, distance_between, distance_within,
+    impact_of_pair, proximity_between, separation_between, witness_between,
 };
 
 /// Two sides whose elements with one index are a pair.
@@ -199,9 +199,10 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         (N::tables().batch.nearest)(self, max_distance, control)
     }
 
-    /// Both sides, ready to be asked.
+    /// Both sides, ready to be asked. Each is made where it stays: `map` over both copies them several times.
+    #[inline]
     pub(super) fn prepared(&self) -> [PreparedSide<'a, N, D>; 2] {
-        self.sides.each_ref().map(PreparedSide::new)
+        [PreparedSide::new(&self.sides[0]), PreparedSide::new(&self.sides[1])]
     }
 
     /// Calls with the elements of each pair and the slot of the answer in the columns of a chunk.
@@ -212,6 +213,11 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         answer: impl Fn([Element<'_, 'a, N, D>; 2], &mut C, usize) + Sync,
     ) -> Result<(), BatchError> {
         out.check(self.len)?;
+        if self.len == 1 {
+            let [side1, side2] = &self.sides;
+            return Progress::new(control)
+                .run(1, out, |_, mut out| answer([side1.alone(), side2.alone()], &mut out, 0));
+        }
         self.each_chunk(control, out, |sides, range, columns| {
             for (slot, index) in range.enumerate() {
                 answer(pair_at(sides, index), columns, slot);
@@ -238,6 +244,12 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
     out: &mut [N],
 ) -> Result<(), BatchError> {
     out.check(batch.len)?;
+    if batch.len == 1 {
+        // Lists would take longer than a pair alone.
+        return batch.each(control, out, |[one, other], out, slot| {
+            out[slot] = distance_between(&one, &other);
+        });
+    }
     batch.each_chunk(control, out, |sides, range, out| {
         let found = gaps::distances(sides, range);
         for (slot, distance) in out.iter_mut().zip(found) {
