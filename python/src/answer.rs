@@ -143,10 +143,9 @@ pub(crate) fn into_python<'py, N: Numeric<D>, const D: usize>(
     class: Option<&Class>,
     columns: impl IntoIterator<Item = Column<N, D>, IntoIter: ExactSizeIterator>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let mut columns = columns.into_iter();
     match class {
         Some(class) => class.value(PyTuple::new(py, columns)?),
-        None => columns.next().expect("an answer has a column").into_pyobject(py),
+        None => columns.into_iter().next().expect("an answer has a column").into_pyobject(py),
     }
 }
 

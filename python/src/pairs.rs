@@ -89,7 +89,8 @@ impl Question for Closest {
         control: &Control<'_>,
     ) -> Result<Self::Columns<N, D>, BatchError> {
         let mut distance = extent.slots(N::ZERO);
-        let [mut point1, mut point2] = [(); 2].map(|()| extent.slots([N::ZERO; D]));
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let mut point2 = extent.slots([N::ZERO; D]);
         let columns =
             ClosestColumns { distance: &mut distance, point1: &mut point1, point2: &mut point2 };
         batch.closest_points(convert(self.0), control, columns)?;
@@ -118,8 +119,9 @@ impl Question for Witnesses {
         control: &Control<'_>,
     ) -> Result<Self::Columns<N, D>, BatchError> {
         let mut distance = extent.slots(N::ZERO);
-        let [mut point1, mut point2, mut normal] = [(); 3].map(|()| extent.slots([N::ZERO; D]));
-        let [mut part1, mut part2] = [(); 2].map(|()| extent.slots(0));
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let (mut point2, mut normal) = (extent.slots([N::ZERO; D]), extent.slots([N::ZERO; D]));
+        let (mut part1, mut part2) = (extent.slots(0), extent.slots(0));
         let columns = WitnessColumns {
             distance: &mut distance,
             point1: &mut point1,
@@ -130,9 +132,14 @@ impl Question for Witnesses {
             ..Default::default()
         };
         batch.witnesses(convert(self.0), control, columns)?;
-        let [point1, point2, normal] = [point1, point2, normal].map(Column::Vectors);
-        let [part1, part2] = [part1, part2].map(Column::Indices);
-        Ok([Column::Numbers(distance), point1, point2, normal, part1, part2])
+        Ok([
+            Column::Numbers(distance),
+            Column::Vectors(point1),
+            Column::Vectors(point2),
+            Column::Vectors(normal),
+            Column::Indices(part1),
+            Column::Indices(part2),
+        ])
     }
 }
 
@@ -188,7 +195,8 @@ impl Question for Contacts {
         control: &Control<'_>,
     ) -> Result<Self::Columns<N, D>, BatchError> {
         let mut depth = extent.slots(N::ZERO);
-        let [mut point1, mut point2, mut normal] = [(); 3].map(|()| extent.slots([N::ZERO; D]));
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let (mut point2, mut normal) = (extent.slots([N::ZERO; D]), extent.slots([N::ZERO; D]));
         let columns = ContactColumns {
             depth: &mut depth,
             normal: &mut normal,
@@ -196,8 +204,12 @@ impl Question for Contacts {
             point2: &mut point2,
         };
         batch.contacts(convert(self.0), control, columns)?;
-        let [point1, point2, normal] = [point1, point2, normal].map(Column::Vectors);
-        Ok([Column::Numbers(depth), normal, point1, point2])
+        Ok([
+            Column::Numbers(depth),
+            Column::Vectors(normal),
+            Column::Vectors(point1),
+            Column::Vectors(point2),
+        ])
     }
 }
 
@@ -353,7 +365,8 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
         control: &Control<'_>,
     ) -> Result<[Column<N, D>; 5], BatchError> {
         let (mut time, mut status) = (extent.slots(N::ZERO), extent.slots(None));
-        let [mut point1, mut point2, mut normal] = [(); 3].map(|()| extent.slots([N::ZERO; D]));
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let (mut point2, mut normal) = (extent.slots([N::ZERO; D]), extent.slots([N::ZERO; D]));
         let columns = ImpactColumns {
             time: &mut time,
             normal: &mut normal,
@@ -364,8 +377,13 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
         };
         batch.impacts(self.velocities, &self.options, control, columns)?;
         let is_reached = status.map(|status| status == Some(ImpactStatus::Reached));
-        let [point1, point2, normal] = [point1, point2, normal].map(Column::Vectors);
-        Ok([Column::Numbers(time), normal, point1, point2, Column::Flags(is_reached)])
+        Ok([
+            Column::Numbers(time),
+            Column::Vectors(normal),
+            Column::Vectors(point1),
+            Column::Vectors(point2),
+            Column::Flags(is_reached),
+        ])
     }
 }
 

@@ -1,7 +1,7 @@
 //! Poses as homogeneous matrices in a flat array.
 
 use super::{BatchError, MatrixError, PoseSource};
-use crate::math::{Matrix, Pose, Real, Vector, max};
+use crate::math::{Matrix, Pose, Real, Space, Vector};
 
 /// By how much the scalar product of two columns of a rotation may differ from 0 or 1: 2⁻¹⁶.
 const TOLERANCE: f64 = 1.0 / 65536.0;
@@ -35,6 +35,14 @@ impl<'a, N: Real, const D: usize> Matrices<'a, N, D> {
     /// How many numbers a matrix has.
     const WIDTH: usize = (D + 1) * (D + 1);
 
+    /// The numbers of one matrix.
+    #[inline]
+    fn matrix(&self, index: usize) -> &'a [N] {
+        &self.numbers[index * Self::WIDTH..][..Self::WIDTH]
+    }
+}
+
+impl<'a, N: Space<D>, const D: usize> Matrices<'a, N, D> {
     /// Takes matrices whose last row is 0, …, 0, 1 and whose rotation is orthogonal with the determinant 1.
     ///
     /// The scalar products of the columns of the rotation, which have no unit, may differ from 0 and 1 by 2⁻¹⁶, about
@@ -55,12 +63,6 @@ impl<'a, N: Real, const D: usize> Matrices<'a, N, D> {
             check::<N, D>(matrix).map_err(|error| BatchError::Matrix { index, error })?;
         }
         Ok(Self { numbers })
-    }
-
-    /// The numbers of one matrix.
-    #[inline]
-    fn matrix(&self, index: usize) -> &'a [N] {
-        &self.numbers[index * Self::WIDTH..][..Self::WIDTH]
     }
 }
 
@@ -107,7 +109,7 @@ fn translation_of<N: Real, const D: usize>(matrix: &[N]) -> Vector<N, D> {
     translation
 }
 
-fn check<N: Real, const D: usize>(matrix: &[N]) -> Result<(), MatrixError> {
+fn check<N: Space<D>, const D: usize>(matrix: &[N]) -> Result<(), MatrixError> {
     if let Some(at) = matrix.iter().position(|x| !x.is_finite_number()) {
         let (row, column, value) = (at / (D + 1), at % (D + 1), matrix[at].as_f64());
         return Err(MatrixError::NotFinite { row, column, value });
@@ -122,7 +124,7 @@ fn check<N: Real, const D: usize>(matrix: &[N]) -> Result<(), MatrixError> {
     check_rotation(rotation_of::<N, D>(matrix))
 }
 
-fn check_rotation<N: Real, const D: usize>(rotation: Matrix<N, D>) -> Result<(), MatrixError> {
+fn check_rotation<N: Space<D>, const D: usize>(rotation: Matrix<N, D>) -> Result<(), MatrixError> {
     for one in 0..D {
         for other in one..D {
             let product = rotation.column(one).dot(&rotation.column(other));
@@ -135,50 +137,10 @@ fn check_rotation<N: Real, const D: usize>(rotation: Matrix<N, D>) -> Result<(),
         }
     }
     // Near 1 or -1 now.
-    let determinant = determinant(rotation);
+    let determinant = N::determinant(&rotation);
     let mirrors = determinant <= N::ZERO;
     if mirrors {
         return Err(MatrixError::NotARotation { determinant: determinant.as_f64() });
     }
     Ok(())
-}
-
-/// By elimination with the largest pivot of each column, which in an orthogonal matrix is never near zero.
-fn determinant<N: Real, const D: usize>(mut matrix: Matrix<N, D>) -> N {
-    let mut product = N::ONE;
-    for column in 0..D {
-        let largest = (column..D).fold(N::ZERO, |most, row| max(matrix[(row, column)].abs(), most));
-        let Some(pivot) = (column..D).find(|&row| matrix[(row, column)].abs() == largest) else {
-            return N::ZERO;
-        };
-        if pivot != column {
-            matrix.swap_rows(pivot, column);
-            product = -product;
-        }
-        let value = matrix[(column, column)];
-        product *= value;
-        for row in column + 1..D {
-            let factor = matrix[(row, column)] / value;
-            for next in column..D {
-                let above = matrix[(column, next)];
-                matrix[(row, next)] -= factor * above;
-            }
-        }
-    }
-    product
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn determinants_by_hand() {
-        let swaps = Matrix::<f64, 3>::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
-        assert_eq!(determinant(swaps), 1.0, "a third of a turn about the diagonal");
-        assert_eq!(determinant(-swaps), -1.0, "the same and a mirror");
-        let other = Matrix::<f64, 3>::new(2.0, 1.0, 0.0, 4.0, 0.0, 1.0, 0.0, 1.0, 1.0);
-        assert_eq!(determinant(other), -6.0, "by the rule of Sarrus");
-        assert_eq!(determinant(Matrix::<f32, 2>::new(0.0, -1.0, 1.0, 0.0)), 1.0, "a quarter turn");
-    }
 }

@@ -1,7 +1,7 @@
 //! What is particular to the plane and to space, behind one bound.
 
 use super::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
-use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
+use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector, cross, cross2};
 use crate::tables::Tables;
 use core::fmt::Debug;
 
@@ -32,6 +32,10 @@ pub trait Space<const D: usize>: Real {
 
     /// The isometry that a pose describes, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
+
+    /// The signed area or volume that the columns span.
+    #[doc(hidden)]
+    fn determinant(matrix: &Matrix<Self, D>) -> Self;
 
     /// The entry points compiled in this crate for this scalar and dimension.
     #[doc(hidden)]
@@ -75,6 +79,11 @@ impl<N: Real> Space<2> for N {
     }
 
     #[inline]
+    fn determinant(matrix: &Matrix<N, 2>) -> N {
+        cross2(&matrix.column(0).into(), &matrix.column(1).into())
+    }
+
+    #[inline]
     fn tables() -> &'static Tables<N, 2> {
         N::plane()
     }
@@ -103,6 +112,12 @@ impl<N: Real> Space<3> for N {
         let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
         let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
         Isometry3::from_parts(pose.translation.into(), rotation)
+    }
+
+    #[inline]
+    fn determinant(matrix: &Matrix<N, 3>) -> N {
+        let [x, y, z] = [0, 1, 2].map(|axis| matrix.column(axis).into());
+        cross(&x, &y).dot(&z)
     }
 
     #[inline]
@@ -178,5 +193,17 @@ mod tests {
                 assert!(!is_finite, "{bad} at {index}");
             }
         }
+    }
+
+    #[test]
+    fn determinants_by_hand() {
+        let swaps = Matrix::<f64, 3>::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+        let volume = <f64 as Space<3>>::determinant;
+        assert_eq!(volume(&swaps), 1.0, "a third of a turn about the diagonal");
+        assert_eq!(volume(&-swaps), -1.0, "the same and a mirror");
+        let other = Matrix::<f64, 3>::new(2.0, 1.0, 0.0, 4.0, 0.0, 1.0, 0.0, 1.0, 1.0);
+        assert_eq!(volume(&other), -6.0, "by the rule of Sarrus");
+        let turn = Matrix::<f32, 2>::new(0.0, -1.0, 1.0, 0.0);
+        assert_eq!(<f32 as Space<2>>::determinant(&turn), 1.0, "a quarter turn");
     }
 }
