@@ -1,6 +1,8 @@
-//! Answers as Python objects: columns become NumPy arrays, and the answer about a lone pair scalars.
+//! Answers as Python objects: columns become NumPy arrays, and the answer about a lone element scalars.
 
-use numpy::{PyArray1, PyArrayMethods};
+use core::ops::{Deref, DerefMut};
+
+use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
@@ -8,79 +10,176 @@ use pyo3::types::PyTuple;
 
 use crate::space::Numeric;
 
-/// One fact about each element of a batch.
-pub(crate) enum Column<N, const D: usize> {
-    Numbers(Vec<N>),
-    Vectors(Vec<[N; D]>),
-    Indices(Vec<u32>),
-    Codes(Vec<u8>),
-    Flags(Vec<bool>),
-    Rows(Vec<i64>),
-    Handles(Vec<u64>),
+/// How much is asked.
+#[derive(Clone, Copy)]
+pub(crate) enum Extent {
+    /// One element alone, which is answered by scalars. What is quick takes hardly longer than to release the
+    /// interpreter.
+    Lone { is_quick: bool },
+    /// So many elements, answered by arrays.
+    Many(usize),
 }
 
-impl<N: Numeric<D>, const D: usize> Column<N, D> {
-    /// As an array with one row for each element.
-    pub(crate) fn into_array(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        Ok(match self {
-            Self::Numbers(column) => PyArray1::from_vec(py, column).into_any(),
-            Self::Vectors(column) => {
-                let rows = column.len();
-                PyArray1::from_vec(py, column.into_flattened()).reshape([rows, D])?.into_any()
-            }
-            Self::Indices(column) => PyArray1::from_vec(py, column).into_any(),
-            Self::Codes(column) => PyArray1::from_vec(py, column).into_any(),
-            Self::Flags(column) => PyArray1::from_vec(py, column).into_any(),
-            Self::Rows(column) => PyArray1::from_vec(py, column).into_any(),
-            Self::Handles(column) => PyArray1::from_vec(py, column).into_any(),
-        })
+impl Extent {
+    /// Of arguments that have one element alone, or else `len`.
+    pub(crate) const fn of(is_lone: bool, is_quick: bool, len: usize) -> Self {
+        if is_lone { Self::Lone { is_quick } } else { Self::Many(len) }
     }
 
-    /// The first element alone: a number, or an array of `D` numbers.
-    fn into_scalar(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    /// How many elements there are.
+    pub(crate) const fn len(self) -> usize {
         match self {
-            Self::Numbers(column) => column[0].as_f64().into_bound_py_any(py),
-            Self::Vectors(column) => Ok(PyArray1::from_slice(py, &column[0]).into_any()),
-            Self::Indices(column) => column[0].into_bound_py_any(py),
-            Self::Codes(column) => column[0].into_bound_py_any(py),
-            Self::Flags(column) => column[0].into_bound_py_any(py),
-            Self::Rows(column) => column[0].into_bound_py_any(py),
-            Self::Handles(column) => column[0].into_bound_py_any(py),
+            Self::Lone { .. } => 1,
+            Self::Many(len) => len,
+        }
+    }
+
+    /// Room for one fact about each element.
+    pub(crate) fn slots<T: Clone>(self, empty: T) -> Slots<T> {
+        match self {
+            Self::Lone { .. } => Slots::One([empty]),
+            Self::Many(len) => Slots::Many(vec![empty; len]),
         }
     }
 }
 
-/// Columns as one object: the array itself where there is one column, else a tuple of the class of this name in
-/// `impinge._results`. Of a lone pair it has scalars.
-pub(crate) fn into_python<'py, N: Numeric<D>, const D: usize>(
-    py: Python<'py>,
-    class: Option<&str>,
-    columns: Vec<Column<N, D>>,
-    is_lone: bool,
-) -> PyResult<Bound<'py, PyAny>> {
-    let fields = columns
-        .into_iter()
-        .map(|column| if is_lone { column.into_scalar(py) } else { column.into_array(py) });
-    let mut fields: Vec<Bound<'py, PyAny>> = fields.collect::<PyResult<_>>()?;
-    match class {
-        Some(name) => named_tuple(py, name, PyTuple::new(py, fields)?),
-        None => Ok(fields.remove(0)),
+/// One fact about a lone element, without a list, or about each of many.
+pub(crate) enum Slots<T> {
+    One([T; 1]),
+    Many(Vec<T>),
+}
+
+impl<T> Slots<T> {
+    /// Another fact about each element.
+    pub(crate) fn map<U>(self, other: impl FnMut(T) -> U) -> Slots<U> {
+        match self {
+            Self::One(slot) => Slots::One(slot.map(other)),
+            Self::Many(slots) => slots.into_iter().map(other).collect(),
+        }
     }
 }
 
-/// A value of a class of `impinge._results`. These are tuples with names, so that the constructor of tuples makes them,
-/// which takes half as long as their own.
-fn named_tuple<'py>(
+impl<T> Deref for Slots<T> {
+    type Target = [T];
+
+    fn deref(&self) -> &[T] {
+        match self {
+            Self::One(slot) => slot,
+            Self::Many(slots) => slots,
+        }
+    }
+}
+
+impl<T> DerefMut for Slots<T> {
+    fn deref_mut(&mut self) -> &mut [T] {
+        match self {
+            Self::One(slot) => slot,
+            Self::Many(slots) => slots,
+        }
+    }
+}
+
+impl<T> From<Vec<T>> for Slots<T> {
+    fn from(slots: Vec<T>) -> Self {
+        Self::Many(slots)
+    }
+}
+
+impl<T> FromIterator<T> for Slots<T> {
+    fn from_iter<I: IntoIterator<Item = T>>(slots: I) -> Self {
+        Self::Many(slots.into_iter().collect())
+    }
+}
+
+/// One fact about each element of a batch.
+pub(crate) enum Column<N, const D: usize> {
+    Numbers(Slots<N>),
+    Vectors(Slots<[N; D]>),
+    Indices(Slots<u32>),
+    Codes(Slots<u8>),
+    Flags(Slots<bool>),
+    Rows(Slots<i64>),
+    Handles(Slots<u64>),
+}
+
+/// Of many elements it is an array with one row for each, of a lone one a scalar or an array of `D` numbers.
+impl<'py, N: Numeric<D>, const D: usize> IntoPyObject<'py> for Column<N, D> {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        match self {
+            Self::Numbers(Slots::One([number])) => number.as_f64().into_bound_py_any(py),
+            Self::Numbers(Slots::Many(column)) => Ok(PyArray1::from_vec(py, column).into_any()),
+            Self::Vectors(Slots::One([vector])) => Ok(PyArray1::from_slice(py, &vector).into_any()),
+            Self::Vectors(Slots::Many(column)) => {
+                let rows = column.len();
+                Ok(PyArray1::from_vec(py, column.into_flattened()).reshape([rows, D])?.into_any())
+            }
+            Self::Indices(column) => values(py, column),
+            Self::Codes(column) => values(py, column),
+            Self::Flags(column) => values(py, column),
+            Self::Rows(column) => values(py, column),
+            Self::Handles(column) => values(py, column),
+        }
+    }
+}
+
+/// What is no floating-point number.
+fn values<'py, T: Element + IntoPyObject<'py>>(
     py: Python<'py>,
-    class: &str,
-    fields: Bound<'py, PyTuple>,
+    column: Slots<T>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    /// The module and the constructor of tuples.
-    static FOUND: PyOnceLock<(Py<PyAny>, Py<PyAny>)> = PyOnceLock::new();
-    let (results, make) = FOUND.get_or_try_init(py, || {
-        let results = py.import("impinge._results")?.into_any().unbind();
-        let make = py.get_type::<PyTuple>().getattr("__new__")?.unbind();
-        Ok::<_, PyErr>((results, make))
-    })?;
-    make.bind(py).call1((results.bind(py).getattr(class)?, fields))
+    match column {
+        Slots::One([value]) => value.into_bound_py_any(py),
+        Slots::Many(column) => Ok(PyArray1::from_vec(py, column).into_any()),
+    }
+}
+
+/// Columns as one object: that of the first where there is no class, else a tuple of the class.
+pub(crate) fn into_python<'py, N: Numeric<D>, const D: usize>(
+    py: Python<'py>,
+    class: Option<&Class>,
+    columns: impl IntoIterator<Item = Column<N, D>, IntoIter: ExactSizeIterator>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match class {
+        Some(class) => class.value(PyTuple::new(py, columns)?),
+        None => columns.into_iter().next().expect("an answer has a column").into_pyobject(py),
+    }
+}
+
+/// A class of `impinge._results`, which is looked up once.
+pub(crate) struct Class {
+    name: &'static str,
+    found: PyOnceLock<Py<PyAny>>,
+}
+
+pub(crate) static CLOSEST_POINTS: Class = Class::new("ClosestPoints");
+pub(crate) static WITNESS: Class = Class::new("Witness");
+pub(crate) static CONTACT: Class = Class::new("Contact");
+pub(crate) static IMPACT: Class = Class::new("Impact");
+pub(crate) static NEAREST: Class = Class::new("Nearest");
+pub(crate) static MANIFOLDS: Class = Class::new("Manifolds");
+pub(crate) static PROJECTION: Class = Class::new("Projection");
+pub(crate) static RAY_HIT: Class = Class::new("RayHit");
+
+impl Class {
+    const fn new(name: &'static str) -> Self {
+        Self { name, found: PyOnceLock::new() }
+    }
+
+    /// A value of the class. These classes are tuples with names, so that the constructor of tuples makes values, which
+    /// takes half as long as their own.
+    fn value<'py>(&self, fields: Bound<'py, PyTuple>) -> PyResult<Bound<'py, PyAny>> {
+        static MAKE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let py = fields.py();
+        let make = MAKE.get_or_try_init(py, || {
+            py.get_type::<PyTuple>().getattr("__new__").map(Bound::unbind)
+        })?;
+        let class = self.found.get_or_try_init(py, || {
+            py.import("impinge._results")?.getattr(self.name).map(Bound::unbind)
+        })?;
+        make.bind(py).call1((class, fields))
+    }
 }

@@ -15,7 +15,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::answer::Column;
+use crate::answer::{Column, Extent};
 use crate::error;
 use crate::poses::{self, Poses};
 use crate::shapes::Shape;
@@ -279,13 +279,13 @@ impl<'py> Task for Ask<'_, 'py> {
             }
             Ok((free, pairs, distance))
         };
-        let found = supervise(self.py, count, &self.call, work)?;
+        let found = supervise(self.py, Extent::Many(count), &self.call, work)?;
         let (free, pairs, distance): (Vec<bool>, Vec<[u32; 2]>, Vec<N>) =
             found.map_err(|error| of_batch(&error))?;
-        let pairs = Column::<N, D>::Indices(pairs.into_flattened());
-        [Column::Flags(free), pairs, Column::Numbers(distance)]
+        let pairs = Column::<N, D>::Indices(pairs.into_flattened().into());
+        [Column::Flags(free.into()), pairs, Column::Numbers(distance.into())]
             .into_iter()
-            .map(|column| column.into_array(self.py))
+            .map(|column| column.into_pyobject(self.py))
             .collect()
     }
 }

@@ -7,8 +7,7 @@
 use pyo3::prelude::*;
 
 use crate::pairs::{
-    Closest, Contacts, Distances, Form, ImpactCall, Manifolds, Nearest, PairCall, Proximities,
-    Witnesses,
+    Closest, Contacts, Distances, ImpactCall, Manifolds, Nearest, PairCall, Proximities, Witnesses,
 };
 use crate::points;
 use crate::points::{PointQuestion, ask_points};
@@ -71,8 +70,7 @@ fn distance<'py>(
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Distances, Form::ByArguments)
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Distances)
 }
 
 /// The nearest points of two solids that are at most `max_distance` apart.
@@ -96,8 +94,7 @@ fn closest_points<'py>(
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Closest(max_distance), Form::ByArguments)
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Closest(max_distance))
 }
 
 /// The nearest or deepest points of two shapes, with the signed distance, the normal and the parts.
@@ -122,8 +119,7 @@ fn witness<'py>(
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Witnesses(max_distance), Form::ByArguments)
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Witnesses(max_distance))
 }
 
 /// Whether two solids intersect (0), are at most `margin` apart (1), or farther (2): see `Proximity`.
@@ -145,8 +141,7 @@ fn proximity<'py>(
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Proximities(margin), Form::ByArguments)
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Proximities(margin))
 }
 
 /// The contact of two solids that overlap, touch, or are at most `prediction` apart.
@@ -171,8 +166,7 @@ fn contact<'py>(
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Contacts(prediction), Form::ByArguments)
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Contacts(prediction))
 }
 
 /// All contact points of each pair that is at most `prediction` apart.
@@ -199,7 +193,7 @@ fn contact_manifolds<'py>(
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
     PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Manifolds { prediction, max_points: max_points.map(|given| given.0) }, Form::Columns)
+        .ask(Manifolds { prediction, max_points: max_points.map(|given| given.0) })
 }
 
 /// The nearest pair of a batch: `Nearest(pair, distance)`, or -1 and an infinite distance beyond `max_distance`.
@@ -222,8 +216,7 @@ fn nearest<'py>(
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    PairCall::new([shape1, poses1, shape2, poses2], threads, progress)
-        .ask(Nearest(max_distance), Form::Single)
+    PairCall::new([shape1, poses1, shape2, poses2], threads, progress).ask(Nearest(max_distance))
 }
 
 /// When two moving solids first come within `target_distance`.

@@ -2,7 +2,8 @@
 //!
 //! Python gives shapes, arrays and limits; [`space`] chooses the scalar and the dimension, and everything behind it is
 //! generic. Arrays of the right type and layout are read where they lie. The interpreter is released while the library
-//! works ([`supervise`]), and columns come back as NumPy arrays without a copy ([`answer`]).
+//! works ([`supervise`]), and columns come back as NumPy arrays without a copy ([`answer`]). A question about a lone element
+//! is a batch of one whose slots need no list; about convex solids it is over before the interpreter would be released.
 //!
 //! What reads arguments of other forms (lists, rotations of SciPy, arrays of other types) is written in Python, in
 //! `impinge/_poses.py`; the way from a shape and a matrix to an answer is short.

@@ -10,7 +10,10 @@ use impinge::query::{ImpactOptions, ImpactStatus, Proximity};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
-use crate::answer::{Column, into_python};
+use crate::answer::{
+    CLOSEST_POINTS, CONTACT, Class, Column, Extent, IMPACT, MANIFOLDS, NEAREST, Slots, WITNESS,
+    into_python,
+};
 use crate::error::{self, not_nan};
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
@@ -21,24 +24,33 @@ use crate::vectors::Vectors;
 
 /// A question about every pair of a batch.
 pub(crate) trait Question: Sync {
-    /// The class of the answers in `impinge._results`; without, the only column is the answer.
-    const CLASS: Option<&'static str>;
+    /// Answers as columns.
+    type Columns<N: Numeric<D>, const D: usize>: IntoIterator<Item = Column<N, D>, IntoIter: ExactSizeIterator>
+        + Send;
+
+    /// The class of the answers; without, the only column is the answer.
+    fn class(&self) -> Option<&'static Class>;
 
     /// What limits the answers, and its name in Python.
     fn limit(&self) -> (&'static str, f64);
 
-    /// Answers as columns.
+    /// Asks about a batch of this extent.
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        extent: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError>;
+    ) -> Result<Self::Columns<N, D>, BatchError>;
 }
 
 pub(crate) struct Distances;
 
 impl Question for Distances {
-    const CLASS: Option<&'static str> = None;
+    type Columns<N: Numeric<D>, const D: usize> = [Column<N, D>; 1];
+
+    fn class(&self) -> Option<&'static Class> {
+        None
+    }
 
     fn limit(&self) -> (&'static str, f64) {
         ("", 0.0)
@@ -47,11 +59,12 @@ impl Question for Distances {
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        extent: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
-        let mut distance = vec![N::ZERO; batch.len()];
+    ) -> Result<Self::Columns<N, D>, BatchError> {
+        let mut distance = extent.slots(N::ZERO);
         batch.distances(control, &mut distance)?;
-        Ok(vec![Column::Numbers(distance)])
+        Ok([Column::Numbers(distance)])
     }
 }
 
@@ -59,7 +72,11 @@ impl Question for Distances {
 pub(crate) struct Closest(pub(crate) f64);
 
 impl Question for Closest {
-    const CLASS: Option<&'static str> = Some("ClosestPoints");
+    type Columns<N: Numeric<D>, const D: usize> = [Column<N, D>; 3];
+
+    fn class(&self) -> Option<&'static Class> {
+        Some(&CLOSEST_POINTS)
+    }
 
     fn limit(&self) -> (&'static str, f64) {
         ("max_distance", self.0)
@@ -68,15 +85,16 @@ impl Question for Closest {
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        extent: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
-        let (len, zeros) = (batch.len(), [N::ZERO; D]);
-        let (mut distance, mut point1, mut point2) =
-            (vec![N::ZERO; len], vec![zeros; len], vec![zeros; len]);
+    ) -> Result<Self::Columns<N, D>, BatchError> {
+        let mut distance = extent.slots(N::ZERO);
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let mut point2 = extent.slots([N::ZERO; D]);
         let columns =
             ClosestColumns { distance: &mut distance, point1: &mut point1, point2: &mut point2 };
         batch.closest_points(convert(self.0), control, columns)?;
-        Ok(vec![Column::Numbers(distance), Column::Vectors(point1), Column::Vectors(point2)])
+        Ok([Column::Numbers(distance), Column::Vectors(point1), Column::Vectors(point2)])
     }
 }
 
@@ -84,7 +102,11 @@ impl Question for Closest {
 pub(crate) struct Witnesses(pub(crate) f64);
 
 impl Question for Witnesses {
-    const CLASS: Option<&'static str> = Some("Witness");
+    type Columns<N: Numeric<D>, const D: usize> = [Column<N, D>; 6];
+
+    fn class(&self) -> Option<&'static Class> {
+        Some(&WITNESS)
+    }
 
     fn limit(&self) -> (&'static str, f64) {
         ("max_distance", self.0)
@@ -93,12 +115,13 @@ impl Question for Witnesses {
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        extent: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
-        let (len, zeros) = (batch.len(), [N::ZERO; D]);
-        let mut distance = vec![N::ZERO; len];
-        let [mut point1, mut point2, mut normal] = [(); 3].map(|()| vec![zeros; len]);
-        let [mut part1, mut part2] = [(); 2].map(|()| vec![0; len]);
+    ) -> Result<Self::Columns<N, D>, BatchError> {
+        let mut distance = extent.slots(N::ZERO);
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let (mut point2, mut normal) = (extent.slots([N::ZERO; D]), extent.slots([N::ZERO; D]));
+        let (mut part1, mut part2) = (extent.slots(0), extent.slots(0));
         let columns = WitnessColumns {
             distance: &mut distance,
             point1: &mut point1,
@@ -109,9 +132,14 @@ impl Question for Witnesses {
             ..Default::default()
         };
         batch.witnesses(convert(self.0), control, columns)?;
-        let [point1, point2, normal] = [point1, point2, normal].map(Column::Vectors);
-        let [part1, part2] = [part1, part2].map(Column::Indices);
-        Ok(vec![Column::Numbers(distance), point1, point2, normal, part1, part2])
+        Ok([
+            Column::Numbers(distance),
+            Column::Vectors(point1),
+            Column::Vectors(point2),
+            Column::Vectors(normal),
+            Column::Indices(part1),
+            Column::Indices(part2),
+        ])
     }
 }
 
@@ -119,7 +147,11 @@ impl Question for Witnesses {
 pub(crate) struct Proximities(pub(crate) f64);
 
 impl Question for Proximities {
-    const CLASS: Option<&'static str> = None;
+    type Columns<N: Numeric<D>, const D: usize> = [Column<N, D>; 1];
+
+    fn class(&self) -> Option<&'static Class> {
+        None
+    }
 
     fn limit(&self) -> (&'static str, f64) {
         ("margin", self.0)
@@ -128,16 +160,17 @@ impl Question for Proximities {
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        extent: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
-        let mut found = vec![Proximity::Disjoint; batch.len()];
+    ) -> Result<Self::Columns<N, D>, BatchError> {
+        let mut found = extent.slots(Proximity::Disjoint);
         batch.proximities(convert(self.0), control, &mut found)?;
         let code = |proximity| match proximity {
             Proximity::Intersecting => 0,
             Proximity::WithinMargin => 1,
             Proximity::Disjoint => 2,
         };
-        Ok(vec![Column::Codes(found.into_iter().map(code).collect())])
+        Ok([Column::Codes(found.map(code))])
     }
 }
 
@@ -145,7 +178,11 @@ impl Question for Proximities {
 pub(crate) struct Contacts(pub(crate) f64);
 
 impl Question for Contacts {
-    const CLASS: Option<&'static str> = Some("Contact");
+    type Columns<N: Numeric<D>, const D: usize> = [Column<N, D>; 4];
+
+    fn class(&self) -> Option<&'static Class> {
+        Some(&CONTACT)
+    }
 
     fn limit(&self) -> (&'static str, f64) {
         ("prediction", self.0)
@@ -154,11 +191,12 @@ impl Question for Contacts {
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        extent: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
-        let (len, zeros) = (batch.len(), [N::ZERO; D]);
-        let mut depth = vec![N::ZERO; len];
-        let [mut point1, mut point2, mut normal] = [(); 3].map(|()| vec![zeros; len]);
+    ) -> Result<Self::Columns<N, D>, BatchError> {
+        let mut depth = extent.slots(N::ZERO);
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let (mut point2, mut normal) = (extent.slots([N::ZERO; D]), extent.slots([N::ZERO; D]));
         let columns = ContactColumns {
             depth: &mut depth,
             normal: &mut normal,
@@ -166,8 +204,12 @@ impl Question for Contacts {
             point2: &mut point2,
         };
         batch.contacts(convert(self.0), control, columns)?;
-        let [point1, point2, normal] = [point1, point2, normal].map(Column::Vectors);
-        Ok(vec![Column::Numbers(depth), normal, point1, point2])
+        Ok([
+            Column::Numbers(depth),
+            Column::Vectors(normal),
+            Column::Vectors(point1),
+            Column::Vectors(point2),
+        ])
     }
 }
 
@@ -175,7 +217,11 @@ impl Question for Contacts {
 pub(crate) struct Nearest(pub(crate) f64);
 
 impl Question for Nearest {
-    const CLASS: Option<&'static str> = Some("Nearest");
+    type Columns<N: Numeric<D>, const D: usize> = [Column<N, D>; 2];
+
+    fn class(&self) -> Option<&'static Class> {
+        Some(&NEAREST)
+    }
 
     fn limit(&self) -> (&'static str, f64) {
         ("max_distance", self.0)
@@ -184,12 +230,13 @@ impl Question for Nearest {
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        _: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
+    ) -> Result<Self::Columns<N, D>, BatchError> {
         let found = batch.nearest(convert(self.0), control)?;
         let (index, distance) = found.unwrap_or((usize::MAX, N::INFINITY));
         let index = i64::try_from(index).unwrap_or(-1);
-        Ok(vec![Column::Rows(vec![index]), Column::Numbers(vec![distance])])
+        Ok([Column::Rows(Slots::One([index])), Column::Numbers(Slots::One([distance]))])
     }
 }
 
@@ -200,7 +247,11 @@ pub(crate) struct Manifolds {
 }
 
 impl Question for Manifolds {
-    const CLASS: Option<&'static str> = Some("Manifolds");
+    type Columns<N: Numeric<D>, const D: usize> = [Column<N, D>; 8];
+
+    fn class(&self) -> Option<&'static Class> {
+        Some(&MANIFOLDS)
+    }
 
     fn limit(&self) -> (&'static str, f64) {
         ("prediction", self.prediction)
@@ -209,18 +260,21 @@ impl Question for Manifolds {
     fn answer<N: Numeric<D>, const D: usize>(
         &self,
         batch: &PairBatch<'_, N, D>,
+        _: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
+    ) -> Result<Self::Columns<N, D>, BatchError> {
         let mut rows = ManifoldRows::new();
         let prediction = ContactPrediction::new(convert(self.prediction), N::ZERO, N::ZERO);
         batch.manifolds(&prediction, self.max_points, control, &mut rows)?;
         let ManifoldRows { starts, manifold, point1, point2, normal, depth, part1, part2, .. } =
             rows;
         let starts = starts.into_iter().map(|start| i64::try_from(start).unwrap_or(i64::MAX));
-        let [point1, point2, normal] = [point1, point2, normal].map(Column::Vectors);
-        let [manifold, part1, part2] = [manifold, part1, part2].map(Column::Indices);
-        let starts = Column::Rows(starts.collect());
-        Ok(vec![starts, Column::Numbers(depth), normal, point1, point2, manifold, part1, part2])
+        let [point1, point2, normal] =
+            [point1, point2, normal].map(|column| Column::Vectors(column.into()));
+        let [manifold, part1, part2] =
+            [manifold, part1, part2].map(|column| Column::Indices(column.into()));
+        let (starts, depth) = (Column::Rows(starts.collect()), Column::Numbers(depth.into()));
+        Ok([starts, depth, normal, point1, point2, manifold, part1, part2])
     }
 }
 
@@ -237,17 +291,17 @@ impl<'a, 'py> PairCall<'a, 'py> {
         threads: Option<Threads>,
         progress: Option<Py<PyAny>>,
     ) -> Self {
-        let side1 = SideArgument { shapes: shape1, poses: poses1, names: ["shape1", "poses1"] };
-        let side2 = SideArgument { shapes: shape2, poses: poses2, names: ["shape2", "poses2"] };
+        let side1 = SideArgument { shapes: shape1, poses: poses1, names: &["shape1", "poses1"] };
+        let side2 = SideArgument { shapes: shape2, poses: poses2, names: &["shape2", "poses2"] };
         Self { py: shape1.py(), sides: [side1, side2], call: Call::new(threads, progress) }
     }
 
     /// Asks about the pairs.
-    pub(crate) fn ask<Q: Question>(self, question: Q, form: Form) -> PyResult<Bound<'py, PyAny>> {
+    pub(crate) fn ask<Q: Question>(self, question: Q) -> PyResult<Bound<'py, PyAny>> {
         let (name, value) = question.limit();
         not_nan(name, value)?;
         let kind = kind_of(self.sides[0].shapes, "shape1")?;
-        run_in(kind, Ask { call: self, question, form, kind })
+        run_in(kind, Ask { call: self, question, kind })
     }
 
     /// Asks when the shapes of each pair meet.
@@ -272,21 +326,9 @@ impl<'a, 'py> PairCall<'a, 'py> {
     }
 }
 
-/// Whether an answer is a row of scalars or columns.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Form {
-    /// Scalars for a lone pair, else columns.
-    ByArguments,
-    /// Columns.
-    Columns,
-    /// One answer about all pairs.
-    Single,
-}
-
 struct Ask<'a, 'py, Q> {
     call: PairCall<'a, 'py>,
     question: Q,
-    form: Form,
     kind: Kind,
 }
 
@@ -299,15 +341,13 @@ impl<'py, Q: Question> Task for Ask<'_, 'py, Q> {
         let (poses1, poses2) = (given1.poses()?, given2.poses()?);
         let batch = PairBatch::try_new(given1.side(&*poses1)?, given2.side(&*poses2)?);
         let batch = batch.map_err(|error| error::of_batch(&error, "poses2"))?;
+        let is_lone = given1.is_lone() && given2.is_lone();
+        let is_quick = given1.is_quick() && given2.is_quick();
+        let extent = Extent::of(is_lone, is_quick, batch.len());
         let found =
-            supervise(py, batch.len(), &call, |control| self.question.answer(&batch, control))?;
+            supervise(py, extent, &call, |control| self.question.answer(&batch, extent, control))?;
         let columns = found.map_err(|error| error::of_batch(&error, "poses2"))?;
-        let is_lone = match self.form {
-            Form::ByArguments => given1.is_lone() && given2.is_lone(),
-            Form::Columns => false,
-            Form::Single => true,
-        };
-        into_python(py, Q::CLASS, columns, is_lone)
+        into_python(py, self.question.class(), columns)
     }
 }
 
@@ -321,11 +361,12 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
     fn answer(
         &self,
         batch: &PairBatch<'_, N, D>,
+        extent: Extent,
         control: &Control<'_>,
-    ) -> Result<Vec<Column<N, D>>, BatchError> {
-        let (len, zeros) = (batch.len(), [N::ZERO; D]);
-        let (mut time, mut status) = (vec![N::ZERO; len], vec![None; len]);
-        let [mut point1, mut point2, mut normal] = [(); 3].map(|()| vec![zeros; len]);
+    ) -> Result<[Column<N, D>; 5], BatchError> {
+        let (mut time, mut status) = (extent.slots(N::ZERO), extent.slots(None));
+        let mut point1 = extent.slots([N::ZERO; D]);
+        let (mut point2, mut normal) = (extent.slots([N::ZERO; D]), extent.slots([N::ZERO; D]));
         let columns = ImpactColumns {
             time: &mut time,
             normal: &mut normal,
@@ -335,10 +376,14 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
             ..Default::default()
         };
         batch.impacts(self.velocities, &self.options, control, columns)?;
-        let is_reached = status.into_iter().map(|status| status == Some(ImpactStatus::Reached));
-        let [point1, point2, normal] = [point1, point2, normal].map(Column::Vectors);
-        let is_reached = Column::Flags(is_reached.collect());
-        Ok(vec![Column::Numbers(time), normal, point1, point2, is_reached])
+        let is_reached = status.map(|status| status == Some(ImpactStatus::Reached));
+        Ok([
+            Column::Numbers(time),
+            Column::Vectors(normal),
+            Column::Vectors(point1),
+            Column::Vectors(point2),
+            Column::Flags(is_reached),
+        ])
     }
 }
 
@@ -371,11 +416,14 @@ impl<'py> Task for AskImpacts<'_, 'py> {
         let batch = batch.map_err(|error| error::of_batch(&error, "poses2"))?;
         let options = self.impacts.options();
         let impacts = Impacts { velocities: [velocity1.rows()?, velocity2.rows()?], options };
-        let found = supervise(py, batch.len(), &call, |control| impacts.answer(&batch, control))?;
-        let columns = found.map_err(|error| error::of_batch(&error, "velocities"))?;
         let is_lone =
             given1.is_lone() && given2.is_lone() && velocity1.is_lone() && velocity2.is_lone();
-        into_python(py, Some("Impact"), columns, is_lone)
+        let is_quick = given1.is_quick() && given2.is_quick();
+        let extent = Extent::of(is_lone, is_quick, batch.len());
+        let found =
+            supervise(py, extent, &call, |control| impacts.answer(&batch, extent, control))?;
+        let columns = found.map_err(|error| error::of_batch(&error, "velocities"))?;
+        into_python(py, Some(&IMPACT), columns)
     }
 }
 
@@ -396,7 +444,7 @@ impl<'py> Task for AskWithin<'_, 'py> {
         let (poses1, poses2) = (given1.poses()?, given2.poses()?);
         let (side1, side2) = (given1.side(&*poses1)?, given2.side(&*poses2)?);
         let (len, distance) = (side1.len().max(side2.len()), convert(self.distance));
-        let found = supervise(py, len, &call, |control| {
+        let found = supervise(py, Extent::Many(len), &call, |control| {
             if self.is_two_sided {
                 pairs_within(&side1, &side2, distance, control)
             } else {

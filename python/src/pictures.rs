@@ -73,7 +73,7 @@ pub(crate) fn picture_of<'py>(
     view: PictureView,
 ) -> PyResult<(&'static str, Bound<'py, PyBytes>)> {
     let kind = kind_of(shapes, "shapes")?;
-    let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
+    let side = SideArgument { shapes, poses, names: &["shapes", "poses"] };
     run_in(kind, Draw { side, kind, view })
 }
 

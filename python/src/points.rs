@@ -4,7 +4,7 @@ use impinge::batch::{HitColumns, PointBatch, ProjectionColumns, RayColumns};
 use impinge::math::na::convert;
 use pyo3::prelude::*;
 
-use crate::answer::{Column, into_python};
+use crate::answer::{Column, Extent, PROJECTION, RAY_HIT, into_python};
 use crate::error::{self, not_nan};
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
@@ -39,7 +39,7 @@ pub(crate) fn ask_points<'py>(
     call: Call,
 ) -> PyResult<Bound<'py, PyAny>> {
     let kind = kind_of(shape, "shape")?;
-    let side = SideArgument { shapes: shape, poses, names: ["shape", "poses"] };
+    let side = SideArgument { shapes: shape, poses, names: &["shape", "poses"] };
     run_in(kind, AskPoints { side, points, question, call, kind })
 }
 
@@ -53,21 +53,22 @@ impl<'py> Task for AskPoints<'_, 'py> {
         let poses = given.poses()?;
         let batch = PointBatch::try_new(given.side(&*poses)?, points.rows()?);
         let batch = batch.map_err(|error| error::of_batch(&error, "points"))?;
-        let len = batch.len();
-        let found = supervise(py, len, &self.call, |control| match self.question {
+        let is_lone = given.is_lone() && points.is_lone();
+        let extent = Extent::of(is_lone, given.is_quick(), batch.len());
+        let found = supervise(py, extent, &self.call, |control| match self.question {
             PointQuestion::SignedDistance => {
-                let mut distance = vec![N::ZERO; len];
+                let mut distance = extent.slots(N::ZERO);
                 batch.signed_distances(control, &mut distance)?;
                 Ok(vec![Column::Numbers(distance)])
             }
             PointQuestion::Contains => {
-                let mut is_inside = vec![false; len];
+                let mut is_inside = extent.slots(false);
                 batch.contains(control, &mut is_inside)?;
                 Ok(vec![Column::Flags(is_inside)])
             }
             PointQuestion::Project { solid } => {
-                let (mut point, mut is_inside) = (vec![[N::ZERO; D]; len], vec![false; len]);
-                let mut part = vec![0; len];
+                let mut point = extent.slots([N::ZERO; D]);
+                let (mut is_inside, mut part) = (extent.slots(false), extent.slots(0));
                 let columns = ProjectionColumns {
                     point: &mut point,
                     is_inside: &mut is_inside,
@@ -80,8 +81,8 @@ impl<'py> Task for AskPoints<'_, 'py> {
         })?;
         let columns: Vec<Column<N, D>> =
             found.map_err(|error| error::of_batch(&error, "points"))?;
-        let class = matches!(self.question, PointQuestion::Project { .. }).then_some("Projection");
-        into_python(py, class, columns, given.is_lone() && points.is_lone())
+        let class = matches!(self.question, PointQuestion::Project { .. }).then_some(&PROJECTION);
+        into_python(py, class, columns)
     }
 }
 
@@ -104,7 +105,7 @@ pub(crate) fn cast_rays<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     not_nan("max_time", max_time)?;
     let kind = kind_of(shape, "shape")?;
-    let side = SideArgument { shapes: shape, poses, names: ["shape", "poses"] };
+    let side = SideArgument { shapes: shape, poses, names: &["shape", "poses"] };
     run_in(kind, CastRays { side, rays: [origins, directions], max_time, solid, call, kind })
 }
 
@@ -122,10 +123,11 @@ impl<'py> Task for CastRays<'_, 'py> {
         let rays = rays.map_err(|error| error::of_batch(&error, "origins"))?;
         let rays = rays.until(convert(self.max_time));
         let rays = if self.solid { rays } else { rays.hollow() };
-        let len = rays.len();
-        let found = supervise(py, len, &self.call, |control| {
-            let (mut time, mut normal) = (vec![N::ZERO; len], vec![[N::ZERO; D]; len]);
-            let mut part = vec![0; len];
+        let is_lone = given.is_lone() && origins.is_lone() && directions.is_lone();
+        let extent = Extent::of(is_lone, given.is_quick(), rays.len());
+        let found = supervise(py, extent, &self.call, |control| {
+            let (mut time, mut normal) = (extent.slots(N::ZERO), extent.slots([N::ZERO; D]));
+            let mut part = extent.slots(0);
             let columns = HitColumns {
                 time: &mut time,
                 normal: &mut normal,
@@ -137,7 +139,6 @@ impl<'py> Task for CastRays<'_, 'py> {
         })?;
         let columns: [Column<N, D>; 3] =
             found.map_err(|error| error::of_batch(&error, "origins"))?;
-        let is_lone = given.is_lone() && origins.is_lone() && directions.is_lone();
-        into_python(py, Some("RayHit"), columns.into(), is_lone)
+        into_python(py, Some(&RAY_HIT), columns)
     }
 }

@@ -1,76 +1,81 @@
-//! Poses as arguments: `None`, or matrices of the scalar of the shapes, read where they lie.
+//! Poses as arguments: `None`, or matrices of the scalar of the shapes.
 
-use impinge::batch::{Matrices, OnePose, PoseSource};
+use core::ops::Deref;
+
+use impinge::batch::{AsPose, Matrices, OnePose, PoseSource};
 use impinge::math::Pose;
-use numpy::{
-    Element, PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods,
-};
+use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::error;
 use crate::space::Numeric;
+use crate::vectors::Numbers;
 
 /// An argument with poses.
 pub(crate) struct Poses<'py, N: Numeric<D>, const D: usize> {
     /// What Python calls it.
     name: &'static str,
-    given: GivenPoses<'py, N>,
-}
-
-/// One pose or many.
-enum GivenPoses<'py, N: Element> {
-    /// The identity.
-    Identity,
-    /// A copy of a matrix (D+1, D+1): sooner made than a lock on the array.
-    One(Vec<N>),
-    /// An array of the shape (n, D+1, D+1) in C order, which is read where it lies.
-    Many(PyReadonlyArrayDyn<'py, N>),
-}
-
-impl<'py, N: Element> GivenPoses<'py, N> {
-    /// Of an array of the right shape and layout.
-    fn of(array: &Bound<'py, PyArrayDyn<N>>) -> PyResult<Self> {
-        Ok(if array.ndim() == 2 {
-            Self::One(array.to_vec()?)
-        } else {
-            Self::Many(array.try_readonly()?)
-        })
-    }
+    /// Of a matrix (D+1, D+1) or an array (n, D+1, D+1); without, it is the identity.
+    given: Option<Numbers<'py, N>>,
 }
 
 impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
     /// Takes an argument; what is no array of the right type and layout goes through `impinge._poses.matrices`.
     pub(crate) fn of(given: &Bound<'py, PyAny>, name: &'static str) -> PyResult<Self> {
         if given.is_none() {
-            return Ok(Self { name, given: GivenPoses::Identity });
+            return Ok(Self { name, given: None });
         }
         if let Ok(array) = given.cast::<PyArrayDyn<N>>()
             && is_usable::<D>(array.shape())
             && array.is_c_contiguous()
         {
-            return Ok(Self { name, given: GivenPoses::of(array)? });
+            return Ok(Self { name, given: Some(Numbers::of(array, 2)?) });
         }
         let py = given.py();
         let dtype = N::get_dtype(py);
         let reader = py.import("impinge._poses")?.getattr("matrices")?;
         let array = reader.call1((given, D, dtype, name))?;
-        Ok(Self { name, given: GivenPoses::of(array.cast::<PyArrayDyn<N>>()?)? })
+        Ok(Self { name, given: Some(Numbers::of(array.cast::<PyArrayDyn<N>>()?, 2)?) })
     }
 
     /// There is one pose, not an array of poses.
     pub(crate) fn is_lone(&self) -> bool {
-        !matches!(self.given, GivenPoses::Many(_))
+        self.given.as_ref().is_none_or(Numbers::is_lone)
     }
 
     /// As the library reads them.
-    pub(crate) fn source(&self) -> PyResult<Box<dyn PoseSource<N, D> + '_>> {
-        let numbers = match &self.given {
-            GivenPoses::Identity => return Ok(Box::new(OnePose(Pose::identity()))),
-            GivenPoses::One(numbers) => numbers,
-            GivenPoses::Many(matrices) => matrices.as_slice()?,
+    pub(crate) fn source(&self) -> PyResult<Source<'_, N, D>> {
+        let Some(numbers) = &self.given else {
+            return Ok(Source::Identity(OnePose(Identity)));
         };
-        let matrices = Matrices::try_new(numbers);
-        Ok(Box::new(matrices.map_err(|error| error::of_batch(&error, self.name))?))
+        let matrices = Matrices::try_new(numbers.as_slice()?);
+        Ok(Source::Matrices(matrices.map_err(|error| error::of_batch(&error, self.name))?))
+    }
+}
+
+/// The pose of no argument.
+pub(crate) struct Identity;
+
+impl<N: Numeric<D>, const D: usize> AsPose<N, D> for Identity {
+    fn to_pose(&self) -> Pose<N, D> {
+        Pose::identity()
+    }
+}
+
+/// The poses of an argument.
+pub(crate) enum Source<'a, N: Numeric<D>, const D: usize> {
+    Identity(OnePose<Identity>),
+    Matrices(Matrices<'a, N, D>),
+}
+
+impl<'a, N: Numeric<D>, const D: usize> Deref for Source<'a, N, D> {
+    type Target = dyn PoseSource<N, D> + 'a;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Identity(identity) => identity,
+            Self::Matrices(matrices) => matrices,
+        }
     }
 }
 

@@ -31,7 +31,7 @@ pub(crate) fn scene_bytes<'py>(
     poses: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let kind = kind_of(shapes, "shapes")?;
-    let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
+    let side = SideArgument { shapes, poses, names: &["shapes", "poses"] };
     run_in(kind, Write { side, kind })
 }
 

@@ -295,10 +295,10 @@ impl Description<'_, '_> {
 }
 
 /// One shape, a shape for each element, or an object with the fields `shapes` and `picks`, as an argument.
-pub(crate) struct ShapesArgument<'py, N: Numeric<D>, const D: usize> {
-    shapes: Vec<ShapeHandle<N, D>>,
-    picks: Option<PyReadonlyArray1<'py, u32>>,
-    is_lone: bool,
+pub(crate) enum ShapesArgument<'a, 'py, N: Numeric<D>, const D: usize> {
+    One(&'a ShapeHandle<N, D>),
+    Each(Vec<ShapeHandle<N, D>>),
+    Picked { shapes: Vec<ShapeHandle<N, D>>, picks: PyReadonlyArray1<'py, u32> },
 }
 
 /// The shapes of an argument, and what picks among them.
@@ -332,39 +332,50 @@ pub(crate) fn kind_of(argument: &Bound<'_, PyAny>, name: &str) -> PyResult<Kind>
     }
 }
 
-impl<'py, N: Numeric<D>, const D: usize> ShapesArgument<'py, N, D> {
-    pub(crate) fn of(argument: &Bound<'py, PyAny>, name: &str, kind: Kind) -> PyResult<Self> {
+impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
+    pub(crate) fn of(argument: &'a Bound<'py, PyAny>, name: &str, kind: Kind) -> PyResult<Self> {
         if let Ok(shape) = argument.cast::<Shape>() {
-            let shapes = vec![shape.get().handle(name, kind)?.clone()];
-            return Ok(Self { shapes, picks: None, is_lone: true });
+            return Ok(Self::One(shape.get().handle(name, kind)?));
         }
         let (shapes, picks) = given(argument, name)?;
         let handles = shapes
             .iter()
             .enumerate()
             .map(|(index, shape)| shape.handle(&format!("{name}[{index}]"), kind).cloned());
-        Ok(Self { shapes: handles.collect::<PyResult<_>>()?, picks, is_lone: false })
+        let shapes = handles.collect::<PyResult<_>>()?;
+        Ok(match picks {
+            None => Self::Each(shapes),
+            Some(picks) => Self::Picked { shapes, picks },
+        })
     }
 
-    /// There is one shape, not a sequence.
-    pub(crate) const fn is_lone(&self) -> bool {
-        self.is_lone
+    /// The only shape, where there is one, not a sequence.
+    pub(crate) const fn lone(&self) -> Option<&'a ShapeHandle<N, D>> {
+        match self {
+            Self::One(shape) => Some(shape),
+            _ => None,
+        }
     }
 
     /// The shape of an element; a single one is for all.
     pub(crate) fn at(&self, element: usize) -> &ShapeHandle<N, D> {
         let index = |len| if len == 1 { 0 } else { element };
-        match self.picks.as_ref().and_then(|picks| picks.as_slice().ok()) {
-            None => &self.shapes[index(self.shapes.len())],
-            Some(picks) => &self.shapes[picks[index(picks.len())] as usize],
+        match self {
+            Self::One(shape) => shape,
+            Self::Each(shapes) => &shapes[index(shapes.len())],
+            Self::Picked { shapes, picks } => {
+                let picks = picks.as_array();
+                &shapes[picks[index(picks.len())] as usize]
+            }
         }
     }
 
     /// As the library reads them.
     pub(crate) fn shapes(&self) -> PyResult<Shapes<'_, N, D>> {
-        Ok(match &self.picks {
-            None => Shapes::Each(&self.shapes),
-            Some(picks) => Shapes::Picked { shapes: &self.shapes, picks: picks.as_slice()? },
+        Ok(match self {
+            Self::One(shape) => Shapes::One(&***shape),
+            Self::Each(shapes) => Shapes::Each(shapes),
+            Self::Picked { shapes, picks } => Shapes::Picked { shapes, picks: picks.as_slice()? },
         })
     }
 }

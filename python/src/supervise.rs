@@ -16,6 +16,8 @@ use pyo3::prelude::*;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
+use crate::answer::Extent;
+
 /// Batches of at most so many elements are done by the calling thread: the library does not share them out either.
 const SMALL: usize = 64;
 
@@ -68,17 +70,21 @@ pub(crate) fn count(given: Borrowed<'_, '_, PyAny>, name: &str) -> PyResult<usiz
 /// Hears how many elements are done, and may stop the work.
 type Report<'a> = &'a (dyn Fn(usize) -> ControlFlow<()> + Sync);
 
-/// Does `work` about so many elements with the interpreter released.
+/// Does `work` about so many elements, with the interpreter released unless it is quick.
 ///
 /// # Errors
 /// What the work and the progress bar raise, and `KeyboardInterrupt`; the work has stopped then.
+#[inline]
 pub(crate) fn supervise<T: Send>(
     py: Python<'_>,
-    len: usize,
+    extent: Extent,
     call: &Call,
     work: impl Fn(&Control<'_>) -> Result<T, BatchError> + Sync,
 ) -> PyResult<Result<T, BatchError>> {
-    released(py, len, call, |report| match report {
+    if matches!(extent, Extent::Lone { is_quick: true }) && call.progress.is_none() {
+        return Ok(work(&Control::new()));
+    }
+    released(py, extent.len(), call, |report| match report {
         Some(report) => work(&Control::with_progress(report)),
         None => work(&Control::new()),
     })

@@ -8,6 +8,7 @@ use numpy::{PyArray1, PyArray3, PyArrayDyn, PyArrayMethods, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::answer::Extent;
 use crate::error;
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
@@ -44,7 +45,7 @@ fn boxes<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Object<'py>> {
     let kind = kind_of(shapes, "shapes")?;
-    let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
+    let side = SideArgument { shapes, poses, names: &["shapes", "poses"] };
     run_in(kind, AskBoxes { side, kind, call: Call::new(threads, progress) })
 }
 
@@ -74,7 +75,7 @@ fn pairs_in_tile<'py>(
 ) -> PyResult<Object<'py>> {
     let kind = kind_of(shapes, "shapes")?;
     kind.expect("tiles", tiles.kind()?)?;
-    let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
+    let side = SideArgument { shapes, poses, names: &["shapes", "poses"] };
     run_in(kind, AskTile { side, ids, tiles, tile, call: Call::new(threads, progress), kind })
 }
 
@@ -187,7 +188,8 @@ impl<'py> Task for AskBoxes<'_, 'py> {
         let given = self.side.read::<N, D>(self.kind)?;
         let poses = given.poses()?;
         let side = given.side(&*poses)?;
-        let found = supervise(py, side.len(), &self.call, |control| boxes_of(&side, control))?;
+        let extent = Extent::Many(side.len());
+        let found = supervise(py, extent, &self.call, |control| boxes_of(&side, control))?;
         let boxes = found.map_err(|error| error::of_batch(&error, "poses"))?;
         boxes_array(py, boxes.into_iter())
     }
@@ -214,7 +216,7 @@ impl<'py> Task for AskTile<'_, 'py> {
         let given = self.side.read::<N, D>(self.kind)?;
         let poses = given.poses()?;
         let side = given.side(&*poses)?;
-        let found = supervise(py, side.len(), &self.call, |control| {
+        let found = supervise(py, Extent::Many(side.len()), &self.call, |control| {
             pairs_of(&side, ids, &tiles, self.tile, control)
         })?;
         let pairs = found.map_err(|error| error::of_batch(&error, "poses"))?;

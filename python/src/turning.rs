@@ -9,7 +9,7 @@ use impinge::shape::ShapeHandle;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 
-use crate::answer::{Column, into_python};
+use crate::answer::{Column, Extent, IMPACT, into_python};
 use crate::pairs::{ImpactCall, PairCall};
 use crate::space::{Kind, Numeric, Task};
 use crate::supervise::each;
@@ -153,27 +153,29 @@ impl<'py> Task for AskTurning<'_, 'py> {
         })?;
         let is_lone = [given1.is_lone(), given2.is_lone(), linear1.is_lone(), linear2.is_lone()];
         let is_lone = is_lone.into_iter().all(|it| it) && angular1.is_lone && angular2.is_lone;
-        into_python(py, Some("Impact"), columns(&found), is_lone)
+        into_python(py, Some(&IMPACT), columns(&found, Extent::of(is_lone, false, len)))
     }
 }
 
 /// Time, normal, points and whether the time is that of an impact.
-fn columns<N: Numeric<D>, const D: usize>(found: &[Option<Impact<N, D>>]) -> Vec<Column<N, D>> {
-    let nowhere = [convert::<f64, N>(f64::NAN); D];
-    let time = found.iter().map(|one| one.map_or(N::INFINITY, |impact| impact.toi));
-    let vectors = |of: &dyn Fn(&Impact<N, D>) -> [N; D]| {
-        Column::Vectors(found.iter().map(|one| one.as_ref().map_or(nowhere, of)).collect())
-    };
-    let reached = |one: &Option<Impact<N, D>>| {
-        one.is_some_and(|impact| impact.status == ImpactStatus::Reached)
-    };
-    vec![
-        Column::Numbers(time.collect()),
-        vectors(&|impact| (*impact.normal).into()),
-        vectors(&|impact| impact.world1.coords.into()),
-        vectors(&|impact| impact.world2.coords.into()),
-        Column::Flags(found.iter().map(reached).collect()),
-    ]
+fn columns<N: Numeric<D>, const D: usize>(
+    found: &[Option<Impact<N, D>>],
+    extent: Extent,
+) -> [Column<N, D>; 5] {
+    let mut time = extent.slots(N::INFINITY);
+    let [mut normal, mut point1, mut point2] =
+        [(); 3].map(|()| extent.slots([N::lit(f64::NAN); D]));
+    let mut is_reached = extent.slots(false);
+    for (slot, impact) in found.iter().enumerate() {
+        let Some(impact) = impact else { continue };
+        time[slot] = impact.toi;
+        normal[slot] = (*impact.normal).into();
+        point1[slot] = impact.world1.coords.into();
+        point2[slot] = impact.world2.coords.into();
+        is_reached[slot] = impact.status == ImpactStatus::Reached;
+    }
+    let [normal, point1, point2] = [normal, point1, point2].map(Column::Vectors);
+    [Column::Numbers(time), normal, point1, point2, Column::Flags(is_reached)]
 }
 
 impl ImpactCall<'_, '_> {

@@ -273,11 +273,13 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
                 part2.push(found.part2);
             }
         }
-        let [first, second] = [first, second].map(Column::<N, D>::Handles);
-        let [normal, point1, point2] = [normal, point1, point2].map(Column::Vectors);
-        let [part1, part2] = [part1, part2].map(Column::Indices);
-        let columns = [first, second, Column::Numbers(depth), normal, point1, point2, part1, part2];
-        columns.into_iter().map(|column| column.into_array(py)).collect()
+        let [first, second] = [first, second].map(|column| Column::<N, D>::Handles(column.into()));
+        let [normal, point1, point2] =
+            [normal, point1, point2].map(|column| Column::Vectors(column.into()));
+        let [part1, part2] = [part1, part2].map(|column| Column::Indices(column.into()));
+        let depth = Column::Numbers(depth.into());
+        let columns = [first, second, depth, normal, point1, point2, part1, part2];
+        columns.into_iter().map(|column| column.into_pyobject(py)).collect()
     }
 
     fn proximities<'py>(&self, py: Python<'py>) -> Arrays<'py> {

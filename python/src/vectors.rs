@@ -1,12 +1,44 @@
-//! Points and vectors as arguments: arrays of the shape (D,) or (n, D), read where they lie.
+//! Points and vectors as arguments: arrays of the shape (D,) or (n, D).
 
-use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::space::Numeric;
 
+/// The numbers of an array in C order.
+pub(crate) enum Numbers<'py, N: Element> {
+    /// Those of a vector or a matrix alone. A copy is sooner made than a lock on the array.
+    One(Vec<N>),
+    /// Those of many, read where they lie.
+    Many(PyReadonlyArrayDyn<'py, N>),
+}
+
+impl<'py, N: Element> Numbers<'py, N> {
+    /// Of an array, which is one vector or matrix if it has `axes`.
+    pub(crate) fn of(array: &Bound<'py, PyArrayDyn<N>>, axes: usize) -> PyResult<Self> {
+        Ok(if array.ndim() == axes {
+            Self::One(array.to_vec()?)
+        } else {
+            Self::Many(array.try_readonly()?)
+        })
+    }
+
+    /// There is one vector or matrix, not an array of them.
+    pub(crate) const fn is_lone(&self) -> bool {
+        matches!(self, Self::One(_))
+    }
+
+    /// All of them.
+    pub(crate) fn as_slice(&self) -> PyResult<&[N]> {
+        Ok(match self {
+            Self::One(numbers) => numbers,
+            Self::Many(numbers) => numbers.as_slice()?,
+        })
+    }
+}
+
 /// An argument with one vector or many.
-pub(crate) struct Vectors<'py, N: Numeric<D>, const D: usize>(PyReadonlyArrayDyn<'py, N>);
+pub(crate) struct Vectors<'py, N: Numeric<D>, const D: usize>(Numbers<'py, N>);
 
 impl<'py, N: Numeric<D>, const D: usize> Vectors<'py, N, D> {
     /// Takes an argument; what is no array of the right type and layout goes through `impinge._poses.vectors`.
@@ -15,17 +47,17 @@ impl<'py, N: Numeric<D>, const D: usize> Vectors<'py, N, D> {
             && matches!(array.shape(), [width] | [_, width] if *width == D)
             && array.is_c_contiguous()
         {
-            return Ok(Self(array.try_readonly()?));
+            return Ok(Self(Numbers::of(array, 1)?));
         }
         let py = given.py();
         let reader = py.import("impinge._poses")?.getattr("vectors")?;
         let array = reader.call1((given, D, N::get_dtype(py), name))?;
-        Ok(Self(array.cast::<PyArrayDyn<N>>()?.try_readonly()?))
+        Ok(Self(Numbers::of(array.cast::<PyArrayDyn<N>>()?, 1)?))
     }
 
     /// There is one vector, not an array of vectors.
-    pub(crate) fn is_lone(&self) -> bool {
-        self.0.ndim() == 1
+    pub(crate) const fn is_lone(&self) -> bool {
+        self.0.is_lone()
     }
 
     /// As the library reads them.

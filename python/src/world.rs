@@ -102,7 +102,7 @@ impl World {
         options: ObjectOptions,
     ) -> PyResult<Vec<u64>> {
         self.kind.expect("shapes", kind_of(shapes, "shapes")?)?;
-        let side = SideArgument { shapes, poses, names: ["shapes", "poses"] };
+        let side = SideArgument { shapes, poses, names: &["shapes", "poses"] };
         self.world.add(&side, self.kind, &options)
     }
 

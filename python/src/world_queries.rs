@@ -150,7 +150,7 @@ const fn placed<'a, 'py>(
     shapes: &'a Bound<'py, PyAny>,
     poses: &'a Bound<'py, PyAny>,
 ) -> SideArgument<'a, 'py> {
-    SideArgument { shapes, poses, names: ["shape", "poses"] }
+    SideArgument { shapes, poses, names: &["shape", "poses"] }
 }
 
 impl Chosen {
@@ -268,7 +268,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
     fn shapes<'a>(
         &'a self,
         asking: &Asking,
-        given: &'a GivenSide<'_, N, D>,
+        given: &'a GivenSide<'_, '_, N, D>,
     ) -> PyResult<Prepared<'a, N, D>> {
         let Elements { shapes, positions } = given.elements()?;
         let (len, limit, count) = (shapes.len(), convert(asking.limit), asking.count());
@@ -303,7 +303,7 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
     fn casts<'a>(
         &'a self,
         asking: &Asking,
-        given: &'a GivenSide<'_, N, D>,
+        given: &'a GivenSide<'_, '_, N, D>,
         velocities: &'a Vectors<'_, N, D>,
     ) -> PyResult<Prepared<'a, N, D>> {
         let Elements { shapes, positions } = given.elements()?;
@@ -407,5 +407,5 @@ fn columns<N: Numeric<D>, const D: usize>(
         Beside::Near => vec![number(), point(0), point(1)],
         Beside::Projections => vec![point(1), is_inside()],
     });
-    columns.into_iter().map(|column| column.into_array(py)).collect()
+    columns.into_iter().map(|column| column.into_pyobject(py)).collect()
 }

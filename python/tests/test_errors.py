@@ -59,6 +59,53 @@ def test_a_matrix_that_mirrors_is_named():
         impinge.distance(BALL, poses, BALL, None)
 
 
+def wrong_matrices(dim):
+    """Not finite, a wrong last row, too long, not perpendicular, mirrored."""
+    matrices = np.tile(np.eye(dim + 1), (6, 1, 1))
+    matrices[0, 1, dim] = np.nan
+    matrices[1, 0, 0] = np.inf
+    matrices[2, dim, 0] = 0.5
+    matrices[3, 0, 0] = 2
+    matrices[4, 0, 1] = 0.25
+    matrices[5, 0, 0] = -1
+    return matrices
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_lone_matrix_is_refused_as_that_of_a_batch(dim, dtype):
+    shape, zero = impinge.Ball(1, dim=dim, dtype=dtype), np.zeros(dim, dtype)
+    calls = {
+        "poses": [
+            lambda poses: impinge.project_points(shape, poses, zero),
+            lambda poses: impinge.signed_distance(shape, poses, zero),
+            lambda poses: impinge.contains(shape, poses, zero),
+            lambda poses: impinge.cast_rays(shape, poses, zero, zero),
+        ]
+    }
+    questions = [
+        impinge.distance,
+        impinge.closest_points,
+        impinge.witness,
+        impinge.proximity,
+        impinge.contact,
+        impinge.contact_manifolds,
+        impinge.nearest,
+        lambda shape1, poses1, shape2, poses2: impinge.impact(shape1, poses1, zero, shape2, poses2, zero),
+    ]
+    calls["poses1"] = [lambda poses, ask=ask: ask(shape, poses, shape, None) for ask in questions]
+    calls["poses2"] = [lambda poses, ask=ask: ask(shape, None, shape, poses) for ask in questions]
+    for argument, asked in calls.items():
+        for call in asked:
+            for matrix in wrong_matrices(dim).astype(dtype):
+                texts = []
+                for poses in (matrix, matrix[None], matrix.tolist()):
+                    with pytest.raises(ValueError) as caught:
+                        call(poses)
+                    texts.append(str(caught.value))
+                assert texts[0].startswith(f"{argument}[0] is no pose: ") and len(set(texts)) == 1, texts
+
+
 class Bar:
     def __init__(self, fail=None):
         self.total, self.fail = 0, fail
@@ -73,6 +120,9 @@ def test_progress_counts_all_elements():
     bar = Bar()
     impinge.distance(BALL, None, BALL, np.tile(np.eye(4), (5000, 1, 1)), progress=bar)
     assert bar.total == 5000
+    bar = Bar()
+    assert impinge.distance(BALL, None, BALL, HERE[0], progress=bar, threads=1) == 0
+    assert bar.total == 1
 
 
 def slow_batch(progress=None, count=4000):

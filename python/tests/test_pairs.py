@@ -1,5 +1,7 @@
 """Questions about pairs against numbers known by arithmetic, and against single questions to the bit."""
 
+import pickle
+
 import impinge
 import numpy as np
 import pytest
@@ -15,13 +17,17 @@ SHAPES_3D = [
     lambda t: impinge.Ellipsoid([0.6, 0.4, 0.3], dtype=t),
     lambda t: impinge.Rounded(impinge.Cuboid([0.3, 0.3, 0.3], dtype=t), 0.1),
     lambda t: impinge.Tetrahedron([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=t),
+    lambda t: impinge.TaperedCapsule(0.4, [0.3, 0.1], dtype=t),
+    lambda t: impinge.HalfSpace([0.6, 0.8, 0], dtype=t),
     lambda t: impinge.TriMesh([[-1, 0, -1], [1, 0, -1], [0, 0, 1]], [[0, 1, 2]], dtype=t),
+    lambda t: impinge.Compound([impinge.Ball(0.3, dtype=t)] * 2, shifted([-0.5, 0.5], dtype=t)),
 ]
 SHAPES_2D = [
     lambda t: impinge.Ball(0.5, dim=2, dtype=t),
     lambda t: impinge.Cuboid([0.5, 0.4], dtype=t),
     lambda t: impinge.Capsule(0.4, 0.3, dim=2, dtype=t),
     lambda t: impinge.ConvexHull([[0, 0], [1, 0], [0, 1]], dtype=t),
+    lambda t: impinge.HalfSpace([0.6, 0.8], dtype=t),
     lambda t: impinge.Polyline([[-1, 0], [0, 0.2], [1, 0]], dtype=t),
 ]
 
@@ -47,21 +53,58 @@ def columns(answer):
     return answer if isinstance(answer, tuple) else (answer,)
 
 
+def assert_row_is(batch, row, alone):
+    """To the bit, signs of zeros too."""
+    for many, one in zip(columns(batch), columns(alone), strict=True):
+        assert many[row].tobytes() == np.asarray(one, many.dtype).tobytes(), (many[row], one)
+
+
 @pytest.mark.parametrize("dtype", ["float32", "float64"])
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize(
-    "ask", [impinge.distance, impinge.closest_points, impinge.witness, impinge.contact, impinge.proximity]
+    "ask",
+    [
+        impinge.distance,
+        impinge.closest_points,
+        impinge.witness,
+        impinge.contact,
+        impinge.proximity,
+        lambda shape1, poses1, shape2, poses2: impinge.impact(
+            shape1, poses1, poses2[..., 0, :-1].copy(), shape2, poses2, poses1[..., 1, :-1].copy(), 3.0
+        ),
+    ],
 )
 def test_a_batch_has_the_bits_of_single_questions(ask, dim, dtype):
     kinds = [make(dtype) for make in (SHAPES_2D if dim == 2 else SHAPES_3D)]
     poses1, poses2 = random_poses(9, dim, dtype, 1), random_poses(9, dim, dtype, 2)
+    # A quarter turn whose zeros have signs.
+    poses1[0] *= 0
+    poses1[0, [0, 1], [1, 0]] = -1, 1
+    poses1[0, range(2, dim + 1), range(2, dim + 1)] = 1
     for shape1 in kinds:
         for shape2 in kinds:
-            batch = columns(ask(shape1, poses1, shape2, poses2))
+            batch = ask(shape1, poses1, shape2, poses2)
             for row in range(9):
-                alone = columns(ask(shape1, poses1[row], shape2, poses2[row]))
-                for many, one in zip(batch, alone, strict=True):
-                    np.testing.assert_array_equal(many[row], np.asarray(one, many.dtype))
+                assert_row_is(batch, row, ask(shape1, poses1[row], shape2, poses2[row]))
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+@pytest.mark.parametrize("dim", [2, 3])
+def test_points_and_rays_in_a_batch_have_the_bits_of_single_ones(dim, dtype):
+    poses = random_poses(9, dim, dtype, 1)
+    points, turned = poses[::-1, :dim, dim].copy(), -poses[:, :dim, dim]
+    for shape in [make(dtype) for make in (SHAPES_2D if dim == 2 else SHAPES_3D)]:
+        for ask in (
+            lambda at, solid=shape: impinge.project_points(solid, poses[at], points[at]),
+            lambda at, solid=shape: impinge.project_points(solid, poses[at], points[at], False),
+            lambda at, solid=shape: impinge.signed_distance(solid, poses[at], points[at]),
+            lambda at, solid=shape: impinge.contains(solid, poses[at], points[at]),
+            lambda at, solid=shape: impinge.cast_rays(solid, poses[at], points[at], turned[at]),
+            lambda at, solid=shape: impinge.cast_rays(solid, poses[at], points[at], turned[at], 1.0, False),
+        ):
+            batch = ask(slice(None))
+            for row in range(9):
+                assert_row_is(batch, row, ask(row))
 
 
 @pytest.mark.parametrize("threads", [1, 2, None])
@@ -97,6 +140,21 @@ def test_a_lone_pair_has_scalars():
     assert isinstance(found.distance, float) and found.point1.shape == (3,)
     assert impinge.distance(ball, None, ball, shifted([3])).shape == (1,)
     assert impinge.distance([ball], None, ball, None).shape == (1,)
+
+
+@pytest.mark.parametrize("dtype", ["float32", "float64"])
+def test_the_answer_about_a_lone_pair_is_a_tuple_with_names(dtype):
+    ball, here = impinge.Ball(1, dtype=dtype), shifted([3], dtype=dtype)[0]
+    found = impinge.closest_points(ball, None, ball, here)
+    assert type(found) is impinge.ClosestPoints
+    distance, point1, point2 = found
+    assert (distance, point1.dtype, point1.tolist(), point2.tolist()) == (1.0, dtype, [1, 0, 0], [2, 0, 0])
+    assert point1.flags.writeable and point1.flags.owndata
+    again = pickle.loads(pickle.dumps(found))
+    assert type(again) is impinge.ClosestPoints and again.point2.tolist() == [2, 0, 0]
+    assert impinge.nearest(ball, None, ball, here) == (0, 1.0)
+    assert type(impinge.proximity(ball, None, ball, here)) is int
+    assert type(impinge.contains(ball, None, [0, 0, 0])) is bool
 
 
 def test_one_element_stands_for_all_and_picks_choose():

@@ -12,7 +12,7 @@ use super::{
     WitnessColumns,
 };
 use crate::chunks::Cut;
-use crate::collide::Placing;
+use crate::collide::{Placed, Placing};
 use crate::math::{Real, Space, Vector, max};
 use crate::narrow_phase::ContactPrediction;
 use crate::query::{
@@ -200,9 +200,10 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         (N::tables().batch.nearest)(self, max_distance, control)
     }
 
-    /// Both sides, ready to be asked.
+    /// Both sides, ready to be asked. Each is made where it stays: `map` over both copies them several times.
+    #[inline]
     pub(super) fn prepared(&self) -> [PreparedSide<'a, N, D>; 2] {
-        self.sides.each_ref().map(PreparedSide::new)
+        [PreparedSide::new(&self.sides[0]), PreparedSide::new(&self.sides[1])]
     }
 
     /// Calls with the elements of each pair and the slot of the answer in the columns of a chunk.
@@ -220,17 +221,27 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         })
     }
 
-    /// Calls with the pairs of each chunk that may be at most a limit apart, and the columns of their answers.
-    fn each_placed<C: AnswerColumns>(
+    /// Fills the slots with what follows from the distances of pairs that are at most a limit apart, and those of
+    /// others with what stands for none.
+    fn each_distance<T: Copy + Send + Sync>(
         &self,
         limit: N,
         control: &Control<'_>,
-        out: C,
-        answer: impl Fn(&PlacedPairs<'a, N, D>, &mut C) + Sync,
+        out: &mut [T],
+        none: T,
+        answer: impl Fn(N) -> T + Sync,
     ) -> Result<(), BatchError> {
         out.check(self.len)?;
-        self.each_chunk(control, out, |sides, range, columns| {
-            answer(&PlacedPairs::new(sides, range, limit), columns);
+        out.fill(none);
+        if self.len == 1 {
+            return self.alone(limit, control, out, |placed1, placed2, out| {
+                let found = (N::tables().distance_in_world)(placed1, placed2, limit);
+                out[0] = found.map_or(none, &answer);
+            });
+        }
+        self.each_chunk(control, out, |sides, range, out| {
+            let pairs = PlacedPairs::new(sides, range, limit);
+            pairs.distances(|slot, distance| out[slot] = answer(distance));
         })
     }
 
@@ -240,14 +251,37 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         &self,
         limit: N,
         control: &Control<'_>,
-        out: C,
+        mut out: C,
         answer: impl Fn(&mut C, usize, Option<PairFinding<'_, 'a, N, D>>) + Sync,
     ) -> Result<(), BatchError> {
         out.check(self.len)?;
+        if self.len == 1 {
+            answer(&mut out, 0, None);
+            return self.alone(limit, control, out, |placed1, placed2, out| {
+                answer(out, 0, Some(PairFinding::Alone([placed1, placed2])));
+            });
+        }
         self.each_chunk(control, out, |sides, range, columns| {
             (0..range.len()).for_each(|slot| answer(columns, slot, None));
             let pairs = PlacedPairs::new(sides, range, limit);
             pairs.separations(|slot, found| answer(columns, slot, Some(found)));
+        })
+    }
+
+    /// Calls with the pair of a batch of one, if it may be at most a limit apart: it takes less time than lists.
+    fn alone<C: Cut>(
+        &self,
+        limit: N,
+        control: &Control<'_>,
+        out: C,
+        answer: impl Fn(&Placed<'a, N, D>, &Placed<'a, N, D>, &mut C) + Sync,
+    ) -> Result<(), BatchError> {
+        let [side1, side2] = &self.sides;
+        Progress::new(control).run(1, out, |_, mut out| {
+            if let Some([placed1, placed2]) = Placed::within(&side1.alone(), &side2.alone(), limit)
+            {
+                answer(&placed1, &placed2, &mut out);
+            }
         })
     }
 
@@ -269,10 +303,7 @@ pub(super) fn distances<N: Space<D>, const D: usize>(
     control: &Control<'_>,
     out: &mut [N],
 ) -> Result<(), BatchError> {
-    batch.each_placed(N::INFINITY, control, out, |pairs, out| {
-        out.fill(N::INFINITY);
-        pairs.distances(|slot, distance| out[slot] = max(distance, N::ZERO));
-    })
+    batch.each_distance(N::INFINITY, control, out, N::INFINITY, |distance| max(distance, N::ZERO))
 }
 
 /// See [`PairBatch::closest_points`].
@@ -286,7 +317,7 @@ pub(super) fn closest_points<N: Space<D>, const D: usize>(
     batch.each_separation(limit, control, out, |out, slot, found| match found {
         None => out.put(slot, None),
         Some(PairFinding::Convex(found)) => out.put(slot, Some(found)),
-        Some(PairFinding::Composites([one, other])) => {
+        Some(PairFinding::Alone([one, other])) => {
             out.put(slot, (N::tables().touching_in_world)(one, other, limit).as_ref());
         }
     })
@@ -310,7 +341,7 @@ pub(super) fn witnesses<N: Space<D>, const D: usize>(
             let found = found.distance.is_finite_number().then_some(found);
             out.put(slot, found.map(|found| Witness::new(found, [0; 2], NO_FEATURES)).as_ref());
         }
-        Some(PairFinding::Composites([one, other])) => {
+        Some(PairFinding::Alone([one, other])) => {
             out.put(slot, (N::tables().witness_in_world)(one, other, limit, false).as_ref());
         }
     })
@@ -323,10 +354,8 @@ pub(super) fn proximities<N: Space<D>, const D: usize>(
     control: &Control<'_>,
     out: &mut [Proximity],
 ) -> Result<(), BatchError> {
-    batch.each_placed(max(margin, N::ZERO), control, out, |pairs, out| {
-        out.fill(Proximity::Disjoint);
-        pairs.distances(|slot, distance| out[slot] = Proximity::within(distance));
-    })
+    let margin = max(margin, N::ZERO);
+    batch.each_distance(margin, control, out, Proximity::Disjoint, Proximity::within)
 }
 
 /// See [`PairBatch::contacts`].
@@ -339,7 +368,7 @@ pub(super) fn contacts<N: Space<D>, const D: usize>(
     batch.each_separation(prediction, control, out, |out, slot, found| match found {
         None => out.put(slot, None),
         Some(PairFinding::Convex(found)) => out.put(slot, Contact::of_separation(found).as_ref()),
-        Some(PairFinding::Composites([one, other])) => {
+        Some(PairFinding::Alone([one, other])) => {
             let found = (N::tables().contact_in_world)(one, other, prediction);
             let contact = found.as_ref().and_then(Contact::of_separation);
             out.put(slot, contact.as_ref());

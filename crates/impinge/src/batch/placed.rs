@@ -22,8 +22,8 @@ pub(super) struct PlacedPairs<'a, N: Real, const D: usize> {
 pub(super) enum PairFinding<'p, 'a, N: Real, const D: usize> {
     /// The separation of two convex solids, in the world and in the order given.
     Convex(&'p Separation<N, D>),
-    /// One is a composite: it is asked alone.
-    Composites([&'p Placed<'a, N, D>; 2]),
+    /// Nothing yet: the pair is asked alone, as one is of which a shape is a composite.
+    Alone([&'p Placed<'a, N, D>; 2]),
 }
 
 impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
@@ -89,7 +89,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
 
     /// Calls with the slot of each pair that may be at most the limit apart, and what is known of it.
     pub(super) fn separations(&self, mut put: impl FnMut(usize, PairFinding<'_, 'a, N, D>)) {
-        let mut convex = self.convex(|slot, placed| put(slot, PairFinding::Composites(placed)));
+        let mut convex = self.convex(|slot, placed| put(slot, PairFinding::Alone(placed)));
         let mut found = vec![None; self.slots.len()];
         (N::tables().separations)(&mut convex, self.limit, &mut found);
         for ConvexPair { slot: index, swapped, .. } in convex {

@@ -123,6 +123,12 @@ impl<'a, N: Real, const D: usize> Side<'a, N, D> {
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
+
+    /// The only element: one that is asked about once needs nothing prepared.
+    #[inline]
+    pub(super) fn alone(&self) -> Element<'a, 'a, N, D> {
+        Element { poses: self.poses, only: None, shape: self.shapes.at(0).geometry(), pose: 0 }
+    }
 }
 
 impl<N: Real, const D: usize> fmt::Debug for Side<'_, N, D> {
@@ -219,7 +225,8 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
             Some((_, shape)) => shape,
             None => self.side.shapes.at(element).geometry(),
         };
-        Element { side: self, shape, pose: index_in(self.poses, element) }
+        let (poses, only) = (self.side.poses, self.only.as_ref());
+        Element { poses, only, shape, pose: index_in(self.poses, element) }
     }
 }
 
@@ -270,7 +277,9 @@ pub(super) fn pair_at<'s, 'a, N: Space<D>, const D: usize>(
 
 /// An element of a side.
 pub(super) struct Element<'s, 'a, N: Real, const D: usize> {
-    side: &'s PreparedSide<'a, N, D>,
+    poses: &'a dyn PoseSource<N, D>,
+    /// What is looked up already, of the only element of a prepared side.
+    only: Option<&'s (Pose<N, D>, Placed<'a, N, D>)>,
     shape: Geometry<'a, N, D>,
     /// The index of its pose.
     pose: usize,
@@ -284,18 +293,18 @@ impl<'a, N: Space<D>, const D: usize> Placing<'a, N, D> for Element<'_, 'a, N, D
 
     #[inline]
     fn translation(&self) -> Vector<N, D> {
-        match &self.side.only {
+        match self.only {
             Some((pose, _)) => pose.translation,
-            None => self.side.side.poses.translation(self.pose),
+            None => self.poses.translation(self.pose),
         }
     }
 
     #[inline]
     fn placed(&self) -> Placed<'a, N, D> {
-        if let Some((_, placed)) = &self.side.only {
+        if let Some((_, placed)) = self.only {
             return *placed;
         }
-        let (poses, shape) = (self.side.side.poses, self.shape);
+        let (poses, shape) = (self.poses, self.shape);
         let pose = if shape.turns() { poses.pose(self.pose) } else { poses.unturned(self.pose) };
         Placed { pose, shape }
     }
