@@ -12,12 +12,10 @@ use crate::math::{Point, Real, Space, Vector, max};
 ///
 /// All tests are closed: boxes that only touch meet. Answers are exact for the boxes as they were given
 /// and the same on every machine. Boxes may coincide, be flat, or be unbounded; those with a face
-/// beyond the range of `f32` count as unbounded and are tested one by one in each search, so there should
-/// be few.
+/// beyond the range of `f32` count as unbounded and are tested one by one in each search: few are best.
 ///
-/// Making it costs O(n log n). A search looks at O(log n) blocks of sixteen boxes and at what it finds,
-/// as long as boxes do not all overlap. Beside its box, an object takes about 60 bytes in 2D and
-/// 85 in 3D, and up to twice that for what arrays keep in reserve.
+/// Making it costs O(n log n). A search looks at O(log n) blocks of sixteen boxes and at what it finds, as long as boxes
+/// do not all overlap. Beside its box, an object takes about 60 bytes in 2D and 85 in 3D, at most twice that with reserves.
 ///
 /// ```
 /// use impinge::bounding_volume::{Aabb, Ray};
@@ -452,12 +450,11 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
         self.search().near_first(sweep, max_time, found);
     }
 
-    /// Helps searches for near pairs of faces, until the next refit: see [`Tree::add_slabs`]. Of unbounded things
-    /// nothing is known.
-    pub(crate) fn add_slabs(
+    /// Helps searches for near pairs of faces, until the next refit. Of unbounded things nothing is known.
+    pub(crate) fn add_slabs<F: Fn(u32) -> [Point<N, D>; 3]>(
         &mut self,
         normals: &[Vector<N, D>],
-        corners: impl Fn(u32) -> [Point<N, D>; 3],
+        corners: F,
     ) {
         if normals.len() == self.boxes.len() {
             self.tree.add_slabs(normals, corners);
