@@ -232,14 +232,15 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         answer: impl Fn(N) -> T + Sync,
     ) -> Result<(), BatchError> {
         out.check(self.len)?;
-        out.fill(none);
         if self.len == 1 {
+            out.fill(none);
             return self.alone(limit, control, out, |placed1, placed2, out| {
                 let found = (N::tables().distance_in_world)(placed1, placed2, limit);
                 out[0] = found.map_or(none, &answer);
             });
         }
         self.each_chunk(control, out, |sides, range, out| {
+            out.fill(none);
             let pairs = PlacedPairs::new(sides, range, limit);
             pairs.distances(|slot, distance| out[slot] = answer(distance));
         })
