@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use super::columns::{AnswerColumns, as_long_as};
 use super::control::Progress;
-use super::placed::{PairFinding, PlacedPairs};
+use super::placed::{PairAnswer, PlacedPairs};
 use super::side::{Element, PreparedSide, common_length, index_in, pair_at};
 use super::{
     BatchError, ClosestColumns, ContactColumns, Control, ImpactColumns, ManifoldRows, Side,
@@ -253,13 +253,13 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         limit: N,
         control: &Control<'_>,
         mut out: C,
-        answer: impl Fn(&mut C, usize, Option<PairFinding<'_, 'a, N, D>>) + Sync,
+        answer: impl Fn(&mut C, usize, Option<PairAnswer<'_, 'a, N, D>>) + Sync,
     ) -> Result<(), BatchError> {
         out.check(self.len)?;
         if self.len == 1 {
             answer(&mut out, 0, None);
             return self.alone(limit, control, out, |placed1, placed2, out| {
-                answer(out, 0, Some(PairFinding::Alone([placed1, placed2])));
+                answer(out, 0, Some(PairAnswer::Alone([placed1, placed2])));
             });
         }
         self.each_chunk(control, out, |sides, range, columns| {
@@ -317,8 +317,8 @@ pub(super) fn closest_points<N: Space<D>, const D: usize>(
     let limit = max(max_distance, N::ZERO);
     batch.each_separation(limit, control, out, |out, slot, found| match found {
         None => out.put(slot, None),
-        Some(PairFinding::Convex(found)) => out.put(slot, Some(found)),
-        Some(PairFinding::Alone([one, other])) => {
+        Some(PairAnswer::Convex(found)) => out.put(slot, Some(found)),
+        Some(PairAnswer::Alone([one, other])) => {
             out.put(slot, (N::tables().touching_in_world)(one, other, limit).as_ref());
         }
     })
@@ -338,11 +338,11 @@ pub(super) fn witnesses<N: Space<D>, const D: usize>(
     }
     batch.each_separation(limit, control, out, |out, slot, found| match found {
         None => out.put(slot, None),
-        Some(PairFinding::Convex(found)) => {
+        Some(PairAnswer::Convex(found)) => {
             let found = found.distance.is_finite_number().then_some(found);
             out.put(slot, found.map(|found| Witness::new(found, [0; 2], NO_FEATURES)).as_ref());
         }
-        Some(PairFinding::Alone([one, other])) => {
+        Some(PairAnswer::Alone([one, other])) => {
             out.put(slot, (N::tables().witness_in_world)(one, other, limit, false).as_ref());
         }
     })
@@ -368,8 +368,8 @@ pub(super) fn contacts<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     batch.each_separation(prediction, control, out, |out, slot, found| match found {
         None => out.put(slot, None),
-        Some(PairFinding::Convex(found)) => out.put(slot, Contact::of_separation(found).as_ref()),
-        Some(PairFinding::Alone([one, other])) => {
+        Some(PairAnswer::Convex(found)) => out.put(slot, Contact::of_separation(found).as_ref()),
+        Some(PairAnswer::Alone([one, other])) => {
             let found = (N::tables().contact_in_world)(one, other, prediction);
             let contact = found.as_ref().and_then(Contact::of_separation);
             out.put(slot, contact.as_ref());

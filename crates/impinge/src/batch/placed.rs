@@ -19,7 +19,7 @@ pub(super) struct PlacedPairs<'a, N: Real, const D: usize> {
 }
 
 /// What is known of a pair.
-pub(super) enum PairFinding<'p, 'a, N: Real, const D: usize> {
+pub(super) enum PairAnswer<'p, 'a, N: Real, const D: usize> {
     /// The separation of two convex solids, in the world and in the order given.
     Convex(&'p Separation<N, D>),
     /// Nothing yet: the pair is asked alone, as one is of which a shape is a composite.
@@ -88,14 +88,14 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
     }
 
     /// Calls with the slot of each pair that may be at most the limit apart, and what is known of it.
-    pub(super) fn separations(&self, mut put: impl FnMut(usize, PairFinding<'_, 'a, N, D>)) {
-        let mut convex = self.convex(|slot, placed| put(slot, PairFinding::Alone(placed)));
+    pub(super) fn separations(&self, mut put: impl FnMut(usize, PairAnswer<'_, 'a, N, D>)) {
+        let mut convex = self.convex(|slot, placed| put(slot, PairAnswer::Alone(placed)));
         let mut found = vec![None; self.slots.len()];
         (N::tables().separations)(&mut convex, self.limit, &mut found);
         for ConvexPair { slot: index, swapped, .. } in convex {
             if let Some(found) = &found[index] {
                 let first = self.sides[usize::from(swapped)].placed(index);
-                put(self.slots[index], PairFinding::Convex(&placed(found, &first, swapped)));
+                put(self.slots[index], PairAnswer::Convex(&placed(found, &first, swapped)));
             }
         }
     }
