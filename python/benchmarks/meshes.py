@@ -96,12 +96,17 @@ def surface(count: int) -> tuple[Any, Any]:
 
 def mesh_body(count: int) -> Body:
     vertices, triangles = surface(count)
+    model = coal_mesh(vertices, triangles)
+    return Body(f"mesh of {len(triangles)}", impinge.TriMesh(vertices, triangles), model, STRAIGHT, 1.0)
+
+
+def coal_mesh(vertices: Any, triangles: Any) -> Any:
     model = coal.BVHModelOBBRSS()
     model.beginModel(len(triangles), len(vertices))
     model.addVertices(vertices)
     model.addTriangles(triangles)
     model.endModel()
-    return Body(f"mesh of {len(triangles)}", impinge.TriMesh(vertices, triangles), model, STRAIGHT, 1.0)
+    return model
 
 
 def solids() -> list[Body]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import coal
 import impinge
 import meshes
 import numpy as np
@@ -32,21 +31,14 @@ class Beside:
         vertices = vertices * RADIUS
         self.mesh, self.pose = impinge.TriMesh(vertices, faces), np.eye(4)[None].copy()
         self.pose[0, :3, 3] = PLACE
-        model = coal.BVHModelOBBRSS()
-        model.beginModel(len(faces), len(vertices))
-        model.addVertices(vertices)
-        model.addTriangles(faces)
-        model.endModel()
-        self._add(model)
+        self._add(meshes.coal_mesh(vertices, faces))
 
     def _add(self, model: Any) -> None:
         """Replaces the pairs of Pinocchio by those of each body with the mesh."""
         side, place = self.sides.pinocchio, pinocchio.SE3(np.eye(3), np.array(PLACE))
-        names = {solid.name: number for number, solid in enumerate(side.geometry.geometryObjects)}
         side.geometry.removeAllCollisionPairs()
         mesh = side.geometry.addGeometryObject(pinocchio.GeometryObject("the mesh", 0, 0, place, model))
-        for body in self.sides.robot.bodies:
-            number = names["_".join(body.name.rsplit("/", 1))]
+        for number in side.numbers:
             side.geometry.addCollisionPair(pinocchio.CollisionPair(number, mesh))
         side.placed = side.geometry.createData()
         side.pool = pinocchio.GeometryPool(side.model, side.geometry, 1)

@@ -193,14 +193,15 @@ class Pinocchio:
         for solid in self.geometry.geometryObjects:
             solid.geometry = _hull(solid.geometry)
         names = {solid.name: number for number, solid in enumerate(self.geometry.geometryObjects)}
-        numbers = [names["_".join(body.name.rsplit("/", 1))] for body in robot.bodies]
+        # The place of each of the robot's bodies.
+        self.numbers = [names["_".join(body.name.rsplit("/", 1))] for body in robot.bodies]
         for one, two in robot.pairs:
-            self.geometry.addCollisionPair(pinocchio.CollisionPair(numbers[one], numbers[two]))
+            self.geometry.addCollisionPair(pinocchio.CollisionPair(self.numbers[one], self.numbers[two]))
         # Pairs may be stored the other way round, but in their order.
         assert len(self.geometry.collisionPairs) == len(robot.pairs)
         self.columns = _columns(path, self.model, robot)
         self.data, self.placed = self.model.createData(), self.geometry.createData()
-        self.corners = [_corners(self.geometry.geometryObjects[number].geometry) for number in numbers]
+        self.corners = [_corners(self.geometry.geometryObjects[number].geometry) for number in self.numbers]
         self.pool = pinocchio.GeometryPool(self.model, self.geometry, 1)
 
     def rows(self, configurations: Any) -> Any:
