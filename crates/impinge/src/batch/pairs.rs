@@ -16,8 +16,8 @@ use crate::collide::{Placed, Placing};
 use crate::math::{Real, Space, Vector, max};
 use crate::narrow_phase::ContactPrediction;
 use crate::query::{
-    Contact, ImpactOptions, Moving, NO_FEATURES, Proximity, Witness, distance_within,
-    impact_of_pair, witness_between,
+    Contact, ImpactOptions, Moving, Proximity, Witness, distance_within, impact_of_pair,
+    witness_between,
 };
 
 /// Two sides whose elements with one index are a pair.
@@ -338,10 +338,7 @@ pub(super) fn witnesses<N: Space<D>, const D: usize>(
     }
     batch.each_separation(limit, control, out, |out, slot, found| match found {
         None => out.put(slot, None),
-        Some(PairAnswer::Convex(found)) => {
-            let found = found.distance.is_finite_number().then_some(found);
-            out.put(slot, found.map(|found| Witness::new(found, [0; 2], NO_FEATURES)).as_ref());
-        }
+        Some(PairAnswer::Convex(found)) => out.put(slot, Witness::of_separation(found).as_ref()),
         Some(PairAnswer::Alone([one, other])) => {
             out.put(slot, (N::tables().witness_in_world)(one, other, limit, false).as_ref());
         }

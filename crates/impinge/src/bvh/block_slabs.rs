@@ -15,8 +15,8 @@ const ROUNDING: f64 = 16.0;
 /// What lies between two planes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockSlab<const D: usize> {
-    /// About of unit length; zero without a slab.
-    pub(super) across: [f32; D],
+    /// About of unit length.
+    across: [f32; D],
     low: f32,
     high: f32,
 }
@@ -39,18 +39,20 @@ impl<const D: usize> BlockSlab<D> {
         sum: &Vector<f64, D>,
         bounds: &Bounds<D>,
         reach: impl Fn(&Vector<f64, D>) -> f64,
-    ) -> Self {
+    ) -> Option<Self> {
         let length = sum.norm();
         let is_direction = length > f64::from(f32::MIN_POSITIVE) && length < f64::INFINITY;
-        let scale = if is_direction { 1.0 / length } else { 0.0 };
-        let across = core::array::from_fn(|axis| (sum[axis] * scale).as_f32());
+        if !is_direction {
+            return None;
+        }
+        let across = core::array::from_fn(|axis| (sum[axis] * (1.0 / length)).as_f32());
         let exact = Vector::from_fn(|axis, _| f64::from(across[axis]));
         let (low, high) = (-reach(&-exact), reach(&exact));
         let of_box = bounds.reach(&exact) + bounds.reach(&-exact);
         if (high - low) * THINNER > of_box {
-            return Self { across: [0.0; D], low: 0.0, high: 0.0 };
+            return None;
         }
-        Self { across, low: low.as_f32_below(), high: high.as_f32_above() }
+        Some(Self { across, low: low.as_f32_below(), high: high.as_f32_above() })
     }
 }
 
@@ -112,7 +114,7 @@ impl<const D: usize> Tree<D> {
     }
 
     pub(super) fn slab_box(&self, layer: usize, block: u32) -> SlabBox<'_, D> {
-        let slab = self.slabs.get(layer).map(|slabs| &slabs[block as usize]);
+        let slab = self.slabs.get(layer).and_then(|slabs| slabs[block as usize].as_ref());
         SlabBox { bounds: &self.layers[layer].bounds[block as usize], slab }
     }
 
@@ -128,6 +130,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-fn in_use(ids: &[u32; LANES]) -> impl Iterator<Item = u32> {
+/// The objects of a leaf block.
+pub(super) fn in_use(ids: &[u32; LANES]) -> impl Iterator<Item = u32> {
     ids.iter().copied().filter(|&id| id != NONE)
 }

@@ -11,7 +11,7 @@ use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
-use super::block_slabs::SlabBox;
+use super::block_slabs::{SlabBox, in_use};
 use super::gaps::Gaps;
 use super::near_first::Open;
 use super::{Bounds, LANES, NONE, Tree};
@@ -295,9 +295,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         let mut sides: SmallVec<_> =
             across.map(|toward| (toward, block.reach(&toward[which]))).collect();
         if let Some(toward) = self.question.best().filter(|_| self.question.limit() > N::ZERO) {
-            let ids = self.trees[which].leaves()[pair.blocks[which] as usize];
-            let reaches = ids.into_iter().filter(|&id| id != NONE);
-            let reaches = reaches.map(|id| self.question.reach(which, id, &toward[which]));
+            let ids = &self.trees[which].leaves()[pair.blocks[which] as usize];
+            let reaches = in_use(ids).map(|id| self.question.reach(which, id, &toward[which]));
             sides.insert(0, (toward, reaches.fold(-N::INFINITY, max)));
         }
         sides

@@ -70,7 +70,7 @@ pub(crate) struct Tree<const D: usize> {
     /// that a tree in which this seldom happens has no memory for them.
     pub(super) is_sparing: bool,
     /// By layer and block, if the owner of the tree asked for them: good until the boxes change.
-    pub(super) slabs: Vec<Vec<BlockSlab<D>>>,
+    pub(super) slabs: Vec<Vec<Option<BlockSlab<D>>>>,
     /// [`Self::before`] is in use. Always, unless the tree is sparing.
     pub(super) remembers: bool,
     /// Slot to id.

@@ -193,4 +193,15 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn determinants_by_hand() {
+        let swaps = Matrix::<f64, 3>::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0);
+        assert_eq!(f64::determinant(&swaps), 1.0, "a third of a turn about the diagonal");
+        assert_eq!(f64::determinant(&-swaps), -1.0, "the same and a mirror");
+        let other = Matrix::<f64, 3>::new(2.0, 1.0, 0.0, 4.0, 0.0, 1.0, 0.0, 1.0, 1.0);
+        assert_eq!(f64::determinant(&other), -6.0, "by the rule of Sarrus");
+        let quarter = Matrix::<f32, 2>::new(0.0, -1.0, 1.0, 0.0);
+        assert_eq!(f32::determinant(&quarter), 1.0, "a quarter turn");
+    }
 }

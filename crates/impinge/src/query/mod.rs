@@ -34,5 +34,5 @@ pub use proximity::{Proximity, proximity};
 pub use ray::{RayBatch, RayCast, RayIntersection};
 pub(crate) use ray::{cast_at, cast_on, surely_misses};
 pub(crate) use witness::in_world as witness_in_world;
-pub(crate) use witness::{NO_FEATURES, witness_between};
+pub(crate) use witness::witness_between;
 pub use witness::{Witness, witness};

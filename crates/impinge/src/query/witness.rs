@@ -9,7 +9,7 @@ use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Shape};
 
 /// What stands for features that are not asked for.
-pub(crate) const NO_FEATURES: [FeatureId; 2] = [FeatureId::Face(u32::MAX); 2];
+const NO_FEATURES: [FeatureId; 2] = [FeatureId::Face(u32::MAX); 2];
 
 /// The points of two shapes that are nearest to each other, or deepest in each other, and what they
 /// belong to.
@@ -186,9 +186,16 @@ fn features<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Witness<N, D> {
+    /// Of a separation of two convex solids in the world, without features; `None` of half-spaces that overlap without
+    /// bound.
+    #[inline]
+    pub(crate) fn of_separation(found: &Separation<N, D>) -> Option<Self> {
+        found.distance.is_finite_number().then(|| Self::new(found, [0; 2], NO_FEATURES))
+    }
+
     /// Of a separation in the world.
     #[inline]
-    pub(crate) fn new(
+    fn new(
         in_world: &Separation<N, D>,
         [part1, part2]: [u32; 2],
         [feature1, feature2]: [FeatureId; 2],

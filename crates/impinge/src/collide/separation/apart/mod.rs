@@ -152,7 +152,7 @@ fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapRe
     let between = minus::<Arrays, _, 3>(&pose12.point::<Arrays>(&middle2), &middle1);
     let limit = Lone(solids.limit_of_cores(limit));
     let found = LaneCores { cores, pose12, between, limit }.gap(Arrays, with_overlap);
-    solids.result(&found)
+    solids.lone_result(&found)
 }
 
 /// Two solids with flat cores.
@@ -211,27 +211,36 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
     }
 
-    /// The separation of the solids, from that of their cores in units of the pair.
+    /// The result from what is known of the cores: whether they are beyond the limit, overlap, or are apart by a
+    /// separation in units of the pair.
     #[inline]
-    fn apart(&self, core: &Separation<N, 3>) -> GapResult<N> {
-        GapResult::Apart(core.scaled(self.units.scale).rounded(self.radii[0], self.radii[1]))
+    fn result(
+        &self,
+        [is_beyond, is_overlap, is_apart]: [bool; 3],
+        core: impl FnOnce() -> Separation<N, 3>,
+    ) -> GapResult<N> {
+        if is_beyond {
+            GapResult::Beyond
+        } else if is_overlap {
+            GapResult::Overlap
+        } else if is_apart {
+            let core = core().scaled(self.units.scale);
+            GapResult::Apart(core.rounded(self.radii[0], self.radii[1]))
+        } else {
+            GapResult::Unproved
+        }
     }
 
     #[inline]
-    fn result(&self, found: &LaneGap<Lone<N>, <Lone<N> as Wide<Arrays>>::Mask>) -> GapResult<N> {
+    fn lone_result(
+        &self,
+        found: &LaneGap<Lone<N>, <Lone<N> as Wide<Arrays>>::Mask>,
+    ) -> GapResult<N> {
         let is = |mask| SimdMask::<Arrays>::any_true(mask);
-        if is(found.is_beyond) {
-            return GapResult::Beyond;
-        }
-        if is(found.is_overlap) {
-            return GapResult::Overlap;
-        }
-        if !is(found.is_apart) {
-            return GapResult::Unproved;
-        }
+        let known = [is(found.is_beyond), is(found.is_overlap), is(found.is_apart)];
         let vector = |v: &[Lone<N>; 3]| Vector::<N, 3>::new(v[0].0, v[1].0, v[2].0);
         let [point1, point2] = &found.points;
-        self.apart(&Separation {
+        self.result(known, || Separation {
             distance: found.distance.0,
             normal: vector(&found.normal),
             point1: Point::from(vector(point1)),

@@ -72,23 +72,15 @@ impl<N: Real> PacketGap<N> {
         }
     }
 
-    /// The result of one lane, as `FlatPair::result` has it.
+    /// The result of one lane.
     #[inline]
     fn result(&self, lane: usize, solids: &FlatPair<'_, N>) -> GapResult<N> {
         let is = |lanes: u64| lanes >> lane & 1 == 1;
-        if is(self.is_beyond) {
-            return GapResult::Beyond;
-        }
-        if is(self.is_overlap) {
-            return GapResult::Overlap;
-        }
-        if !is(self.is_apart) {
-            return GapResult::Unproved;
-        }
+        let known = [is(self.is_beyond), is(self.is_overlap), is(self.is_apart)];
         let vector = |rows: &LaneVectors<N>| {
             Vector::<N, 3>::new(rows[0][lane], rows[1][lane], rows[2][lane])
         };
-        solids.apart(&Separation {
+        solids.result(known, || Separation {
             distance: self.distance[lane],
             normal: vector(&self.normal),
             point1: Point::from(vector(&self.points[0])),
@@ -151,6 +143,7 @@ impl<'a, N: Real> Packet<'a, N> {
         solids.all(|other| is_same(0, other) && is_same(1, other))
     }
 
+    /// Runs the search in all lanes.
     #[inline(always)]
     fn search<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
