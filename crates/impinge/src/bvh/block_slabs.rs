@@ -5,12 +5,12 @@
 //! little farther than the patch, as oriented boxes do (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
 
 use super::{Bounds, LANES, NONE, Tree};
-use crate::math::{Point, Real, Vector, max, min};
+use crate::math::{Point, Real, Vector, max, min, unit};
 
 /// A slab is of use if it is so many times thinner than the box along its normal.
 const THINNER: f64 = 4.0;
-/// What heights lose to rounding, in units of `f64` of the coordinates.
-const ROUNDING: f64 = 16.0;
+/// What heights lose to rounding, in units of the coordinates.
+const ROUNDING: f64 = 32.0;
 
 /// What lies between two planes.
 #[derive(Clone, Copy, Debug)]
@@ -35,21 +35,18 @@ impl<const D: usize> BlockSlab<D> {
 
     /// The slab across a sum of normals, around what reaches so far along a direction; none if it is not thin beside a box
     /// around the same.
-    fn around(
-        sum: &Vector<f64, D>,
+    fn around<N: Real>(
+        sum: &Vector<N, D>,
         bounds: &Bounds<D>,
-        reach: impl Fn(&Vector<f64, D>) -> f64,
+        reach: impl Fn(&Vector<N, D>) -> N,
     ) -> Option<Self> {
-        let length = sum.norm();
-        let is_direction = length > f64::from(f32::MIN_POSITIVE) && length < f64::INFINITY;
-        if !is_direction {
-            return None;
-        }
-        let across = core::array::from_fn(|axis| (sum[axis] * (1.0 / length)).as_f32());
-        let exact = Vector::from_fn(|axis, _| f64::from(across[axis]));
-        let (low, high) = (-reach(&-exact), reach(&exact));
-        let of_box = bounds.reach(&exact) + bounds.reach(&-exact);
-        if (high - low) * THINNER > of_box {
+        let (across, _) = unit(sum)?;
+        let across = core::array::from_fn(|axis| across[axis].as_f32());
+        // The planes lie across the rounded direction.
+        let normal = Vector::from_fn(|axis, _| N::lit(f64::from(across[axis])));
+        let (low, high) = (-reach(&-normal), reach(&normal));
+        let of_box = bounds.reach(&normal) + bounds.reach(&-normal);
+        if (high - low) * N::lit(THINNER) > of_box {
             return None;
         }
         Some(Self { across, low: low.as_f32_below(), high: high.as_f32_above() })
@@ -76,19 +73,18 @@ impl<const D: usize> Tree<D> {
         normals: &[Vector<N, D>],
         corners: impl Fn(u32) -> [Point<N, D>; 3],
     ) {
-        let exact = |v: &Vector<N, D>| Vector::<f64, D>::from_fn(|axis, _| v[axis].as_f64());
-        let mut sums: Vec<_> = self
+        let mut sums: Vec<Vector<N, D>> = self
             .leaves()
             .iter()
-            .map(|ids| in_use(ids).map(|id| exact(&normals[id as usize])).sum())
+            .map(|ids| in_use(ids).map(|id| &normals[id as usize]).sum())
             .collect();
-        let size = f64::from(self.size()) * f64::EPSILON * ROUNDING;
+        let size = N::lit(f64::from(self.size()) * ROUNDING) * N::EPSILON;
         self.slabs.clear();
-        let slab = |((ids, sum), bounds): ((&[u32; LANES], &Vector<f64, D>), &Bounds<D>)| {
-            let corners: Vec<_> =
-                in_use(ids).flat_map(&corners).map(|at| exact(&at.coords)).collect();
+        let slab = |((ids, sum), bounds): ((&[u32; LANES], &Vector<N, D>), &Bounds<D>)| {
+            let corners: Vec<_> = in_use(ids).flat_map(&corners).collect();
             BlockSlab::around(sum, bounds, |along| {
-                corners.iter().fold(-f64::INFINITY, |reach, at| max(at.dot(along), reach)) + size
+                corners.iter().fold(-N::INFINITY, |reach, at| max(at.coords.dot(along), reach))
+                    + size
             })
         };
         self.slabs
@@ -96,10 +92,10 @@ impl<const D: usize> Tree<D> {
         for layer in 1..self.layers.len() {
             sums = sums.chunks(LANES).map(|below| below.iter().sum()).collect();
             let blocks = (0..).zip(&sums);
-            let slab = |(block, sum): (u32, &Vector<f64, D>)| {
+            let slab = |(block, sum): (u32, &Vector<N, D>)| {
                 let below = || self.children(layer - 1, block);
                 BlockSlab::around(sum, &self.layers[layer].bounds[block as usize], |along| {
-                    below().fold(-f64::INFINITY, |reach, (_, below)| max(below.reach(along), reach))
+                    below().fold(-N::INFINITY, |reach, (_, below)| max(below.reach(along), reach))
                         + size
                 })
             };

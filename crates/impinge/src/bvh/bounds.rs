@@ -27,8 +27,8 @@ impl<const D: usize> Bounds<D> {
     #[must_use]
     pub fn enclosing<N: Real>(aabb: &Aabb<N, D>) -> Self {
         Self {
-            lo: core::array::from_fn(|axis| below(aabb.mins()[axis])),
-            hi: core::array::from_fn(|axis| -below(-aabb.maxs()[axis]) + 0.0),
+            lo: core::array::from_fn(|axis| aabb.mins()[axis].as_f32_below()),
+            hi: core::array::from_fn(|axis| aabb.maxs()[axis].as_f32_above()),
         }
     }
 
@@ -36,8 +36,8 @@ impl<const D: usize> Bounds<D> {
     #[must_use]
     pub fn enclosing_point<N: Real>(point: &Point<N, D>) -> Self {
         Self {
-            lo: core::array::from_fn(|axis| below(point[axis])),
-            hi: core::array::from_fn(|axis| -below(-point[axis]) + 0.0),
+            lo: core::array::from_fn(|axis| point[axis].as_f32_below()),
+            hi: core::array::from_fn(|axis| point[axis].as_f32_above()),
         }
     }
 
@@ -153,46 +153,9 @@ impl<const D: usize> Bounds<D> {
     }
 }
 
-/// `Real::as_f32_below`, with selections in place of branches: whether a number is rounded up or
-/// down to `f32` is a coin toss that no processor foresees. A zero is positive.
-#[inline]
-fn below<N: Real>(x: N) -> f32 {
-    let nearest = x.as_f32() + 0.0;
-    if holds_all_of::<N>() {
-        return nearest;
-    }
-    let bits = nearest.to_bits();
-    let smaller = if nearest > 0.0 { bits.wrapping_sub(1) } else { bits.wrapping_add(1) };
-    let smaller = if nearest == 0.0 { 0x8000_0001 } else { smaller };
-    f32::from_bits(if f64::from(nearest) > x.as_f64() { smaller } else { bits })
-}
-
-/// `f32` rounds no number of this kind; known when compiled.
-#[inline]
-fn holds_all_of<N: Real>() -> bool {
-    N::EPSILON.as_f64() >= f64::from(f32::EPSILON)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn rounding_is_that_of_the_scalar() {
-        let mut values = vec![0.0, -0.0, 1e-60, 1e300, f64::INFINITY, f64::from(f32::MAX), 1e-40];
-        values.extend((1..2000).map(|k| f64::from(k) / 3.0 * 1.37_f64.powi(k % 100 - 50)));
-        for x in values.iter().flat_map(|&x| [x, -x]) {
-            assert_eq!(below(x), x.as_f32_below(), "{x} downwards");
-            assert_eq!(-below(-x), x.as_f32_above(), "{x} upwards");
-        }
-        assert!(below(f64::NAN).is_nan(), "NaN stays");
-        assert_eq!(below(-0.0_f64).to_bits(), 0, "zeros are positive");
-        assert_eq!(below(-0.0_f32).to_bits(), 0, "those of f32 too");
-        assert!(
-            below(f32::NAN).is_nan() && below(-0.1_f32).to_bits() == (-0.1_f32).to_bits(),
-            "kept"
-        );
-    }
 
     #[test]
     fn surfaces_of_flat_and_solid_boxes() {

@@ -3,7 +3,7 @@
 use super::kernel::{Scalar, WideBlock, low_half};
 use super::{Block, Bounds, LANES};
 use crate::bounding_volume::Aabb;
-use crate::math::Real;
+use crate::math::{Real, f32_above, f32_below};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
 
 /// Coordinates from here on are too large for differences in `f32`: 2 to the power of 125.
@@ -53,8 +53,8 @@ impl<const D: usize> Gaps<D> {
     pub(super) fn within<N: Real>(mut self, depth: N) -> Self {
         let depth = depth.as_f64();
         if depth > 0.0 {
-            self.lo = self.lo.map(|lo| (f64::from(lo) + depth).as_f32_below());
-            self.hi = self.hi.map(|hi| (f64::from(hi) - depth).as_f32_above());
+            self.lo = self.lo.map(|lo| f32_below(f64::from(lo) + depth));
+            self.hi = self.hi.map(|hi| f32_above(f64::from(hi) - depth));
         }
         self
     }

@@ -33,6 +33,7 @@ pub use nalgebra::{AbstractRotation, Isometry, Isometry2, Isometry3, Unit};
 
 pub use pose::Pose;
 pub use real::Real;
+pub(crate) use real::{f32_above, f32_below};
 pub(crate) use simd::Wide;
 pub use space::Space;
 pub use vector::{

@@ -40,11 +40,21 @@ pub trait Real: RealField + Scalar + Copy + Default + Compiled + Eight {
     /// The value as `f64`, exactly.
     fn as_f64(self) -> f64;
     /// The value rounded to the nearest `f32`.
-    fn as_f32(self) -> f32;
-    /// The largest `f32` that is not above the value (−∞ below the range of `f32`).
-    fn as_f32_below(self) -> f32;
-    /// The smallest `f32` that is not below the value (+∞ above the range of `f32`).
-    fn as_f32_above(self) -> f32;
+    #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, as documented")]
+    #[inline]
+    fn as_f32(self) -> f32 {
+        self.as_f64() as f32
+    }
+    /// The largest `f32` that is not above the value (−∞ below the range of `f32`); a zero is positive.
+    #[inline]
+    fn as_f32_below(self) -> f32 {
+        f32_below(self.as_f64())
+    }
+    /// The smallest `f32` that is not below the value (+∞ above the range of `f32`); a zero is positive.
+    #[inline]
+    fn as_f32_above(self) -> f32 {
+        f32_above(self.as_f64())
+    }
     /// The bits, widened to 64; equal for equal bits.
     fn bits(self) -> u64;
     /// The largest power of two that is not above the magnitude; dividing by it is exact.
@@ -77,18 +87,6 @@ impl Real for f32 {
 
     fn as_f64(self) -> f64 {
         f64::from(self)
-    }
-
-    fn as_f32(self) -> f32 {
-        self
-    }
-
-    fn as_f32_below(self) -> f32 {
-        self
-    }
-
-    fn as_f32_above(self) -> f32 {
-        self
     }
 
     #[inline]
@@ -134,21 +132,6 @@ impl Real for f64 {
         self
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "rounds to nearest, as documented")]
-    fn as_f32(self) -> f32 {
-        self as f32
-    }
-
-    fn as_f32_below(self) -> f32 {
-        let nearest = self.as_f32();
-        if Self::from(nearest) > self { nearest.next_down() } else { nearest }
-    }
-
-    fn as_f32_above(self) -> f32 {
-        let nearest = self.as_f32();
-        if Self::from(nearest) < self { nearest.next_up() } else { nearest }
-    }
-
     #[inline]
     fn bits(self) -> u64 {
         self.to_bits()
@@ -170,6 +153,24 @@ impl Real for f64 {
     }
 }
 
+/// The largest `f32` that is not above a number, with selections in place of branches: whether a number is rounded up or
+/// down is a coin toss that no processor foresees. A zero is positive.
+#[expect(clippy::cast_possible_truncation, reason = "one step down where it went up")]
+#[inline]
+pub(crate) fn f32_below(x: f64) -> f32 {
+    let nearest = x as f32 + 0.0;
+    let bits = nearest.to_bits();
+    let smaller = if nearest > 0.0 { bits.wrapping_sub(1) } else { bits.wrapping_add(1) };
+    let smaller = if nearest == 0.0 { 0x8000_0001 } else { smaller };
+    f32::from_bits(if f64::from(nearest) > x { smaller } else { bits })
+}
+
+/// The smallest `f32` that is not below a number; a zero is positive.
+#[inline]
+pub(crate) fn f32_above(x: f64) -> f32 {
+    0.0 - f32_below(-x)
+}
+
 #[cfg(all(test, feature = "f64"))]
 mod tests {
     use super::*;
@@ -185,12 +186,21 @@ mod tests {
 
     #[test]
     fn rounding_to_f32_goes_outwards() {
-        let third = 1.0_f64 / 3.0;
-        for value in [third, -third, 1.0, 1e300, -1e300, 0.0, 1e-60, -1e-60] {
-            assert!(f64::from(value.as_f32_below()) <= value, "{value} rounded up");
-            assert!(f64::from(value.as_f32_above()) >= value, "{value} rounded down");
+        let mut values = vec![0.0, 1e-60, 1e300, f64::INFINITY, f64::from(f32::MAX), 1e-40, 1.5];
+        values.extend((1..2000).map(|k| f64::from(k) / 3.0 * 1.37_f64.powi(k % 100 - 50)));
+        for x in values.iter().flat_map(|&x| [x, -x]) {
+            let (below, above) = (x.as_f32_below(), x.as_f32_above());
+            assert!(f64::from(below) <= x && f64::from(above) >= x, "{x} rounded inwards");
+            let is_nearest = below == above || below.next_up() == above;
+            assert!(is_nearest, "{x} lies between neighbours {below} and {above}");
+            assert_eq!(below == above, f64::from(x.as_f32()) == x, "{x}: exact values stay");
         }
-        assert_eq!(1.5_f64.as_f32_below(), 1.5, "exact values stay");
-        assert!(third.as_f32_below() < third.as_f32_above(), "a third lies between two f32");
+        assert_eq!((-0.1_f32).as_f32_below(), -0.1, "all of `f32` is exact");
+        for zero in
+            [(-0.0_f64).as_f32_below(), (-0.0_f64).as_f32_above(), (-0.0_f32).as_f32_below()]
+        {
+            assert_eq!(zero.to_bits(), 0, "zeros are positive");
+        }
+        assert!(f64::NAN.as_f32_below().is_nan() && f32::NAN.as_f32_above().is_nan(), "NaN stays");
     }
 }
