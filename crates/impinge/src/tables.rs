@@ -13,7 +13,7 @@ use crate::broad_phase::{DBVTBroadPhase, PairFinder};
 use crate::checker::CheckerTables;
 use crate::collide::far::{Apart, are_beyond};
 use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
-use crate::collide::packet::{GapVisitor, LANES, TiledParts, Tiles};
+use crate::collide::packet::{GapVisitor, LANES, PartPacket, TiledParts};
 use crate::collide::parts::{AxisSlabs, Between, part_gaps2, part_gaps3};
 use crate::collide::separation::{
     Algorithm, Projection, distance_in_plane, distance_in_space, distance_in_world, gaps2, gaps3,
@@ -45,7 +45,7 @@ use crate::query::{
     time_of_pair, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
-use crate::world::{Body, ChangeList, Readers, WorldBroadPhase, WorldError};
+use crate::world::{ChangeList, Readers, WorldBody, WorldBroadPhase, WorldError};
 
 /// Function pointers to the entry points for one scalar and dimension.
 pub struct Tables<N: Space<D>, const D: usize> {
@@ -146,7 +146,7 @@ type FeatureFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, N, bo
 type OverFn<N, const D: usize> = fn(&Triangle<N, D>, &Point<N, D>, N) -> Option<FeatureId>;
 type GapsFn<N, const D: usize> =
     fn(&TiledParts<'_, N, D>, Kind<'_, N, D>, &Pose<N, D>, N, N, GapVisitor<'_, N, D>) -> bool;
-type PartGapsFn<N, const D: usize> = fn(&AxisSlabs<N, D>, &Tiles<N, D>, N) -> [N; LANES];
+type PartGapsFn<N, const D: usize> = fn(&AxisSlabs<N, D>, &PartPacket<N, D>, N) -> [N; LANES];
 type QuickFn<N, const D: usize> =
     fn(&mut CompositeContacts<N, D>, &Between<'_, N, D>, &ManifoldRequest<N>) -> bool;
 type OnFaceFn<N, const D: usize> =
@@ -215,13 +215,13 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
     pub(crate) set_isometry: SetIsometryFn<N, D>,
-    pub(crate) set_shape: fn(&mut Body<N, D>, &mut ChangeList<N, D>, ShapeHandle<N, D>),
-    pub(crate) set_query: fn(&mut Body<N, D>, &mut ChangeList<N, D>, GeometricQueryType<N>),
+    pub(crate) set_shape: fn(&mut WorldBody<N, D>, &mut ChangeList<N, D>, ShapeHandle<N, D>),
+    pub(crate) set_query: fn(&mut WorldBody<N, D>, &mut ChangeList<N, D>, GeometricQueryType<N>),
     pub(crate) flush: FlushFn<N, D>,
     /// A ray, a point and a point once more, against one object.
     pub(crate) cast_ray: CastRayFn<N, D>,
     pub(crate) project: ProjectFn<N, D>,
-    pub(crate) holds: fn(&Body<N, D>, &Point<N, D>) -> bool,
+    pub(crate) holds: fn(&WorldBody<N, D>, &Point<N, D>) -> bool,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
     pub(crate) begin_and_end_pairs:
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &[Interaction], &mut Events),
@@ -231,26 +231,29 @@ pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, &mut Events),
 }
 
-type SetIsometryFn<N, const D: usize> =
-    fn(&mut Body<N, D>, &mut ChangeList<N, D>, <N as Space<D>>::Isometry) -> Result<(), WorldError>;
+type SetIsometryFn<N, const D: usize> = fn(
+    &mut WorldBody<N, D>,
+    &mut ChangeList<N, D>,
+    <N as Space<D>>::Isometry,
+) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
-    fn(&mut Body<N, D>, &mut ChangeList<N, D>, &mut Readers<'_, N, D>);
+    fn(&mut WorldBody<N, D>, &mut ChangeList<N, D>, &mut Readers<'_, N, D>);
 type CastRayFn<N, const D: usize> =
-    fn(&Body<N, D>, &Ray<N, D>, N, bool) -> Option<RayIntersection<N, D>>;
+    fn(&WorldBody<N, D>, &Ray<N, D>, N, bool) -> Option<RayIntersection<N, D>>;
 type ProjectFn<N, const D: usize> =
-    fn(&Body<N, D>, &Point<N, D>, bool, N) -> Option<(PointProjection<N, D>, N)>;
+    fn(&WorldBody<N, D>, &Point<N, D>, bool, N) -> Option<(PointProjection<N, D>, N)>;
 
 impl<N: Space<D>, const D: usize> WorldTables<N, D> {
     const fn new() -> Self {
         Self {
             new_broad_phase,
-            set_isometry: Body::set_isometry,
-            set_shape: Body::set_shape,
-            set_query: Body::set_query,
-            flush: Body::flush,
-            cast_ray: Body::cast_ray,
-            project: Body::project,
-            holds: Body::holds,
+            set_isometry: WorldBody::set_isometry,
+            set_shape: WorldBody::set_shape,
+            set_query: WorldBody::set_query,
+            flush: WorldBody::flush,
+            cast_ray: WorldBody::cast_ray,
+            project: WorldBody::project,
+            holds: WorldBody::holds,
             pair_started: DefaultNarrowPhase::pair_started,
             begin_and_end_pairs: DefaultNarrowPhase::begin_and_end_pairs,
             pair_stopped: DefaultNarrowPhase::pair_stopped,

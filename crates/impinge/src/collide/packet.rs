@@ -10,14 +10,14 @@ pub(crate) const LANES: usize = 8;
 /// The corners of eight parts in the frame of their composite. A segment has its second end twice; where
 /// there are fewer parts the last stands for the rest.
 #[derive(Clone, Debug)]
-pub(crate) struct Tiles<N, const D: usize> {
+pub(crate) struct PartPacket<N, const D: usize> {
     /// By corner and coordinate.
     pub(crate) corners: [[[N; LANES]; D]; 3],
 }
 
 /// Some of the parts of many tiles.
 pub(crate) struct TiledParts<'a, N: Real, const D: usize> {
-    pub(crate) tiles: &'a [Tiles<N, D>],
+    pub(crate) tiles: &'a [PartPacket<N, D>],
     /// For each of the tiles a bit for each part that is meant.
     pub(crate) near: &'a [u8],
     /// Where the parts are to be seen from.
@@ -51,14 +51,14 @@ impl<N: Real, const D: usize> PartGap<N, D> {
 
 impl<N: Real, const D: usize> TiledParts<'_, N, D> {
     /// The tile and the lane of each part that is meant.
-    pub(crate) fn places(&self) -> impl Iterator<Item = (&Tiles<N, D>, usize)> {
+    pub(crate) fn places(&self) -> impl Iterator<Item = (&PartPacket<N, D>, usize)> {
         let lanes = |near: u8| (0..LANES).filter(move |lane| near >> lane & 1 == 1);
         let all = self.tiles.iter().zip(self.near);
         all.flat_map(move |(tiles, near)| lanes(*near).map(move |lane| (tiles, lane)))
     }
 }
 
-impl<N: Real, const D: usize> Tiles<N, D> {
+impl<N: Real, const D: usize> PartPacket<N, D> {
     pub(crate) fn blank() -> Self {
         Self { corners: [[[N::ZERO; LANES]; D]; 3] }
     }

@@ -29,7 +29,7 @@ const GONE: u32 = u32::MAX;
 /// What queries read stands side by side, the rest at both ends.
 #[derive(Clone, Debug)]
 #[repr(C)]
-pub(crate) struct Body<N: Space<D>, const D: usize> {
+pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
     pub(crate) isometry: N::Isometry,
     /// The numbers of the shape, if they are all that there is.
@@ -83,7 +83,7 @@ pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
     pub(crate) algorithms: &'a mut Vec<u32>,
 }
 
-impl<N: Space<D>, const D: usize> Body<N, D> {
+impl<N: Space<D>, const D: usize> WorldBody<N, D> {
     /// The handle index.
     pub(crate) const fn index(&self) -> u32 {
         self.handle.index()
@@ -236,12 +236,13 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         row: ObjectRow<N, D>,
         groups: CollisionGroups,
         proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
-    ) -> Body<N, D> {
+    ) -> WorldBody<N, D> {
         let ObjectRow { handle, isometry, shape, query } = row;
         let aabb = aabb_at(&*shape, &N::pose(&isometry));
         let proxy = proxy(grown(&aabb, query.query_limit()));
         let (solid, query) = (Compact::of(&shape), PackedQuery::new(query));
-        let mut body = Body { shape, isometry, solid, proxy, state: PLACE, handle, groups, query };
+        let mut body =
+            WorldBody { shape, isometry, solid, proxy, state: PLACE, handle, groups, query };
         let entry = self.note(&mut body);
         entry.aabb = aabb;
         entry.changes = BodyChanges { row: true, volume: true, ..BodyChanges::default() };
@@ -249,14 +250,14 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// Forgets what an object that is gone changed.
-    pub(crate) fn forget(&mut self, body: &Body<N, D>) {
+    pub(crate) fn forget(&mut self, body: &WorldBody<N, D>) {
         if let Some(place) = body.place() {
             self.entries[place].index = GONE;
         }
     }
 
     /// Queries must test the object itself: the broad phase does not know where it is now.
-    pub(crate) fn is_astray(&self, body: &Body<N, D>) -> bool {
+    pub(crate) fn is_astray(&self, body: &WorldBody<N, D>) -> bool {
         body.place().is_some_and(|place| self.entries[place].changes.volume)
     }
 
@@ -304,13 +305,13 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         look.trim(&mut self.order);
     }
 
-    fn note_volume(&mut self, body: &mut Body<N, D>, aabb: Aabb<N, D>) {
+    fn note_volume(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) {
         let entry = self.note(body);
         entry.aabb = aabb;
         entry.changes.volume = true;
     }
 
-    fn note_row(&mut self, body: &mut Body<N, D>) {
+    fn note_row(&mut self, body: &mut WorldBody<N, D>) {
         let aabb = body.aabb();
         let entry = self.note(body);
         entry.aabb = aabb;
@@ -320,7 +321,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// Lists an object as changed.
-    fn note(&mut self, body: &mut Body<N, D>) -> &mut BodyEntry<N, D> {
+    fn note(&mut self, body: &mut WorldBody<N, D>) -> &mut BodyEntry<N, D> {
         let place = body.place().unwrap_or_else(|| {
             let place = self.entries.len();
             let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
@@ -333,7 +334,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// What is wrong with the places of an object in the list, if anything.
-    pub(crate) fn validate(&self, body: &Body<N, D>) -> Result<(), String> {
+    pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
         match body.place().map(|place| self.entries.get(place)) {
             Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {
                 Err(format!("{:?} has the place of another among the changes", body.handle))

@@ -23,7 +23,7 @@ mod reasons;
 mod step;
 mod validate;
 
-pub(crate) use bodies::{Body, ChangeList, Readers, WorldBroadPhase};
+pub(crate) use bodies::{ChangeList, Readers, WorldBody, WorldBroadPhase};
 pub use collision_world::CollisionWorld;
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;

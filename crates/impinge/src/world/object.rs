@@ -1,7 +1,7 @@
 //! What a world keeps for the user about one object.
 
 use super::CollisionGroups;
-use super::bodies::Body;
+use super::bodies::WorldBody;
 use crate::broad_phase::ProxyHandle;
 use crate::math::Space;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
@@ -26,7 +26,7 @@ use crate::shape::ShapeHandle;
 /// assert!(object.shape().is_shape::<Ball<f32>>());
 /// ```
 pub struct CollisionObject<N: Space<D>, const D: usize, T> {
-    pub(super) body: Body<N, D>,
+    pub(super) body: WorldBody<N, D>,
     pub(super) data: T,
 }
 

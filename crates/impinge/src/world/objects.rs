@@ -1,6 +1,6 @@
 //! The objects of a world: the handle table with the records, and what the narrow phase reads of them.
 
-use super::bodies::{Body, ChangeList, Readers, WorldBroadPhase};
+use super::bodies::{ChangeList, Readers, WorldBody, WorldBroadPhase};
 use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
@@ -101,12 +101,12 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// What is kept of the object at an index, if there is one.
-    pub(super) fn body(&self, index: u32) -> Option<&Body<N, D>> {
+    pub(super) fn body(&self, index: u32) -> Option<&WorldBody<N, D>> {
         self.at(index).map(|object| &object.body)
     }
 
     /// What is kept of all objects, in order.
-    pub(super) fn bodies(&self) -> impl Iterator<Item = &Body<N, D>> {
+    pub(super) fn bodies(&self) -> impl Iterator<Item = &WorldBody<N, D>> {
         self.iter().map(|object| &object.body)
     }
 
@@ -166,7 +166,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     pub(super) fn fresh(
         &mut self,
         handle: CollisionObjectHandle,
-    ) -> Result<(&mut Body<N, D>, &mut ChangeList<N, D>), WorldError> {
+    ) -> Result<(&mut WorldBody<N, D>, &mut ChangeList<N, D>), WorldError> {
         let object = self.place(handle).and_then(|place| self.records.get_mut(place));
         let object = object.ok_or(WorldError::StaleHandle(handle))?;
         Ok((&mut object.body, &mut self.changes))
@@ -294,7 +294,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// The table's row, if there is one, is that of an object.
-    fn is_row_of(&self, body: &Body<N, D>) -> bool {
+    fn is_row_of(&self, body: &WorldBody<N, D>) -> bool {
         let index = body.index();
         !self.table.has_row(index)
             || self.table.handle(index) == body.handle

@@ -1,7 +1,7 @@
 //! Whether a world's parts agree: for tests.
 
 use super::CollisionWorld;
-use super::bodies::Body;
+use super::bodies::WorldBody;
 use crate::bounding_volume::BoundingVolume;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
@@ -40,7 +40,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let mut pairs: Vec<_> = alone.map(|body| (body.handle, body.handle)).collect();
         for (place, first) in bodies.iter().enumerate() {
             let volume = first.volume();
-            let meets = |second: &&Body<N, D>| volume.intersects(&second.volume());
+            let meets = |second: &&WorldBody<N, D>| volume.intersects(&second.volume());
             let others = bodies[place + 1..].iter().copied().filter(meets);
             let allowed = others.filter(|second| self.is_allowed(first.handle, second.handle));
             pairs.extend(allowed.map(|second| (first.handle, second.handle)));
@@ -51,7 +51,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Groups and filters allow the pair.
     fn is_allowed(&self, handle1: CollisionObjectHandle, handle2: CollisionObjectHandle) -> bool {
         if handle1 == handle2 {
-            return self.objects.body(handle1.index()).is_some_and(Body::wants_self_pair);
+            return self.objects.body(handle1.index()).is_some_and(WorldBody::wants_self_pair);
         }
         let both = self.objects.get(handle1).zip(self.objects.get(handle2));
         self.objects.can_interact(handle1.index(), handle2.index())

@@ -80,7 +80,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
 type PlaneLanes<V> = [V; 2];
 
 /// The line perpendicular to the normal through the nearest point of the first solid, and what is asked for: a
-/// [`Frame`](crate::collide::manifold::frame::Frame) in lanes.
+/// [`ContactFrame`](crate::collide::manifold::frame::ContactFrame) in lanes.
 struct ContactLine<V> {
     normal: PlaneLanes<V>,
     tangent: PlaneLanes<V>,

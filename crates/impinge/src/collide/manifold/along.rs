@@ -5,7 +5,7 @@
 //! points: where the features do not lie above each other, there is no point at all.
 
 use super::clip;
-use super::frame::{Candidates, Frame};
+use super::frame::{Candidates, ContactFrame};
 use super::{SegmentPair, tangents3};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
@@ -116,7 +116,7 @@ pub(crate) fn on_face3<N: Real>(
         return false;
     }
     let Some(planes) = extremes(pair, &normal, nearest) else { return false };
-    let frame = Frame::known(&planes, tangents3(&normal), tolerance, prediction);
+    let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
     candidates.retain(|candidate| candidate.distance >= least - tolerance);

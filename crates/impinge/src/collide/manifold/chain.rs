@@ -4,7 +4,7 @@
 //! define them.
 
 use super::along::extremes;
-use super::frame::{Candidate, Candidates, Frame, Which};
+use super::frame::{Candidate, Candidates, ContactFrame, Which};
 use super::stretch::{Shared, Stretch};
 use super::witness::beside_ball;
 use super::{Along, Pair, add_witness, deepest, tangents2};
@@ -110,12 +110,12 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(())
     }
 
-    fn frame(&self, witness: &Separation<N, 2>) -> Frame<N, 2> {
-        Frame::known(witness, tangents2(&witness.normal), self.tolerance, self.prediction)
+    fn frame(&self, witness: &Separation<N, 2>) -> ContactFrame<N, 2> {
+        ContactFrame::known(witness, tangents2(&witness.normal), self.tolerance, self.prediction)
     }
 
     #[inline]
-    fn first(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
+    fn first(&self, frame: &ContactFrame<N, 2>) -> Option<Stretch<N>> {
         match self.pair.first {
             Kind::Segment(segment) => Some(Stretch::of_segment(segment, frame)),
             other => Stretch::of(Which::First, other, None, frame),
@@ -123,7 +123,7 @@ impl<N: Real> SegmentPair<'_, N> {
     }
 
     #[inline]
-    fn second(&self, frame: &Frame<N, 2>) -> Option<Stretch<N>> {
+    fn second(&self, frame: &ContactFrame<N, 2>) -> Option<Stretch<N>> {
         Stretch::of(Which::Second, self.pair.second, Some(&self.pair.pose12), frame)
     }
 }

@@ -16,7 +16,7 @@
 
 use smallvec::SmallVec;
 
-use super::frame::{Candidate, Candidates, Frame, Which, part_beside};
+use super::frame::{Candidate, Candidates, ContactFrame, Which, part_beside};
 use super::ring::{LANES, RingCorner, SupportRing};
 use super::{Pair, RawManifold, add_witness, choose, ids};
 use crate::math::lanes::{bits, load, with_lanes};
@@ -27,7 +27,7 @@ use crate::shape::{FeatureId, Kind};
 /// Builds the manifold of two solids within the prediction whose nearest points are known.
 pub(super) fn build<N: Real>(
     pair: &Pair<'_, N, 3>,
-    frame: &Frame<N, 3>,
+    frame: &ContactFrame<N, 3>,
     limit: usize,
     out: &mut RawManifold<N, 3>,
 ) {
@@ -54,7 +54,7 @@ pub(super) fn part_at_witness<N: Real>(
     kind: Kind<'_, N, 3>,
     which: Which,
     pose: Option<&Pose<N, 3>>,
-    frame: &Frame<N, 3>,
+    frame: &ContactFrame<N, 3>,
 ) -> FeatureId {
     let (mut rings, mut insides) = ([SupportRing::blank(which, pose)], [Insides::new()]);
     rings[0].fill(kind, frame);
@@ -67,7 +67,7 @@ pub(super) fn part_at_witness<N: Real>(
 /// the nearest points: none where the supporting features do not lie above each other.
 pub(super) fn candidates<N: Real>(
     pair: &Pair<'_, N, 3>,
-    frame: &Frame<N, 3>,
+    frame: &ContactFrame<N, 3>,
     out: &mut Candidates<N, 3>,
 ) {
     let mut clip = RingClip::blank(pair, frame);
@@ -79,7 +79,7 @@ pub(super) fn candidates<N: Real>(
 fn project_rings<N: Real>(
     level: Level,
     rings: &mut [SupportRing<'_, N>],
-    frame: &Frame<N, 3>,
+    frame: &ContactFrame<N, 3>,
     insides: &mut [Insides<N>],
 ) {
     with_lanes!(level, simd =>
@@ -91,7 +91,7 @@ fn project_rings<N: Real>(
 fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     rings: &mut [SupportRing<'_, N>],
-    frame: &Frame<N, 3>,
+    frame: &ContactFrame<N, 3>,
     insides: &mut [Insides<N>],
 ) {
     for ring in rings.iter_mut() {
@@ -209,7 +209,7 @@ fn share<N: Real>(from: N, to: N) -> N {
 
 /// Two rings in one frame.
 struct RingClip<'a, N: Real> {
-    frame: &'a Frame<N, 3>,
+    frame: &'a ContactFrame<N, 3>,
     rings: [SupportRing<'a, N>; 2],
     /// For each ring where the corners of the other are in it.
     insides: [Insides<N>; 2],
@@ -217,7 +217,7 @@ struct RingClip<'a, N: Real> {
 
 impl<'a, N: Real> RingClip<'a, N> {
     #[inline(always)]
-    fn blank(pair: &'a Pair<'_, N, 3>, frame: &'a Frame<N, 3>) -> Self {
+    fn blank(pair: &'a Pair<'_, N, 3>, frame: &'a ContactFrame<N, 3>) -> Self {
         let rings = [
             SupportRing::blank(Which::First, None),
             SupportRing::blank(Which::Second, Some(&pair.pose12)),

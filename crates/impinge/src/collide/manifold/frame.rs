@@ -28,7 +28,7 @@ impl Which {
     #[inline(always)]
     pub(in crate::collide) fn outward<N: Real, const D: usize>(
         self,
-        frame: &Frame<N, D>,
+        frame: &ContactFrame<N, D>,
     ) -> Vector<N, D> {
         match self {
             Self::First => frame.normal(),
@@ -41,7 +41,7 @@ impl Which {
     pub(in crate::collide) fn below_witness<N: Real, const D: usize>(
         self,
         point: &Point<N, D>,
-        frame: &Frame<N, D>,
+        frame: &ContactFrame<N, D>,
     ) -> N {
         let height = frame.height(point);
         match self {
@@ -79,7 +79,7 @@ pub(in crate::collide) fn lifted<N: Real>(
 ///
 /// In the frame of the first solid. `flat` coordinates are those in the plane, with the witness at
 /// zero; in two dimensions the second of them is always zero.
-pub(in crate::collide) struct Frame<N: Real, const D: usize> {
+pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
     pub(in crate::collide) witness: Separation<N, D>,
     tangents: [Vector<N, D>; 2],
     /// Lengths below this are rounding errors of the pair's size.
@@ -113,7 +113,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
     }
 }
 
-impl<N: Real, const D: usize> Frame<N, D> {
+impl<N: Real, const D: usize> ContactFrame<N, D> {
     /// `tangents` complete the witness' normal to a right-handed basis; the second is zero in 2D.
     pub(in crate::collide) fn new(
         pair: &Pair<'_, N, D>,

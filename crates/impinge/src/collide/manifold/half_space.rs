@@ -4,7 +4,7 @@
 //! parallel to the boundary, the near vertices need not belong to one face. Of other solids the corners of the
 //! supporting feature count, on the rounded surface.
 
-use super::frame::{Candidate, Candidates, Frame, MIN_COSINE, Which, lifted};
+use super::frame::{Candidate, Candidates, ContactFrame, MIN_COSINE, Which, lifted};
 use super::{Pair, RawManifold, choose, ids};
 use crate::math::lanes::{dot, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
@@ -20,7 +20,7 @@ const LANES: usize = 8;
 /// Builds the manifold of a solid and a half-space, the second, within the prediction.
 pub(super) fn build<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
-    frame: &Frame<N, D>,
+    frame: &ContactFrame<N, D>,
     limit: usize,
     out: &mut RawManifold<N, D>,
 ) {
@@ -35,7 +35,7 @@ pub(super) fn build<N: Real, const D: usize>(
 
 /// The half-space as the solid sees it.
 struct Above<'a, N: Real, const D: usize> {
-    frame: &'a Frame<N, D>,
+    frame: &'a ContactFrame<N, D>,
 }
 
 impl<N: Real, const D: usize> Above<'_, N, D> {

@@ -26,7 +26,7 @@ pub(super) use self::along::{Along, build_along, build_between, build_on_face};
 pub(crate) use self::along::{OnFace, on_face2, on_face3};
 pub(super) use self::chain::SegmentPair;
 pub(in crate::collide) use self::frame::Candidate;
-use self::frame::{Candidates, Frame};
+use self::frame::{Candidates, ContactFrame};
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
@@ -71,7 +71,7 @@ fn build_in_plane<N: Real>(
     if build_one_sided(pair, separation, request, limit, out) {
         return;
     }
-    let frame = Frame::new(pair, separation, request, tangents2(&separation.normal));
+    let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
     if !stretch::build(pair, &frame, limit, out) {
         // A user's solid with a supporting feature that is neither a point nor a side.
         settle_witness(pair, separation, out);
@@ -88,7 +88,7 @@ pub(crate) fn build3<N: Real>(
     out: &mut RawManifold<N, 3>,
 ) {
     if !build_one_sided(pair, separation, request, request.max_points, out) {
-        let frame = Frame::new(pair, separation, request, tangents3(&separation.normal));
+        let frame = ContactFrame::new(pair, separation, request, tangents3(&separation.normal));
         clip::build(pair, &frame, request.max_points, out);
     }
 }
@@ -111,7 +111,12 @@ fn build_one_sided<N: Space<D>, const D: usize>(
         settle_witness(pair, separation, out);
     } else if let Kind::Plane(_) = pair.second {
         let tangents = (N::tables().tangents)(&separation.normal);
-        half_space::build(pair, &Frame::new(pair, separation, request, tangents), limit, out);
+        half_space::build(
+            pair,
+            &ContactFrame::new(pair, separation, request, tangents),
+            limit,
+            out,
+        );
     } else {
         return false;
     }
@@ -230,7 +235,7 @@ fn chosen<N: Real, const D: usize>(
 /// Adds the witness, in place of any candidate with the same name unless the name is that of two
 /// faces, which many points may share.
 fn add_witness<N: Real, const D: usize>(
-    frame: &Frame<N, D>,
+    frame: &ContactFrame<N, D>,
     features: [FeatureId; 2],
     out: &mut Candidates<N, D>,
 ) {

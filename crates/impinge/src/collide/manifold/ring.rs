@@ -7,7 +7,7 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use super::frame::{Frame, MIN_COSINE, Which, lifted};
+use super::frame::{ContactFrame, MIN_COSINE, Which, lifted};
 use super::supporting::{FaceBlocks, supporting_feature};
 use crate::math::lanes::{LanePose, dot, load, minus, spread};
 use crate::math::simd::Simd;
@@ -79,7 +79,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
 
     /// Fills a blank ring with the supporting feature, which is still to be [projected](Self::project). A ring is
     /// some hundred bytes long, so it is filled where it lies.
-    pub(super) fn fill(&mut self, kind: Kind<'_, N, 3>, frame: &Frame<N, 3>) {
+    pub(super) fn fill(&mut self, kind: Kind<'_, N, 3>, frame: &ContactFrame<N, 3>) {
         let outward = self.which.outward(frame);
         let direction = self.pose.map_or(outward, |pose| pose.inverse_vector(&outward));
         self.radius = supporting_feature(kind, &direction, &mut self.faces);
@@ -154,7 +154,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
         &self,
         point: &Point<N, 3>,
         flat: &Vector<N, 2>,
-        frame: &Frame<N, 3>,
+        frame: &ContactFrame<N, 3>,
     ) -> Point<N, 3> {
         if self.is_segment() {
             let side = self.side(0);
@@ -188,7 +188,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
 
     /// How far the rounded surface is above a point of the core.
     #[inline]
-    pub(super) fn lift(&self, core: &Point<N, 3>, frame: &Frame<N, 3>) -> N {
+    pub(super) fn lift(&self, core: &Point<N, 3>, frame: &ContactFrame<N, 3>) -> N {
         if self.radius <= N::ZERO {
             return N::ZERO;
         }
@@ -202,7 +202,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     pub(super) fn project<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        frame: &Frame<N, 3>,
+        frame: &ContactFrame<N, 3>,
     ) {
         let [u, v] = frame.tangents();
         for face in &self.faces {
@@ -247,7 +247,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 
     /// Simplifies what has no extent when seen along the normal.
-    fn settle(&mut self, frame: &Frame<N, 3>) {
+    fn settle(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
         let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
         if extent.is_none() && self.is_segment() {
@@ -366,7 +366,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 
     /// Finds the corner that is nearest to the other solid, the first of equals.
-    fn find_top(&mut self, frame: &Frame<N, 3>) {
+    fn find_top(&mut self, frame: &ContactFrame<N, 3>) {
         let below = |at: usize| self.which.below_witness(&self.point(at), frame);
         let (mut best, mut least) = (0, below(0));
         for at in 1..self.count {

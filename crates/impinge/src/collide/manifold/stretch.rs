@@ -14,9 +14,9 @@
 //! ```
 //!
 //! The contacts are the ends of the overlap that the request admits, an angle being a number in that test
-//! ([`Frame::admit`]), and the witness where none of them is as near.
+//! ([`ContactFrame::admit`]), and the witness where none of them is as near.
 
-use super::frame::{Candidates, Frame, MIN_COSINE, Which, lifted, part_beside};
+use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
 use super::{Pair, RawManifold, add_witness, choose};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
@@ -25,7 +25,7 @@ use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
 /// where one has a supporting feature that is neither a side nor a corner.
 pub(super) fn build<N: Real>(
     pair: &Pair<'_, N, 2>,
-    frame: &Frame<N, 2>,
+    frame: &ContactFrame<N, 2>,
     limit: usize,
     out: &mut RawManifold<N, 2>,
 ) -> bool {
@@ -78,7 +78,7 @@ impl<N: Real> Stretch<N> {
         which: Which,
         kind: Kind<'_, N, 2>,
         pose: Option<&Pose<N, 2>>,
-        frame: &Frame<N, 2>,
+        frame: &ContactFrame<N, 2>,
     ) -> Option<Self> {
         let outward = which.outward(frame);
         let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
@@ -88,7 +88,7 @@ impl<N: Real> Stretch<N> {
 
     /// That of a segment, the first solid.
     #[inline]
-    pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &Frame<N, 2>) -> Self {
+    pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &ContactFrame<N, 2>) -> Self {
         Self::placed(Which::First, &Shown::of_segment(segment), N::ZERO, None, frame)
     }
 
@@ -98,7 +98,7 @@ impl<N: Real> Stretch<N> {
         shown: &Shown<N>,
         rounding: N,
         pose: Option<&Pose<N, 2>>,
-        frame: &Frame<N, 2>,
+        frame: &ContactFrame<N, 2>,
     ) -> Self {
         let corner = |(id, vertex): (FeatureId, Point<N, 2>)| {
             let point = pose.map_or(vertex, |pose| placed(pose, &vertex));
@@ -143,7 +143,7 @@ impl<N: Real> Stretch<N> {
         }
     }
 
-    fn find_top(&mut self, frame: &Frame<N, 2>) {
+    fn find_top(&mut self, frame: &ContactFrame<N, 2>) {
         let [first, second] = &self.corners;
         let depth = self.which.below_witness(&first.point, frame);
         self.top = (depth, first.flat);
@@ -156,7 +156,7 @@ impl<N: Real> Stretch<N> {
     }
 
     /// The part that the witness lies on.
-    pub(super) fn at_witness(&self, frame: &Frame<N, 2>) -> FeatureId {
+    pub(super) fn at_witness(&self, frame: &ContactFrame<N, 2>) -> FeatureId {
         let near = |corner: &Corner<N, 2>| corner.flat.norm() <= N::TWO * frame.tolerance;
         match &self.corners {
             [from, _] if self.is_side && near(from) => from.id,
@@ -195,7 +195,7 @@ impl<N: Real> Stretch<N> {
 
     /// How far the rounded surface is above a point of the core, along the normal.
     #[inline]
-    fn lift(&self, core: &Point<N, 2>, frame: &Frame<N, 2>) -> N {
+    fn lift(&self, core: &Point<N, 2>, frame: &ContactFrame<N, 2>) -> N {
         if self.rounding <= N::ZERO {
             return N::ZERO;
         }
@@ -226,7 +226,7 @@ fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
 
 /// Two sides in one frame.
 pub(super) struct Shared<'a, N: Real> {
-    pub(super) frame: &'a Frame<N, 2>,
+    pub(super) frame: &'a ContactFrame<N, 2>,
     pub(super) first: &'a Stretch<N>,
     pub(super) second: &'a Stretch<N>,
 }

@@ -1,6 +1,6 @@
 //! What the nearest points of two convex solids lie on.
 
-use super::frame::{Frame, Which, rounding};
+use super::frame::{ContactFrame, Which, rounding};
 use super::ring::part_of;
 use super::stretch::Stretch;
 use super::{ManifoldRequest, Pair, clip, tangents2, tangents3};
@@ -53,9 +53,9 @@ fn frame<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     tangents: [Vector<N, D>; 2],
-) -> Frame<N, D> {
+) -> ContactFrame<N, D> {
     let request = ManifoldRequest::new(separation.distance, N::ZERO, 1);
-    Frame::new(pair, separation, &request, tangents)
+    ContactFrame::new(pair, separation, &request, tangents)
 }
 
 fn features<N: Real, const D: usize>(

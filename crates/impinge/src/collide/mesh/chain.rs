@@ -14,7 +14,7 @@ use super::{
 };
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::manifold::{Along, SegmentPair};
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::enclosing;
 use crate::collide::separation::{ChainQuestion, Links, links};
@@ -83,7 +83,7 @@ struct Chain<'b, 'a, N: Real> {
 
 /// The segments that are kept: all that overlap a box.
 struct KeptLinks<'t, N: Real> {
-    tiles: &'t [Tiles<N, 2>],
+    tiles: &'t [PartPacket<N, 2>],
     parts: &'t [u32],
     within: Aabb<N, 2>,
 }

@@ -4,7 +4,7 @@
 //! Of the solid its core counts by its extents along its own axes alone, as that of a box.
 
 use super::cull::{least_length, relative_slack};
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::math::lanes::{bits, by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Real, Vector, Wide, min};
@@ -36,7 +36,7 @@ pub(super) struct LowerBounds<N> {
 
 impl<N: Real, const D: usize> LowerBoundQuery<N, D> {
     /// The bounds of eight parts.
-    pub(super) fn bounds(&self, tiles: &Tiles<N, D>) -> LowerBounds<N> {
+    pub(super) fn bounds(&self, tiles: &PartPacket<N, D>) -> LowerBounds<N> {
         at(Level::new(), tiles, self)
     }
 }
@@ -44,7 +44,7 @@ impl<N: Real, const D: usize> LowerBoundQuery<N, D> {
 /// [`bounds`] with the vectors of an instruction set; the answers do not depend on it.
 fn at<N: Real, const D: usize>(
     level: Level,
-    tiles: &Tiles<N, D>,
+    tiles: &PartPacket<N, D>,
     query: &LowerBoundQuery<N, D>,
 ) -> LowerBounds<N> {
     with_lanes!(level, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, query))
@@ -53,7 +53,7 @@ fn at<N: Real, const D: usize>(
 #[inline(always)]
 fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
-    tiles: &Tiles<N, D>,
+    tiles: &PartPacket<N, D>,
     query: &LowerBoundQuery<N, D>,
 ) -> LowerBounds<N> {
     let corners: [[V; D]; 3] = [

@@ -5,7 +5,7 @@
 use smallvec::SmallVec;
 
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangle};
 
@@ -44,7 +44,7 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     /// In order.
     parts: SmallVec<[u32; 8]>,
     /// Of all parts, or of none.
-    tiles: Vec<Tiles<N, D>>,
+    tiles: Vec<PartPacket<N, D>>,
     are_segments: bool,
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
@@ -124,7 +124,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         // Not a byte more than that: there are as many of these as pairs.
         self.tiles.reserve_exact(self.parts.len().div_ceil(LANES));
         for parts in self.parts.chunks(LANES) {
-            let mut tiles = Tiles::blank();
+            let mut tiles = PartPacket::blank();
             for lane in 0..LANES {
                 let part = composite.part(parts[lane.min(parts.len() - 1)]);
                 let is_first = lane == 0 && self.tiles.is_empty();
@@ -148,7 +148,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
     }
 
     /// The corners of all parts in packets of eight; empty if they are not kept.
-    pub(super) fn tiles(&self) -> &[Tiles<N, D>] {
+    pub(super) fn tiles(&self) -> &[PartPacket<N, D>] {
         &self.tiles
     }
 

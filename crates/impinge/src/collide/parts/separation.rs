@@ -10,7 +10,7 @@ use super::sweep::PartSweep;
 use crate::bounding_volume::Aabb;
 use crate::bvh::{BoxRanking, NONE, Toward, TreePair, visit_pairs, visit_ranked};
 use crate::collide::Pair;
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::separation as of_convex;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector, max, max_component, unit};
@@ -286,7 +286,7 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
         near: &mut PartGaps<N>,
     ) {
         for group in near.chunks_mut(LANES) {
-            let (mut tiles, mut is_known) = (Tiles::blank(), [false; LANES]);
+            let (mut tiles, mut is_known) = (PartPacket::blank(), [false; LANES]);
             for (lane, (_, other)) in group.iter().enumerate() {
                 let part = parts.part(*other);
                 if let Some(corners) = corners(&part.solid, &part.pose) {

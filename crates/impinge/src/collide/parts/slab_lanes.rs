@@ -5,7 +5,7 @@
 //! "`OBBTree`", 1996); two in the plane, iff no direction across a side of either does.
 
 use super::slabs::{AxisSlabs, rounding_unit};
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::math::lanes::{bits, cross, dot, load, minus, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
@@ -17,7 +17,7 @@ type Corners<V, const D: usize> = [[V; D]; 3];
 /// gap along the slabs is within the limit others are not asked.
 pub(crate) fn part_gaps2<N: Real>(
     slabs: &AxisSlabs<N, 2>,
-    tiles: &Tiles<N, 2>,
+    tiles: &PartPacket<N, 2>,
     limit: N,
 ) -> [N; LANES] {
     with_lanes!(Level::new(), simd => in_plane::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit))
@@ -26,7 +26,7 @@ pub(crate) fn part_gaps2<N: Real>(
 /// [`part_gaps2`], in 3D.
 pub(crate) fn part_gaps3<N: Real>(
     slabs: &AxisSlabs<N, 3>,
-    tiles: &Tiles<N, 3>,
+    tiles: &PartPacket<N, 3>,
     limit: N,
 ) -> [N; LANES] {
     with_lanes!(Level::new(), simd => in_space::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit))
@@ -36,7 +36,7 @@ pub(crate) fn part_gaps3<N: Real>(
 fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     slabs: &AxisSlabs<N, 2>,
-    tiles: &Tiles<N, 2>,
+    tiles: &PartPacket<N, 2>,
     limit: N,
 ) -> [N; LANES] {
     let corners = seen::<S, N, V, 2>(simd, slabs, tiles);
@@ -55,7 +55,7 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     slabs: &AxisSlabs<N, 3>,
-    tiles: &Tiles<N, 3>,
+    tiles: &PartPacket<N, 3>,
     limit: N,
 ) -> [N; LANES] {
     let corners = seen::<S, N, V, 3>(simd, slabs, tiles);
@@ -144,7 +144,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
 fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     slabs: &AxisSlabs<N, D>,
-    tiles: &Tiles<N, D>,
+    tiles: &PartPacket<N, D>,
 ) -> Corners<V, D> {
     let origin: [V; D] = spread(simd, &slabs.origin);
     let [a, b, c] = &tiles.corners;

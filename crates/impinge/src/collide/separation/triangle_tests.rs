@@ -4,7 +4,7 @@
 
 use super::{gaps3, general, hulls, separation};
 use crate::collide::Pair;
-use crate::collide::packet::{LANES, PartGap, TiledParts, Tiles};
+use crate::collide::packet::{LANES, PartGap, PartPacket, TiledParts};
 use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
 use crate::math::noise::Noise;
@@ -215,7 +215,7 @@ fn check_together<N: Real>(
     round: usize,
 ) -> usize {
     let count = triangles.len();
-    let mut tiles = vec![Tiles::blank(); count.div_ceil(LANES)];
+    let mut tiles = vec![PartPacket::blank(); count.div_ceil(LANES)];
     for lane in 0..tiles.len() * LANES {
         tiles[lane / LANES].put(lane % LANES, triangles[lane.min(count - 1)].corners());
     }

@@ -8,7 +8,7 @@ use crate::collide::Placed;
 use crate::math::{Space, Vector, max};
 use crate::query::{Impact, ImpactOptions, Moving, impact};
 use crate::shape::Shape;
-use crate::world::bodies::{Body, grown};
+use crate::world::bodies::{WorldBody, grown};
 use crate::world::{CollisionObject, CollisionWorld};
 
 /// Solids that move through the world along a straight line and do not turn, while its objects stay
@@ -125,7 +125,7 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
 
 impl<N: Space<D>, const D: usize> Cast<'_, N, D> {
     /// When the solid hits an object, and how; `None` if that is after `latest`.
-    fn impact(&self, body: &Body<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
+    fn impact(&self, body: &WorldBody<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
         let options = self.options.with_max_time(latest);
         let at_rest = Vector::<N, D>::zeros();
         let found = body.ask(|shape| {

@@ -3,9 +3,9 @@
 use crate::math::{Point, Space};
 use crate::query::point::{holds, is_surely_beyond, project};
 use crate::query::{PointProjection, Ray, RayIntersection, cast_on, surely_misses};
-use crate::world::Body;
+use crate::world::WorldBody;
 
-impl<N: Space<D>, const D: usize> Body<N, D> {
+impl<N: Space<D>, const D: usize> WorldBody<N, D> {
     /// Where a ray meets the object, at `latest` at the latest, with the normal in the world frame.
     pub(crate) fn cast_ray(
         &self,

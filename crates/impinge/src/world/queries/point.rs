@@ -6,7 +6,7 @@ use super::{NearObject, QueryFilter};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Space};
 use crate::query::{ClosestPoints, PointProjection};
-use crate::world::bodies::Body;
+use crate::world::bodies::WorldBody;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Points, in the world frame. A point that is not finite lies in nothing and is near nothing.
@@ -116,7 +116,7 @@ fn near<N: Space<D>, const D: usize>(point: &Point<N, D>) -> Option<WorldProbe<N
 
 /// How far an object is from a point, and its nearest point; `None` beyond `farthest`.
 fn projection<N: Space<D>, const D: usize>(
-    body: &Body<N, D>,
+    body: &WorldBody<N, D>,
     point: &Point<N, D>,
     solid: bool,
     farthest: N,

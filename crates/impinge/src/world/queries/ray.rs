@@ -6,7 +6,7 @@ use super::search::WorldProbe;
 use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::{Ray, RayBatch, RayIntersection};
-use crate::world::bodies::Body;
+use crate::world::bodies::WorldBody;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Rays.
@@ -164,7 +164,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
 /// Where a ray meets an object, at `latest` at the latest, with the normal in the world frame.
 fn cast<N: Space<D>, const D: usize>(
-    body: &Body<N, D>,
+    body: &WorldBody<N, D>,
     ray: &Ray<N, D>,
     latest: N,
     solid: bool,

@@ -7,7 +7,7 @@ use crate::broad_phase::Proposal;
 use crate::bvh::GROUP;
 use crate::math::{Real, Space, Vector};
 use crate::narrow_phase::CollisionObjectHandle;
-use crate::world::bodies::Body;
+use crate::world::bodies::WorldBody;
 use crate::world::{CollisionObject, CollisionWorld, WorldBroadPhase};
 
 /// What the boxes are asked; the key of a box is a time or a distance.
@@ -64,7 +64,8 @@ pub(super) type QueryAnswer<'a, N, const D: usize, T, A> = (&'a CollisionObject<
 
 /// Gets an object and the largest key that still counts, and returns the key of the object and the
 /// answer; `None` if the object has no key or a larger one.
-pub(super) type Measure<'a, N, const D: usize, A> = dyn Fn(&Body<N, D>, N) -> Option<(N, A)> + 'a;
+pub(super) type Measure<'a, N, const D: usize, A> =
+    dyn Fn(&WorldBody<N, D>, N) -> Option<(N, A)> + 'a;
 
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// The best answers, in order, that `measure` gives about objects that the filter allows.

@@ -9,7 +9,7 @@ use crate::convex::Separation;
 use crate::math::{Space, max};
 use crate::query::ClosestPoints;
 use crate::shape::Shape;
-use crate::world::bodies::{Body, aabb_at, grown};
+use crate::world::bodies::{WorldBody, aabb_at, grown};
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Solids and boxes, in the world frame.
@@ -216,7 +216,7 @@ pub(super) fn around<N: Space<D>, const D: usize>(
 }
 
 /// A solid touches or overlaps an object: by no more than that is certain, and by any parts that do.
-fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &Body<N, D>) -> bool {
+fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &WorldBody<N, D>) -> bool {
     body.ask(|shape| {
         let object = Placed::of_isometry(&body.isometry, shape);
         (N::tables().distance_in_world)(placed, &object, N::ZERO).is_some()
@@ -226,7 +226,7 @@ fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &Body<N
 /// How far a solid is from an object, `None` beyond `limit`.
 fn separation<N: Space<D>, const D: usize>(
     placed: &Placed<'_, N, D>,
-    body: &Body<N, D>,
+    body: &WorldBody<N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
     body.ask(|shape| {

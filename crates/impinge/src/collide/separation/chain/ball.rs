@@ -3,7 +3,7 @@
 use super::super::balls::ball_segment;
 use super::{ChainQuestion, EightSegments, Links};
 use crate::collide::Pair;
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::math::lanes::{bits, with_lanes};
 use crate::math::simd::{Level, Simd};
 use crate::math::{Real, Wide, min};
@@ -38,7 +38,7 @@ pub(super) fn links<N: Real>(
 /// instruction set, on which the answer does not depend.
 fn at<N: Real>(
     level: Level,
-    tiles: &Tiles<N, 2>,
+    tiles: &PartPacket<N, 2>,
     question: &ChainQuestion<'_, N>,
     radius: N,
 ) -> Option<(u8, N)> {
@@ -49,7 +49,7 @@ fn at<N: Real>(
 #[inline(always)]
 fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    tiles: &Tiles<N, 2>,
+    tiles: &PartPacket<N, 2>,
     question: &ChainQuestion<'_, N>,
     radius: N,
 ) -> Option<(u8, N)> {

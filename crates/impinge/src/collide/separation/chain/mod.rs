@@ -13,7 +13,7 @@ mod tests;
 use smallvec::SmallVec;
 
 use super::segments::segment_lanes::nearest_on_segment;
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::convex::Separation;
 use crate::math::lanes::{dot, load, minus, spread};
 use crate::math::simd::{Level, Simd, SimdMask};
@@ -22,7 +22,7 @@ use crate::shape::Kind;
 
 /// Some segments, and a solid among them.
 pub(crate) struct ChainQuestion<'a, N: Real> {
-    pub(crate) tiles: &'a [Tiles<N, 2>],
+    pub(crate) tiles: &'a [PartPacket<N, 2>],
     /// How many segments there are; what is left of the last tiles counts for nothing.
     pub(crate) count: usize,
     /// Where pairs of a segment and the solid are seen from.
@@ -97,7 +97,7 @@ impl<V> EightSegments<V> {
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
-        tiles: &Tiles<N, 2>,
+        tiles: &PartPacket<N, 2>,
         question: &ChainQuestion<'_, N>,
     ) -> Option<Self>
     where

@@ -4,7 +4,7 @@ use super::super::polygons::polygon_polygon;
 use super::super::segments::segment_lanes::SegmentGap;
 use super::{ChainQuestion, EightSegments, Links};
 use crate::collide::Pair;
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::convex::Separation;
 use crate::math::lanes::{LanePose, bits, spread, with_lanes};
 use crate::math::simd::{Level, Simd};
@@ -68,7 +68,7 @@ impl<N: Real> SegmentGaps<N> {
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
-        tiles: &Tiles<N, 2>,
+        tiles: &PartPacket<N, 2>,
         question: &ChainQuestion<'_, N>,
         core: &Segment<N, 2>,
     ) -> Option<Self> {

@@ -11,7 +11,7 @@ use crate::shape::{Ball, Segment};
 fn segments_of<N: Real>(
     random: &mut Random,
     origin: &Vector<N, 2>,
-) -> (Vec<Segment<N, 2>>, Vec<Tiles<N, 2>>) {
+) -> (Vec<Segment<N, 2>>, Vec<PartPacket<N, 2>>) {
     let count = 1 + random.pick(16);
     let mut corners = Vec::new();
     for _ in 0..count {
@@ -20,7 +20,7 @@ fn segments_of<N: Real>(
     }
     let mut tiles = Vec::new();
     for some in corners.chunks(LANES) {
-        let mut tile = Tiles::blank();
+        let mut tile = PartPacket::blank();
         (0..LANES).for_each(|lane| tile.put(lane, &some[lane.min(some.len() - 1)]));
         tiles.push(tile);
     }
@@ -83,7 +83,7 @@ fn eight_segments_at_once_are_the_same() {
 #[test]
 fn segments_without_length_are_left_to_others() {
     let ball = Ball::new(1.0);
-    let mut tile = Tiles::<f32, 2>::blank();
+    let mut tile = PartPacket::<f32, 2>::blank();
     (1..LANES)
         .for_each(|lane| tile.put(lane, &[0.0, 1.0, 1.0].map(|x| Point::<f32, 2>::new(x, 2.0))));
     let mut question = ChainQuestion {

@@ -9,7 +9,7 @@
 //! pairs of edges by their arcs of normals).
 
 use super::{TriangleQuery, noise};
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
 use crate::math::lanes::{
     bits, by_axis, cross, dot, either, load, minus, negated, over, spread, times, with_lanes,
@@ -82,7 +82,7 @@ pub(super) fn slack<N: Real>(scale: N) -> N {
 
 impl<N: Real> TriangleQuery<'_, N> {
     /// The axes by the vectors of an instruction set, on which they do not depend.
-    pub(super) fn axes(&self, level: Level, tiles: &Tiles<N, 3>) -> TriangleAxes<N> {
+    pub(super) fn axes(&self, level: Level, tiles: &PartPacket<N, 3>) -> TriangleAxes<N> {
         with_lanes!(level, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
     }
 
@@ -92,7 +92,7 @@ impl<N: Real> TriangleQuery<'_, N> {
     fn axes_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        tiles: &Tiles<N, 3>,
+        tiles: &PartPacket<N, 3>,
     ) -> TriangleAxes<N> {
         let packet = PlacedPacket::<S, N, V>::new(simd, self, tiles);
         let none = packet.shrink.simd_lt(packet.shrink);
@@ -175,7 +175,7 @@ struct PlacedPacket<'a, S, N: Real, V> {
 
 impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     #[inline(always)]
-    fn new(simd: S, query: &TriangleQuery<'a, N>, tiles: &Tiles<N, 3>) -> Self {
+    fn new(simd: S, query: &TriangleQuery<'a, N>, tiles: &PartPacket<N, 3>) -> Self {
         let origin: [V; 3] = spread(simd, &query.parts.origin);
         let given = [
             minus(&load(simd, &tiles.corners[0]), &origin),

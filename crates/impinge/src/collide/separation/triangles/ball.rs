@@ -9,7 +9,7 @@
 use smallvec::SmallVec;
 
 use crate::bounding_volume::Aabb;
-use crate::collide::packet::{LANES, Tiles};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::math::lanes::{bits, by_axis, dot, either, load, minus, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, max_component, min};
@@ -30,7 +30,7 @@ const MAX_APART: usize = 8;
 
 /// A ball among triangles.
 pub(crate) struct BallQuestion<'a, N: Real> {
-    pub(crate) tiles: &'a [Tiles<N, 3>],
+    pub(crate) tiles: &'a [PartPacket<N, 3>],
     /// How many triangles there are; what is left of the last tiles are copies.
     pub(crate) count: usize,
     /// In the frame of the triangles.
@@ -110,7 +110,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
-    tiles: &Tiles<N, 3>,
+    tiles: &PartPacket<N, 3>,
 ) -> V::Mask {
     let (low, high) = (question.within.mins(), question.within.maxs());
     let all = V::all(simd, N::ZERO);
@@ -158,7 +158,11 @@ struct TrianglePacket<V> {
 
 impl<V> TrianglePacket<V> {
     #[inline(always)]
-    fn of<S: Simd, N: Real>(simd: S, question: &BallQuestion<'_, N>, tiles: &Tiles<N, 3>) -> Self
+    fn of<S: Simd, N: Real>(
+        simd: S,
+        question: &BallQuestion<'_, N>,
+        tiles: &PartPacket<N, 3>,
+    ) -> Self
     where
         V: Wide<S, Scalar = N>,
     {
@@ -330,7 +334,7 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn has_corner<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
-    tiles: &Tiles<N, 3>,
+    tiles: &PartPacket<N, 3>,
     point: &Point<N, 3>,
 ) -> V::Mask {
     let point: [V; 3] = spread(simd, &point.coords);
@@ -369,14 +373,14 @@ mod tests {
     use crate::collide::separation::hulls::tests::Random;
 
     /// Two rows of triangles with common corners, around a ball at the origin, or nearly so.
-    fn strip<N: Real>(random: &mut Random) -> Vec<Tiles<N, 3>> {
+    fn strip<N: Real>(random: &mut Random) -> Vec<PartPacket<N, 3>> {
         let mut points: Vec<Point<N, 3>> = Vec::new();
         for at in 0..12_u32 {
             let [x, z] = [at / 2, at % 2].map(|n| N::lit(f64::from(n) - 2.0));
             let place = Vector::<N, 3>::new(x, N::ZERO, z * N::TWO + N::ONE);
             points.push(Point::from(place + random.vector::<N>() * N::lit(0.3)));
         }
-        let mut tiles = vec![Tiles::blank(), Tiles::blank()];
+        let mut tiles = vec![PartPacket::blank(), PartPacket::blank()];
         for at in 0..16 {
             let first = at.min(9);
             let corners = [points[first], points[first + 1], points[first + 2]];

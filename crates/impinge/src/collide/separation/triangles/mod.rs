@@ -12,7 +12,7 @@ mod ball;
 use self::axes::{AxisFeature, TriangleAxes};
 pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
-use crate::collide::packet::{GapVisitor, LANES, PartGap, TiledParts, Tiles};
+use crate::collide::packet::{GapVisitor, LANES, PartGap, PartPacket, TiledParts};
 use crate::math::simd::Level;
 use crate::math::{Pose, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Kind};
@@ -76,7 +76,7 @@ impl<N: Real> TriangleQuery<'_, N> {
     fn each(&self, visit: GapVisitor<'_, N, 3>) {
         let (mut places, mut first) = (self.parts.places(), 0);
         loop {
-            let (mut packet, mut count) = (Tiles::blank(), 0);
+            let (mut packet, mut count) = (PartPacket::blank(), 0);
             for (tiles, lane) in places.by_ref().take(LANES) {
                 packet.copy(count, tiles, lane);
                 count += 1;
