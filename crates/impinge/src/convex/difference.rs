@@ -210,7 +210,7 @@ where
             let toward1 = self.rotation.tr_mul(&-normal);
             let curved = self.solid2.curved_support(&Point::from(local), &toward1);
             return curved.map_or(corner, |found| {
-                let bend = self.rotation * (found.bend * self.shrink) * self.rotation.transpose();
+                let bend = turned(&self.rotation, &(found.bend * self.shrink));
                 let on = self.rotation * (found.point.coords * self.shrink) + self.translation;
                 Branch { on, bend: Some(bend), ..corner }
             });
@@ -227,6 +227,20 @@ where
     fn peak(&self) -> Option<Peak<N, D>> {
         self.peaks?.best(self.shrink, noise())
     }
+}
+
+/// A symmetric matrix in the frame that a rotation leads to.
+///
+/// In loops, since products of small matrices are not inlined.
+fn turned<N: Real, const D: usize>(
+    rotation: &Matrix<N, D>,
+    symmetric: &Matrix<N, D>,
+) -> Matrix<N, D> {
+    let product = |a: &Matrix<N, D>, i: usize, b: &Matrix<N, D>, j: usize| {
+        (0..D).fold(N::ZERO, |sum, k| sum + a[(i, k)] * b[(j, k)])
+    };
+    let half = Matrix::<N, D>::from_fn(|i, j| product(rotation, i, symmetric, j));
+    Matrix::<N, D>::from_fn(|i, j| product(&half, i, rotation, j))
 }
 
 /// A difference moved away from the origin; the points of the cores are still where they were.

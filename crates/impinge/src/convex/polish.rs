@@ -16,7 +16,7 @@ use super::candidate::SupportCandidate;
 use super::difference::{Branch, Difference, Vertex, noise, tolerance};
 use super::simplex::Simplicial;
 use super::witness::Mix;
-use crate::math::{Matrix, Real, Vector, max, min, unit};
+use crate::math::{Real, Vector, max, min, unit};
 
 /// Cap on the steps; a normal with a quarter of its digits takes two, and one for each point that turns
 /// out to be active or not to be. Along a ring of normals that are about as good, as of solids whose axes
@@ -27,19 +27,15 @@ const STEPS: usize = 24;
 const SLACK: f64 = 8.0;
 /// The longest step: Newton's method is of no use farther away.
 const LONGEST: f64 = 0.25;
-/// The unknowns of three dimensions: `n`, `λ`, and a weight for each active point but the first of
-/// each core; the right side; and one column more, so that whole registers are treated.
-const COLUMNS: usize = 8;
-/// No more equations than that.
-const ROWS: usize = 6;
+/// The most equations, in three dimensions: of the step, and of a weight for each active point but the first of each core.
+const ROWS: usize = 5;
+/// A column for each unknown, and the right side.
+const COLUMNS: usize = ROWS + 1;
+const RIGHT: usize = ROWS;
 
-/// Points of one core that are, or move to be, equally extreme.
-type Branches<N, const D: usize> = SmallVec<[Branch<N, D>; 4]>;
-
-/// What a core contributes.
-#[derive(Clone)]
+/// What a core contributes: points that are, or move to be, equally extreme, and their shares in the mix.
 struct ActiveSet<N: Real, const D: usize> {
-    branches: Branches<N, D>,
+    branches: SmallVec<[Branch<N, D>; 4]>,
     weights: SmallVec<[N; 4]>,
 }
 
@@ -59,7 +55,8 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
     }
     try_round_faces(difference, best);
     let mut current = *best;
-    let mut sides = active(difference, &current, vertices)?;
+    let mut sides = [ActiveSet::empty(), ActiveSet::empty()];
+    activate(difference, &current, vertices, &mut sides)?;
     let mut left = N::INFINITY;
     for _ in 0..STEPS {
         let mut turn = step(&current, &mut sides)?;
@@ -119,60 +116,76 @@ pub(super) fn lowest<N: Simplicial<D>, const D: usize>(
     vertices.iter().filter(|vertex| height(vertex) <= least + slack).copied().collect()
 }
 
-/// The active points of both cores; `None` if all are corners, or if so large that their extents are no numbers.
-fn active<N: Simplicial<D>, const D: usize>(
+/// Finds the active points of both cores; `None` if all are corners, or if so large that their extents are no numbers.
+fn activate<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
     vertices: &[Vertex<N, D>],
-) -> Option<[ActiveSet<N, D>; 2]> {
-    let mut sides = [Branches::new(), Branches::new()];
-    for vertex in vertices.iter().chain([&best.vertex]) {
-        for (index, on) in [vertex.on1, vertex.on2].iter().enumerate() {
-            let branch = difference.branch(index == 1, on, &best.normal);
-            if !sides[index].iter().any(|known| known.on == branch.on) {
-                sides[index].push(branch);
+    sides: &mut [ActiveSet<N, D>; 2],
+) -> Option<()> {
+    for (index, side) in sides.iter_mut().enumerate() {
+        let on = |vertex: &Vertex<N, D>| if index == 1 { vertex.on2 } else { vertex.on1 };
+        side.insert(difference.branch(index == 1, &on(&best.vertex), &best.normal));
+        for (place, vertex) in vertices.iter().enumerate() {
+            let is_known = |other: &Vertex<N, D>| on(other) == on(vertex);
+            if !is_known(&best.vertex) && !vertices[..place].iter().any(is_known) {
+                side.insert(difference.branch(index == 1, &on(vertex), &best.normal));
             }
         }
     }
-    if sides.iter().flatten().all(|branch| branch.bend.is_none()) {
+    let mut branches = sides.iter().flat_map(|side| &side.branches);
+    if branches.all(|branch| branch.bend.is_none()) {
         return None;
     }
-    keep_extreme(&mut sides, &best.normal);
-    sides.iter().all(|side| !side.is_empty()).then(|| sides.map(ActiveSet::new))
+    keep_extreme(sides, &best.normal);
+    sides.iter_mut().for_each(ActiveSet::share_evenly);
+    sides.iter().all(|side| !side.branches.is_empty()).then_some(())
 }
 
 /// Drops the points that are not extreme, even if the normal is off by the root of the noise, and of
 /// the others the least extreme, until there are no more than can determine a normal.
 fn keep_extreme<N: Simplicial<D>, const D: usize>(
-    sides: &mut [Branches<N, D>; 2],
+    sides: &mut [ActiveSet<N, D>; 2],
     normal: &Vector<N, D>,
 ) {
     let extent = |branch: &Branch<N, D>| {
         if branch.is_second { -normal.dot(&branch.on) } else { normal.dot(&branch.on) }
     };
     let most = [0, 1].map(|index: usize| {
-        sides[index].iter().fold(-N::MAX, |most, branch| max(extent(branch), most))
+        sides[index].branches.iter().fold(-N::MAX, |most, branch| max(extent(branch), most))
     });
     let lag = |branch: &Branch<N, D>| most[usize::from(branch.is_second)] - extent(branch);
     let slack = N::lit(SLACK) * tolerance::<N>().sqrt();
-    sides.iter_mut().for_each(|side| side.retain(|branch| lag(branch) <= slack));
-    while sides[0].len() + sides[1].len() > D + 1 {
+    sides.iter_mut().for_each(|side| side.branches.retain(|branch| lag(branch) <= slack));
+    while sides[0].branches.len() + sides[1].branches.len() > D + 1 {
         let mut worst = (0, 0, -N::ONE);
         for (index, side) in sides.iter().enumerate() {
-            for (place, branch) in side.iter().enumerate() {
-                if side.len() > 1 && lag(branch) >= worst.2 {
+            for (place, branch) in side.branches.iter().enumerate() {
+                if side.branches.len() > 1 && lag(branch) >= worst.2 {
                     worst = (index, place, lag(branch));
                 }
             }
         }
-        sides[worst.0].remove(worst.1);
+        sides[worst.0].branches.remove(worst.1);
     }
 }
 
 impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
-    fn new(branches: Branches<N, D>) -> Self {
-        let share = N::ONE / branches.iter().fold(N::ZERO, |count, _| count + N::ONE);
-        Self { weights: branches.iter().map(|_| share).collect(), branches }
+    fn empty() -> Self {
+        Self { branches: SmallVec::new(), weights: SmallVec::new() }
+    }
+
+    /// Adds a point, if it is not known.
+    fn insert(&mut self, branch: Branch<N, D>) {
+        if !self.branches.iter().any(|known| known.on == branch.on) {
+            self.branches.push(branch);
+        }
+    }
+
+    fn share_evenly(&mut self) {
+        let share = N::ONE / self.branches.iter().fold(N::ZERO, |count, _| count + N::ONE);
+        self.weights.clear();
+        self.weights.resize(self.branches.len(), share);
     }
 
     /// The points as they are for another normal.
@@ -187,15 +200,21 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
         self.branches.iter().zip(&self.weights).fold(zero, |sum, (b, &weight)| sum + b.on * weight)
     }
 
-    /// How the mix moves with the normal.
-    fn bend(&self) -> Matrix<N, D> {
-        let mut sum = Matrix::<N, D>::zeros();
+    /// Adds how the mix moves with the normal.
+    fn add_bend(&self, rows: &mut [[N; COLUMNS]; ROWS]) {
         for (branch, &weight) in self.branches.iter().zip(&self.weights) {
-            if let Some(bend) = &branch.bend {
-                sum += bend * weight;
+            let Some(bend) = &branch.bend else { continue };
+            for i in 0..D {
+                for j in 0..D {
+                    rows[i][j] += bend[(i, j)] * weight;
+                }
             }
         }
-        sum
+    }
+
+    /// From the first point to each of the others.
+    fn ways(&self) -> impl Iterator<Item = Vector<N, D>> {
+        self.branches[1..].iter().map(|branch| branch.on - self.branches[0].on)
     }
 
     /// The place of the least weight that is negative by more than the slack.
@@ -211,7 +230,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
 
     fn drop(&mut self, index: usize) {
         self.branches.remove(index);
-        *self = Self::new(std::mem::take(&mut self.branches));
+        self.share_evenly();
     }
 }
 
@@ -230,7 +249,7 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
         let is_beyond = outward.dot(on) > most + noise::<N>();
         if is_beyond && sides[0].branches.len() + sides[1].branches.len() <= D {
             sides[index].branches.push(difference.branch(index == 1, on, &current.normal));
-            sides[index] = ActiveSet::new(std::mem::take(&mut sides[index].branches));
+            sides[index].share_evenly();
             added = true;
         }
     }
@@ -253,48 +272,61 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(
 }
 
 /// A step of the normal; the weights are set to those that go with it.
+///
+/// With `t` for the step, `P` for what projects across the normal, `B` for the bends of both mixes, `h` for the height,
+/// `w` for the weights of all active points but the first of each core, and `D` for the ways to these from the first, of
+/// the first core backwards:
+///
+/// ```text
+/// | B + hP + nnᵀ  PD | |  t |   | P (b − a) |
+/// |    (PD)ᵀ       0 | | −w | = |  −D·n     |
+/// ```
+///
+/// Bends take the normal to zero; so `nnᵀ` keeps the step across it, and changes nothing else.
 fn step<N: Simplicial<D>, const D: usize>(
     current: &SupportCandidate<N, D>,
     sides: &mut [ActiveSet<N, D>; 2],
 ) -> Option<Vector<N, D>> {
-    let [first, second] = &*sides;
     let (normal, height) = (&current.normal, current.height);
-    let bend = first.bend() + second.bend();
-    let across = second.branches[0].on - first.branches[0].on;
-    let ways = first.branches[1..].iter().map(|branch| first.branches[0].on - branch.on);
-    let ways: SmallVec<[Vector<N, D>; 4]> =
-        ways.chain(second.branches[1..].iter().map(|b| b.on - second.branches[0].on)).collect();
-    let count = D + 1 + ways.len();
+    let [first, second] = &*sides;
     let mut rows = [[N::ZERO; COLUMNS]; ROWS];
     for i in 0..D {
         for j in 0..D {
-            rows[i][j] = -bend[(i, j)];
+            rows[i][j] = normal[i] * normal[j] * (N::ONE - height);
         }
-        rows[i][i] -= height;
-        (rows[i][D], rows[D][i]) = (-normal[i], normal[i]);
-        rows[i][count] = -across[i];
-        for (k, way) in ways.iter().enumerate() {
-            (rows[i][D + 1 + k], rows[D + 1 + k][i]) = (way[i], way[i]);
-        }
+        rows[i][i] += height;
     }
-    for (k, way) in ways.iter().enumerate() {
-        rows[D + 1 + k][count] = -way.dot(normal);
+    first.add_bend(&mut rows);
+    second.add_bend(&mut rows);
+    let across = |v: Vector<N, D>| v - normal * normal.dot(&v);
+    let ways = first.ways().map(|way| -way).chain(second.ways());
+    let mut count = D;
+    for way in ways {
+        let flat = across(way);
+        for i in 0..D {
+            (rows[i][count], rows[count][i]) = (flat[i], flat[i]);
+        }
+        rows[count][RIGHT] = -way.dot(normal);
+        count += 1;
+    }
+    let apart = across(second.branches[0].on - first.branches[0].on);
+    for i in 0..D {
+        rows[i][RIGHT] = apart[i];
     }
     let solution = solve(rows, count)?;
-    let (mut rest, mut turn) = (solution[D + 1..count].iter(), Vector::<N, D>::zeros());
-    (0..D).for_each(|i| turn[i] = solution[i]);
+    let mut rest = solution[D..count].iter();
     for side in sides {
         let mut sum = N::ZERO;
         for weight in &mut side.weights[1..] {
-            *weight = *rest.next()?;
+            *weight = -*rest.next()?;
             sum += *weight;
         }
         side.weights[0] = N::ONE - sum;
     }
-    Some(turn)
+    Some(Vector::from_fn(|axis, _| solution[axis]))
 }
 
-/// Solves the first `count` equations, each with its right side in the column `count`, by elimination
+/// Solves the first `count` equations, each with its right side in the column [`RIGHT`], by elimination
 /// with row pivoting; `None` if they are dependent.
 fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; ROWS]> {
     for column in 0..count {
@@ -322,7 +354,7 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; RO
     }
     let mut solution = [N::ZERO; ROWS];
     for row in (0..count).rev() {
-        let mut value = rows[row][count];
+        let mut value = rows[row][RIGHT];
         for (entry, known) in rows[row][row + 1..count].iter().zip(&solution[row + 1..count]) {
             value -= *entry * *known;
         }

@@ -57,8 +57,11 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Eroded<'_, N, D> {
     ) -> Option<CurvedSupport<N, D>> {
         let off = direction * self.radius;
         let found = self.solid.curved_support(&(point + off), direction)?;
-        let across = Matrix::<N, D>::identity() - direction * direction.transpose();
-        Some(CurvedSupport { point: found.point - off, bend: found.bend - across * self.radius })
+        let bend = Matrix::<N, D>::from_fn(|i, j| {
+            let across = if i == j { N::ONE } else { N::ZERO } - direction[i] * direction[j];
+            found.bend[(i, j)] - across * self.radius
+        });
+        Some(CurvedSupport { point: found.point - off, bend })
     }
 
     fn round_face(&self, direction: &Vector<N, D>) -> Option<Vector<N, D>> {

@@ -82,11 +82,11 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
     ) -> Option<CurvedSupport<N, D>> {
         let (on_sphere, length) = unit(&direction.component_mul(&self.half_axes))?;
         let point = on_sphere.component_mul(&self.half_axes);
-        let squares = Matrix::<N, D>::from_diagonal(&self.half_axes.component_mul(&self.half_axes));
-        Some(CurvedSupport {
-            point: Point::from(point),
-            bend: (squares - point * point.transpose()) / length,
-        })
+        let bend = Matrix::<N, D>::from_fn(|i, j| {
+            let square = if i == j { self.half_axes[i] * self.half_axes[i] } else { N::ZERO };
+            (square - point[i] * point[j]) / length
+        });
+        Some(CurvedSupport { point: Point::from(point), bend })
     }
 
     fn reach(&self) -> N {

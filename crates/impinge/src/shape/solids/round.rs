@@ -72,7 +72,8 @@ impl<N: Real> Disk<N> {
         }
         // Along the rim, by the radius for each radian around the axis.
         let around = Vector::<N, 3>::new(-radial.y, N::ZERO, radial.x);
-        let bend = around * around.transpose() * (self.radius / length);
+        let pace = self.radius / length;
+        let bend = Matrix::<N, 3>::from_fn(|i, j| around[i] * around[j] * pace);
         Some(CurvedSupport { point: self.at(radial), bend })
     }
 
