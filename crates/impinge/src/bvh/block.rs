@@ -32,6 +32,37 @@ impl<const D: usize> Block<D> {
         }
     }
 
+    /// The lane whose box has its middle nearest to a place, the first of several; `None` if none has a finite middle, or
+    /// squares are too large for `f32`.
+    #[inline]
+    pub(crate) fn nearest_lane(&self, place: &[f32; D]) -> Option<usize> {
+        let mut squares = [0.0; LANES];
+        for ((lo, hi), place) in self.lo.iter().zip(&self.hi).zip(place) {
+            for ((square, lo), hi) in squares.iter_mut().zip(lo).zip(hi) {
+                let way = lo * 0.5 + hi * 0.5 - place;
+                *square += way * way;
+            }
+        }
+        let (mut nearest, mut least) = (None, f32::INFINITY);
+        for (lane, &square) in squares.iter().enumerate() {
+            (nearest, least) = if square < least { (Some(lane), square) } else { (nearest, least) };
+        }
+        nearest
+    }
+
+    /// How far each box begins along a direction.
+    #[inline]
+    pub(crate) fn lowest_along(&self, along: &[f32; D]) -> [f32; LANES] {
+        let mut lowest = [0.0; LANES];
+        for ((along, lo), hi) in along.iter().zip(&self.lo).zip(&self.hi) {
+            let faces = if *along < 0.0 { hi } else { lo };
+            for (sum, face) in lowest.iter_mut().zip(faces) {
+                *sum += along * face;
+            }
+        }
+        lowest
+    }
+
     /// Puts a box into a lane.
     #[inline]
     pub(crate) fn set_lane(&mut self, lane: usize, bounds: &Bounds<D>) {

@@ -14,6 +14,7 @@ use smallvec::SmallVec;
 use super::block_slabs::{SlabBox, in_use};
 use super::gaps::Gaps;
 use super::near_first::Open;
+use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Vector, max, unit};
@@ -134,18 +135,11 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
             let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, &pair).as_aabb());
-            let (tree, middle) = (self.trees[which], aabb.center());
-            let squared = |bounds: &Bounds<D>| (bounds.as_aabb().center() - middle).norm_squared();
-            let mut block = 0;
-            for layer in (0..usize::from(whole.layers[which])).rev() {
-                let inner =
-                    tree.children(layer, block).map(|(child, inner)| (child, *inner.bounds));
-                block = least(inner, squared).unwrap_or(block);
+            let tree = self.trees[which];
+            if let Some(slot) = tree.slot_near(&aabb.center()) {
+                (pair.layers[which], pair.blocks[which]) = (0, slot / small(LANES));
+                found[which] = tree.ids[slot as usize];
             }
-            (pair.layers[which], pair.blocks[which]) = (0, block);
-            let slots = block as usize * LANES..(block as usize + 1) * LANES;
-            let objects = slots.map(|slot| (tree.ids[slot], tree.lane(slot)));
-            found[which] = least(objects, squared).unwrap_or(NONE);
         }
         found
     }
@@ -320,19 +314,6 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         near.sort_unstable_by_key(|(distance, at)| (distance.bits(), *at));
         near
     }
-}
-
-/// The one of some boxes for which a number is least, the first of several.
-fn least<N: Real, const D: usize>(
-    boxes: impl Iterator<Item = (u32, Bounds<D>)>,
-    number: impl Fn(&Bounds<D>) -> N,
-) -> Option<u32> {
-    let mut least = (N::INFINITY, None);
-    for (id, bounds) in boxes.filter(|(_, bounds)| bounds.is_finite()) {
-        let value = number(&bounds);
-        least = if value < least.0 { (value, Some(id)) } else { least };
-    }
-    least.1
 }
 
 /// A block of one tree below that of a pair, with the other block, and at which distance their boxes are.

@@ -1,31 +1,41 @@
 //! Objects of a tree by lower bounds of the caller's, least first.
 //!
 //! Best first (Hjaltason and Samet, "Distance browsing in spatial databases", 1999). The bounds may be negative, which
-//! ranks what overlaps, and they are dear: those of what is apart from a box around all that is asked about are made when
-//! its turn comes, since most of it never has one.
+//! ranks what overlaps, and they are dear: each is made when its turn comes, since most never have one. Until then the
+//! distance of the boxes counts, and the gap along one direction, which is made for all children of a block at once.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::Tree;
 use super::gaps::Gaps;
 use super::near_first::Open;
+use super::tree::small;
+use super::{LANES, Tree};
 use crate::bounding_volume::Aabb;
-use crate::math::{Real, max};
+use crate::math::{Point, Real, Vector, max};
 
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 128;
 
+/// What heights lose to rounding, in units of `f32` of the coordinates.
+const ROUNDING: f32 = 16.0;
+
 /// What is asked about the objects of a tree.
 pub(crate) trait BoxRanking<N: Real, const D: usize> {
-    /// A number that the rank of nothing in the box is below.
-    fn of_box(&self, aabb: &Aabb<N, D>) -> N;
+    /// A unit vector along which a gap is likely to part what is in a box from what is asked about, and how far that reaches
+    /// along it, or more: a rank is not below the gap. `None` if no gap is known.
+    fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)>;
 
-    /// A number that the rank of the object is not below, and not less than that of its box.
+    /// A number that the rank of the object is not below.
     fn of_object(&self, id: u32) -> N;
 
     /// The largest rank that matters; never grows. `None` ends the search.
     fn limit(&self) -> Option<N>;
+
+    /// A point near which one object may be all that is asked for: such a one is visited first, and may be again.
+    fn guess_near(&self) -> Option<Point<N, D>> {
+        None
+    }
 
     /// Gets each object whose bound is within the limit.
     fn visit(&mut self, id: u32);
@@ -40,7 +50,7 @@ struct RankedNode {
     height: u8,
     /// The number of the block, or the slot of the object.
     at: u32,
-    /// The bound is no more than the distance from the box.
+    /// The bound is not that of the question yet.
     is_rough: bool,
 }
 
@@ -77,11 +87,22 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
             if entry.rank > rank_of(limit) {
                 return;
             }
-            match (entry.is_rough, entry.height) {
-                (true, _) => self.refine(entry, limit),
-                (false, 0) => self.visit(entry.at),
+            match (entry.height, entry.is_rough) {
+                (0, true) => self.refine(entry, limit),
+                (0, false) => self.visit(entry.at),
                 _ => self.open(entry, limit),
             }
+        }
+    }
+
+    /// Visits an object that may be all that is asked for, if its box is within a distance of the gaps.
+    fn guess(&mut self, within: f32) {
+        let likely = self.question.guess_near().and_then(|point| self.tree.slot_near(&point));
+        let Some(slot) = likely else { return };
+        let (block, lane) = (slot / small(LANES), slot % small(LANES));
+        let near = self.tree.opened_around(&self.gaps, 0, block, within);
+        if near.mask & (1 << lane) != 0 {
+            self.visit(slot);
         }
     }
 
@@ -91,42 +112,85 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
-    /// Puts what has a bound within the limit back into the queue by that.
+    /// Puts an object into the queue by its own bound.
     fn refine(&mut self, entry: RankedNode, limit: N) {
-        let RankedNode { height, at, rank, .. } = entry;
-        let bound = match height.checked_sub(1) {
-            Some(layer) => {
-                let bounds = self.tree.layers[usize::from(layer)].bounds[at as usize];
-                self.question.of_box(&bounds.as_aabb())
-            }
-            None => match self.tree.id_in(at) {
-                Some(id) => self.question.of_object(id),
-                None => return,
-            },
-        };
+        let Some(id) = self.tree.id_in(entry.at) else { return };
+        let bound = self.question.of_object(id);
         let is_beyond = bound > limit;
         if !is_beyond {
-            let rank = rank_of(bound).max(rank);
-            self.queue.push(Reverse(RankedNode { rank, is_rough: false, ..entry }));
+            self.queue.push(Reverse(entry.refined(bound)));
         }
     }
 
-    /// Puts what is in a block into the queue.
-    fn open(&mut self, RankedNode { rank, height, at, .. }: RankedNode, limit: N) {
-        let layer = usize::from(height - 1);
+    /// Puts what is in a block into the queue; or the block, if others come before it by its own bound.
+    fn open(&mut self, mut entry: RankedNode, limit: N) {
+        let (layer, block) = (usize::from(entry.height - 1), entry.at);
         let within = self.gaps.limit(max(limit, N::ZERO));
-        let Open { keys, mut mask, first } = self.tree.opened_around(&self.gaps, layer, at, within);
+        let open = self.tree.opened_around(&self.gaps, layer, block, within);
+        if open.mask == 0 {
+            return;
+        }
+        if entry.height > self.tree.top_layer() {
+            self.guess(within);
+            if self.question.limit().is_none() {
+                return;
+            }
+        }
+        let (around, mut gaps) = (self.tree.slab_box(layer, block), [-N::INFINITY; LANES]);
+        if let Some((along, reach)) = self.question.toward(&around.bounds.as_aabb()) {
+            let Some(first) = self.first(entry, -around.reach(&-along) - reach, limit) else {
+                return;
+            };
+            entry = first;
+            gaps = self.gaps_along(layer, block, &along, reach);
+        }
+        self.push_all(&entry, open, &gaps, limit);
+    }
+
+    /// A block with a bound of its own, if that is within the limit and no other block or object comes before it; it goes
+    /// back into the queue if one does.
+    fn first(&mut self, entry: RankedNode, bound: N, limit: N) -> Option<RankedNode> {
+        let (entry, is_beyond) = (entry.refined(bound), bound > limit);
+        let is_first = self.queue.peek().is_none_or(|Reverse(other)| entry <= *other);
+        if !is_beyond && !is_first {
+            self.queue.push(Reverse(entry));
+        }
+        (!is_beyond && is_first).then_some(entry)
+    }
+
+    /// The gaps that a direction leaves to what is in a block, or less.
+    fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, reach: N) -> [N; LANES] {
+        let along = core::array::from_fn(|axis| along[axis].as_f32());
+        let reach = reach + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
+        let block = &self.tree.layers[layer].blocks[block as usize];
+        block.lowest_along(&along).map(|lowest| {
+            let is_known = lowest.is_finite();
+            if is_known { N::lit(lowest.into()) - reach } else { -N::INFINITY }
+        })
+    }
+
+    /// Puts what is in an open block into the queue, by distances and gaps.
+    fn push_all(&mut self, above: &RankedNode, open: Open, gaps: &[N; LANES], limit: N) {
+        let Open { keys, mut mask, first } = open;
         while mask != 0 {
             let lane = mask.trailing_zeros();
             mask &= mask - 1;
-            let distance: N = self.gaps.distance(keys[lane as usize]);
-            let entry = RankedNode { rank, height: height - 1, at: first + lane, is_rough: true };
-            if distance > N::ZERO {
-                self.queue.push(Reverse(RankedNode { rank: rank_of(distance).max(rank), ..entry }));
-            } else {
-                self.refine(entry, limit);
+            let (gap, distance) = (gaps[lane as usize], self.gaps.distance(keys[lane as usize]));
+            // Boxes that overlap have the distance zero, however deep.
+            let bound = if distance > N::ZERO { max(gap, distance) } else { gap };
+            let is_beyond = bound > limit;
+            if !is_beyond {
+                let below = RankedNode { height: above.height - 1, at: first + lane, ..*above };
+                self.queue.push(Reverse(RankedNode { is_rough: true, ..below.refined(bound) }));
             }
         }
+    }
+}
+
+impl RankedNode {
+    /// With a bound of its own, which does not take it before what it lies in.
+    fn refined<N: Real>(self, bound: N) -> Self {
+        Self { rank: rank_of(bound).max(self.rank), is_rough: false, ..self }
     }
 }
 
@@ -141,7 +205,6 @@ fn rank_of<N: Real>(value: N) -> i64 {
 mod tests {
     use super::*;
     use crate::bvh::{Bounds, Lanes};
-    use crate::math::Point;
     use crate::math::noise::Noise;
 
     /// Ranks are the least of the first coordinates of a box, as far as they are near a place.
@@ -154,13 +217,14 @@ mod tests {
     }
 
     impl BoxRanking<f64, 3> for ByFirst<'_> {
-        fn of_box(&self, aabb: &Aabb<f64, 3>) -> f64 {
-            let apart = aabb.distance_to_aabb(&self.place);
-            if apart > 0.0 { apart } else { aabb.mins().x - 100.0 }
+        fn toward(&self, _aabb: &Aabb<f64, 3>) -> Option<(Vector<f64, 3>, f64)> {
+            Some((Vector::x(), 100.0))
         }
 
         fn of_object(&self, id: u32) -> f64 {
-            self.of_box(&self.boxes[id as usize])
+            let aabb = &self.boxes[id as usize];
+            let apart = aabb.distance_to_aabb(&self.place);
+            if apart > 0.0 { apart } else { aabb.mins().x - 100.0 }
         }
 
         fn limit(&self) -> Option<f64> {

@@ -67,6 +67,11 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
         None
     }
 
+    /// Any two parts that touch are enough.
+    fn ends_at_touch(&self) -> bool {
+        false
+    }
+
     fn visit(&mut self, parts: [u32; 2]);
 }
 
@@ -376,8 +381,8 @@ struct RankedParts<'a, 'q, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D> {
-    fn of_box(&self, aabb: &Aabb<N, D>) -> N {
-        self.bounds.of_box(aabb)
+    fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
+        self.bounds.toward(aabb)
     }
 
     fn of_object(&self, id: u32) -> N {
@@ -389,6 +394,10 @@ impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D>
         let limit = self.visitor.limit();
         // Nothing is within NaN.
         (!ends && limit <= N::INFINITY).then_some(limit)
+    }
+
+    fn guess_near(&self) -> Option<Point<N, D>> {
+        self.visitor.ends_at_touch().then(|| self.bounds.center())
     }
 
     fn visit(&mut self, id: u32) {
@@ -417,6 +426,10 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
 
     fn normal(&self) -> Option<Vector<N, D>> {
         self.best.map(|best| best.separation.normal)
+    }
+
+    fn ends_at_touch(&self) -> bool {
+        self.wanted == Wanted::Touching
     }
 
     fn visit(&mut self, parts: [u32; 2]) {

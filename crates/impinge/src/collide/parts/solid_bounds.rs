@@ -19,7 +19,6 @@ pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
     solid: Kind<'a, N, D>,
     map: &'a dyn SupportMap<N, D>,
     pose: Pose<N, D>,
-    /// Well inside of it, in the frame of the composite.
     center: Point<N, D>,
     /// No coordinate of the solid is larger, but for rounding.
     size: N,
@@ -34,12 +33,24 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         Some(Self { solid, map, pose: *pose, center: pose.point(&map.center()), size })
     }
 
+    /// A point well inside of the solid, in the frame of the composite.
+    pub(crate) const fn center(&self) -> Point<N, D> {
+        self.center
+    }
+
     /// The signed distance of the solid from anything in the box is not less.
     pub(crate) fn of_box(&self, aabb: &Aabb<N, D>) -> N {
         let (center, half) = (aabb.center(), aabb.half_extents());
         let outward = self.outward_at(&center);
         let lowest = outward.dot(&center.coords) - outward.abs().dot(&half);
         self.gap(&outward, lowest, reach_of(aabb))
+    }
+
+    /// The unit vector that [`Self::of_box`] takes for a box, and how far the solid reaches along it, or more.
+    pub(crate) fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
+        let outward = self.outward_at(&aabb.center());
+        let reach = -self.gap(&outward, N::ZERO, reach_of(aabb));
+        (reach < N::INFINITY).then_some((outward, reach))
     }
 
     /// The signed distance of the solid from the part, which lies in the box, is not less.

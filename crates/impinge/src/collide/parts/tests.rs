@@ -8,6 +8,7 @@ use crate::collide::Pair;
 use crate::collide::separation::hulls::tests::Random;
 use crate::collide::separation::separation;
 use crate::math::{Matrix, Point, Pose, Real, Space, Vector, unit};
+use crate::procedural::space::ellipsoid;
 use crate::shape::{
     Ball, Capsule, CompositeShape, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Ellipsoid,
     Rounded, Segment, Shape, TriMesh, Triangle,
@@ -106,6 +107,31 @@ fn searches<N: Space<D>, const D: usize>(
     assert!(overlaps.iter().all(|count| count * 6 > overlaps[0] + overlaps[1]), "{overlaps:?}");
 }
 
+/// The same beside a fine smooth surface, whose blocks have thin slabs and lie in many layers: from inside, across it, near
+/// it and far away, aligned with it and not.
+fn searches_of_surface<N: Space<3>>() {
+    let half = Vector::<N, 3>::new(N::ONE, N::lit(0.75), N::HALF);
+    let surface = ellipsoid(&Ellipsoid::new(half), 40);
+    let mesh = TriMesh::new(surface.vertices, surface.triangles);
+    let (first, parts, random) = (mesh.geometry().0, mesh.num_parts(), &mut Random(5));
+    let mut overlaps = [0; 2];
+    for reach in [0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 4.0, 1e4] {
+        let along = Vector::<N, 3>::new(N::lit(reach), N::ZERO, N::ZERO);
+        let aside = random.vector::<N>() * N::lit(reach);
+        for pose12 in [
+            Pose::from_translation(along),
+            Pose { translation: along, ..random.turn() },
+            Pose { translation: aside, ..random.turn() },
+        ] {
+            for solid in in_space() {
+                let pair = Pair { first, second: solid.geometry().0, pose12 };
+                overlaps[usize::from(check(&pair, [parts, 1]) > N::ZERO)] += 1;
+            }
+        }
+    }
+    assert!(parts > 1000 && overlaps.iter().all(|&count| count > 40), "{parts} {overlaps:?}");
+}
+
 /// Bounds are no larger than the distances of parts, and hardly less where the parts are small.
 fn bounds<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
@@ -180,6 +206,7 @@ fn turned<N: Real>(random: &mut Random) -> Pose<N, 2> {
 fn no_part_is_nearer_than_the_one_that_is_found() {
     searches::<f32, 3>(&in_space(), Random::vector, Random::turn);
     searches::<f32, 2>(&in_plane(), |random| random.vector().xy(), turned);
+    searches_of_surface::<f32>();
 }
 
 #[cfg(feature = "f64")]
@@ -187,4 +214,5 @@ fn no_part_is_nearer_than_the_one_that_is_found() {
 fn no_part_is_nearer_in_double_precision() {
     searches::<f64, 3>(&in_space(), Random::vector, Random::turn);
     searches::<f64, 2>(&in_plane(), |random| random.vector().xy(), turned);
+    searches_of_surface::<f64>();
 }
