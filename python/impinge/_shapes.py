@@ -37,7 +37,7 @@ class Picked:
             if wrong.any():
                 row = int(np.argmax(wrong))
                 raise ValueError(f"picks[{row}] is {given[row]}, but there are {len(self.shapes)} shapes")
-        self.picks: NDArray[np.uint32] = np.array(given.tolist(), dtype=np.uint32)
+        self.picks: NDArray[np.uint32] = given.astype(np.uint32)
 
     def __len__(self) -> int:
         return len(self.picks)

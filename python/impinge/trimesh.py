@@ -145,7 +145,7 @@ class CollisionManager:
         return_data: bool = False,
     ) -> Any:
         """How far a mesh is from the nearest one of the manager."""
-        distance, names, data = self._nearest(_single(mesh, transform), None)
+        distance, names, data = self._nearest(_single(mesh, transform), None, return_data)
         return _answer(distance, names[0], data, return_name, return_data)
 
     def min_distance_internal(
@@ -158,14 +158,14 @@ class CollisionManager:
             row = sorted(self._shapes).index(name)
             is_wanted = (one == row) | (other == row)
             one, other = one[is_wanted], other[is_wanted]
-        distance, names, data = self._nearest(self, (one, other))
+        distance, names, data = self._nearest(self, (one, other), return_data)
         return _answer(distance, tuple(sorted(names)), data, return_names, return_data)
 
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """How far the nearest meshes of two managers are apart; the own name is the first."""
-        distance, names, data = self._nearest(other_manager, None)
+        distance, names, data = self._nearest(other_manager, None, return_data)
         return _answer(distance, names, data, return_names, return_data)
 
     def _place(self, name: str, shape: Shape, surface: Shape, matrix: NDArray[np.float64]) -> None:
@@ -228,7 +228,7 @@ class CollisionManager:
         return data
 
     def _nearest(
-        self, manager: CollisionManager, rows: tuple[Any, Any] | None
+        self, manager: CollisionManager, rows: tuple[Any, Any] | None, with_data: bool
     ) -> tuple[float, tuple[str, str], DistanceData | None]:
         """The nearest of these pairs of numbers, or of all pairs of this manager and another."""
         names, others = sorted(self._shapes), sorted(manager._shapes)
@@ -236,10 +236,13 @@ class CollisionManager:
         if not len(one):
             return float("inf"), ("", ""), None
         (shapes1, poses1), (shapes2, poses2) = self._placed(names), manager._placed(others)
-        best, _ = nearest(Picked(shapes1, one), poses1[one], Picked(shapes2, other), poses2[other])
+        best, distance = nearest(Picked(shapes1, one), poses1[one], Picked(shapes2, other), poses2[other])
         first, second = int(one[best]), int(other[best])
-        found = witness(shapes1[first], poses1[first], shapes2[second], poses2[second])
         pair = names[first], others[second]
+        # How deep meshes overlap, a witness alone tells.
+        if distance > 0 and not with_data:
+            return distance, pair, None
+        found = witness(shapes1[first], poses1[first], shapes2[second], poses2[second])
         faces = (
             int(self._faces(pair[0], found.part1, found.point1)),
             int(manager._faces(pair[1], found.part2, found.point2)),
