@@ -4,6 +4,7 @@
 //! thin, by the square of the width where the surface is smooth; and along any direction slab and box together reach
 //! little farther than the patch, as oriented boxes do (Gottschalk, Lin and Manocha, "`OBBTree`", 1996).
 
+use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 use crate::math::{Point, Real, Vector, max, min, unit};
 
@@ -95,8 +96,7 @@ impl<const D: usize> Tree<D> {
             let slab = |(block, sum): (u32, &Vector<N, D>)| {
                 let below = || self.children(layer - 1, block);
                 BlockSlab::around(sum, &self.layers[layer].bounds[block as usize], |along| {
-                    below().fold(-N::INFINITY, |reach, (_, below)| max(below.reach(along), reach))
-                        + size
+                    below().fold(-N::INFINITY, |reach, below| max(below.reach(along), reach)) + size
                 })
             };
             let slabs = blocks.map(slab).collect();
@@ -115,14 +115,10 @@ impl<const D: usize> Tree<D> {
     }
 
     /// The blocks of a layer that a block of the layer above holds.
-    pub(super) fn children(
-        &self,
-        layer: usize,
-        above: u32,
-    ) -> impl Iterator<Item = (u32, SlabBox<'_, D>)> {
-        let first = above * super::tree::small(LANES);
-        let blocks = (first..super::tree::small(self.layers[layer].blocks.len())).take(LANES);
-        blocks.map(move |block| (block, self.slab_box(layer, block)))
+    fn children(&self, layer: usize, above: u32) -> impl Iterator<Item = SlabBox<'_, D>> {
+        let first = above * small(LANES);
+        let blocks = (first..small(self.layers[layer].blocks.len())).take(LANES);
+        blocks.map(move |block| self.slab_box(layer, block))
     }
 }
 

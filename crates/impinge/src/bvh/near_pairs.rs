@@ -110,9 +110,8 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
 impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
-        let aabb = self.question.in_other(1, &self.bounds(1, &whole).as_aabb());
-        let is_near = !self.near(0, whole.layers[0], 0, &aabb).is_empty();
-        if is_near && self.question.limit() > N::ZERO {
+        let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));
+        if self.question.limit() > N::ZERO && !near().is_empty() {
             let likely = self.descend(whole);
             self.question.guess(likely);
         }
@@ -134,9 +133,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     fn descend(&self, whole: BlockPair) -> [u32; 2] {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
-            let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, &pair).as_aabb());
-            let tree = self.trees[which];
-            if let Some(slot) = tree.slot_near(&aabb.center()) {
+            let (tree, middle) = (self.trees[which], self.other_box(which, &pair).center());
+            if let Some(slot) = tree.slot_near(&middle) {
                 (pair.layers[which], pair.blocks[which]) = (0, slot / small(LANES));
                 found[which] = tree.ids[slot as usize];
             }
@@ -205,31 +203,20 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     /// Holds what is in two blocks, or in one of them, against each other: visits objects, and puts pairs of blocks
     /// into the queue.
     fn open(&mut self, pair: &BlockPair) {
-        let wider = self.wider(pair);
+        let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
+        let wider = usize::from(widths[1] >= widths[0]);
         match pair.layers {
-            [0, 0] => self.meet(pair),
+            [0, 0] => self.meet(1 - wider, pair),
             [_, 0] => self.open_one(0, pair),
             [0, _] => self.open_one(1, pair),
-            _ if self.is_much_wider(wider, pair) => self.open_one(wider, pair),
+            _ if widths[wider] > MUCH_WIDER * widths[1 - wider] => self.open_one(wider, pair),
             _ => self.open_both(1 - wider, pair),
         }
     }
 
-    fn wider(&self, pair: &BlockPair) -> usize {
-        let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
-        usize::from(widths[1] >= widths[0])
-    }
-
-    fn is_much_wider(&self, which: usize, pair: &BlockPair) -> bool {
-        let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
-        widths[which] > MUCH_WIDER * widths[1 - which]
-    }
-
     /// Puts the blocks below one of two into the queue, each with the other.
     fn open_one(&mut self, which: usize, pair: &BlockPair) {
-        let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb());
-        for (distance, block) in self.near(which, pair.layers[which], pair.blocks[which], &aabb) {
-            let below = below(pair, which, block, distance);
+        for below in self.near_below(which, pair) {
             let is_beyond = self.best_gap(&below) > self.question.limit();
             if !is_beyond {
                 self.queue.push(Reverse(below));
@@ -239,9 +226,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
 
     /// Puts the blocks below two blocks into the queue, each of the narrower one with those of the other that are near.
     fn open_both(&mut self, which: usize, pair: &BlockPair) {
-        let aabb = self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb());
-        for (distance, block) in self.near(which, pair.layers[which], pair.blocks[which], &aabb) {
-            let below = below(pair, which, block, distance);
+        for below in self.near_below(which, pair) {
             let is_beyond = self.gap(&below) > self.question.limit();
             if !is_beyond {
                 self.open_one(1 - which, &below);
@@ -250,13 +235,10 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     /// Visits the near pairs of objects of two leaf blocks: each object of one block with those of the other.
-    fn meet(&mut self, pair: &BlockPair) {
-        let which = 1 - self.wider(pair);
+    fn meet(&mut self, which: usize, pair: &BlockPair) {
         let [own, other] = [pair.blocks[which], pair.blocks[1 - which]];
-        let aabb = self.bounds(1 - which, pair).as_aabb();
-        let aabb = self.question.in_other(1 - which, &aabb);
         let sides = self.sides(1 - which, pair);
-        for (distance, slot) in self.near(which, 0, own, &aabb) {
+        for (distance, slot) in self.near(which, 0, own, &self.other_box(which, pair)) {
             let Some(id) = self.trees[which].id_in(slot) else { continue };
             if distance > self.question.bound() {
                 return;
@@ -294,6 +276,23 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
             sides.insert(0, (toward, reaches.fold(-N::INFINITY, max)));
         }
         sides
+    }
+
+    /// A box around the other block of a pair, in the frame of one of the trees.
+    fn other_box(&self, which: usize, pair: &BlockPair) -> Aabb<N, D> {
+        self.question.in_other(1 - which, &self.bounds(1 - which, pair).as_aabb())
+    }
+
+    /// The blocks below one of two that are near the other, each with that; near ones first.
+    fn near_below(
+        &self,
+        which: usize,
+        pair: &BlockPair,
+    ) -> impl Iterator<Item = BlockPair> + use<N, D> {
+        let pair = *pair;
+        let near =
+            self.near(which, pair.layers[which], pair.blocks[which], &self.other_box(which, &pair));
+        near.into_iter().map(move |(distance, block)| below(&pair, which, block, distance))
     }
 
     /// The lanes of a block of one tree that are within the bound of a box in its frame and overlap it as deep as the

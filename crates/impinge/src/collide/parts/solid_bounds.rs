@@ -38,19 +38,18 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
         self.center
     }
 
-    /// The signed distance of the solid from anything in the box is not less.
-    pub(crate) fn of_box(&self, aabb: &Aabb<N, D>) -> N {
-        let (center, half) = (aabb.center(), aabb.half_extents());
-        let outward = self.outward_at(&center);
-        let lowest = outward.dot(&center.coords) - outward.abs().dot(&half);
-        self.gap(&outward, lowest, reach_of(aabb))
-    }
-
-    /// The unit vector that [`Self::of_box`] takes for a box, and how far the solid reaches along it, or more.
+    /// The unit vector along which the solid lies nearest to the middle of a box, and how far it reaches along that, or more.
     pub(crate) fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
         let outward = self.outward_at(&aabb.center());
         let reach = -self.gap(&outward, N::ZERO, reach_of(aabb));
         (reach < N::INFINITY).then_some((outward, reach))
+    }
+
+    /// The signed distance of the solid from anything in the box is not less.
+    pub(super) fn of_box(&self, aabb: &Aabb<N, D>) -> N {
+        self.toward(aabb).map_or(-N::INFINITY, |(along, reach)| {
+            along.dot(&aabb.center().coords) - along.abs().dot(&aabb.half_extents()) - reach
+        })
     }
 
     /// The signed distance of the solid from the part, which lies in the box, is not less.
