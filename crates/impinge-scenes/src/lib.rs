@@ -23,6 +23,7 @@ use std::ops::Range;
 
 pub use motion::{Motion, Wave};
 pub use placement::Placement;
+pub use random::Random;
 pub use scenes::{
     Area, Room, asteroids, crowd, few_moving, mixed_shapes, mixed_sizes, pile, rain, room, sensors,
     sparse_drift, spawn_and_despawn, terrain_field, terrain_mesh, tower, trembling_vehicles_field,

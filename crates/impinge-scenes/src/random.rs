@@ -2,12 +2,14 @@
 
 /// `SplitMix64`: Steele, Lea, Flood, "Fast Splittable Pseudorandom Number Generators" (2014).
 #[derive(Clone, Debug)]
-pub(crate) struct Random {
+pub struct Random {
     state: u64,
 }
 
 impl Random {
-    pub(crate) const fn new(seed: u64) -> Self {
+    /// The sequence of a seed.
+    #[must_use]
+    pub const fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
@@ -19,24 +21,27 @@ impl Random {
     }
 
     /// From 0 up to, not including, 1.
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         // 53 bits fill the fraction of an f64 exactly.
         let scale = 1.0 / f64::from(1_u32 << 27) / f64::from(1_u32 << 26);
         (self.bits() >> 11) as f64 * scale
     }
 
     /// From `low` up to `high`.
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// A whole number below `bound`.
-    pub(crate) fn below(&mut self, bound: usize) -> usize {
+    ///
+    /// # Panics
+    /// If `bound` is zero.
+    pub fn below(&mut self, bound: usize) -> usize {
         usize::try_from(self.bits() % (bound as u64)).expect("below a usize")
     }
 
     /// A unit vector: a point of the unit ball, found by trial, pushed to the surface.
-    pub(crate) fn direction<const D: usize>(&mut self) -> [f64; D] {
+    pub fn direction<const D: usize>(&mut self) -> [f64; D] {
         loop {
             let v: [f64; D] = std::array::from_fn(|_| self.between(-1.0, 1.0));
             let squared: f64 = v.iter().map(|x| x * x).sum();
@@ -48,7 +53,7 @@ impl Random {
     }
 
     /// Brings the items into another order: neighbours in space shall not be neighbours in memory.
-    pub(crate) fn shuffle<T>(&mut self, items: &mut [T]) {
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for last in (1..items.len()).rev() {
             items.swap(last, self.below(last + 1));
         }

@@ -1,0 +1,132 @@
+//! How well impinge's contacts carry stacks: two tables.
+//!
+//! ```text
+//! cargo run --release -p impinge-stacks --no-default-features -- [WORD...] [OPTION...]
+//!
+//!   WORD          only scenes and pairs whose name contains a word; "table1" and "table2" choose a table
+//!   --points N    manifolds of at most N points instead of the default
+//!   --reuse X     pairs keep their contacts up to a way X
+//!   --by-place    the solver finds impulses by the nearest old point, not by id
+//!   --steps N     steps of a scene, 600 if not said
+//!   --f64         in f64 (not with --no-default-features)
+//! ```
+
+#![forbid(unsafe_code)]
+#![allow(clippy::print_stdout, reason = "printing is what the program is for")]
+
+use impinge_stacks::{
+    Choices, Counts, Impinge, Kind, Memory, Outcome, Shaken, Stack, Stage, pairs2, pairs3, play,
+    shake, stacks2, stacks3,
+};
+
+/// What the command line asks for.
+#[derive(Default)]
+struct Arguments {
+    words: Vec<String>,
+    choices: Choices,
+    is_by_place: bool,
+    is_double: bool,
+    steps: Option<usize>,
+}
+
+fn main() {
+    let Some(arguments) = read() else {
+        println!("[WORD...] [--points N] [--reuse X] [--by-place] [--steps N] [--f64]");
+        println!("words choose scenes by name; table1 and table2 choose a table");
+        return;
+    };
+    #[cfg(feature = "f64")]
+    if arguments.is_double {
+        return tables::<f64>(&arguments);
+    }
+    tables::<f32>(&arguments);
+}
+
+/// The words of the command line; `None` if one is not understood.
+fn read() -> Option<Arguments> {
+    let mut arguments = Arguments::default();
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        match word.as_str() {
+            "--points" => arguments.choices.max_points = Some(words.next()?.parse().ok()?),
+            "--reuse" => arguments.choices.reuse = Some(words.next()?.parse().ok()?),
+            "--steps" => arguments.steps = Some(words.next()?.parse().ok()?),
+            "--by-place" => arguments.is_by_place = true,
+            "--f64" if cfg!(feature = "f64") => arguments.is_double = true,
+            option if option.starts_with("--") => return None,
+            _ => arguments.words.push(word),
+        }
+    }
+    Some(arguments)
+}
+
+impl Arguments {
+    fn wants(&self, table: &str, name: &str) -> bool {
+        let (tables, words): (Vec<_>, Vec<_>) =
+            self.words.iter().partition(|word| word.starts_with("table"));
+        (tables.is_empty() || tables.iter().any(|wanted| *wanted == table))
+            && (words.is_empty() || words.iter().any(|word| name.contains(word.as_str())))
+    }
+}
+
+fn tables<N: Stage<2> + Stage<3>>(arguments: &Arguments) {
+    println!(
+        "{:<26} {:>9} {:>8} {:>8} {:>8} {:>6} {:>6} {:>7} {:>6} {:>7} {:>8}",
+        "scene",
+        "energy",
+        "drift",
+        "sunk",
+        "speed",
+        "new %",
+        "jump %",
+        "far",
+        "parted",
+        "points",
+        "ms"
+    );
+    for stack in stacks3().iter().filter(|stack| arguments.wants("table1", stack.name)) {
+        rest::<N, 3>(stack, arguments);
+    }
+    for stack in stacks2().iter().filter(|stack| arguments.wants("table1", stack.name)) {
+        rest::<N, 2>(stack, arguments);
+    }
+    println!("\n{:<26} new ids %, jumps %, farthest jump; shaken by 1e-5, 1e-4, 1e-3", "pair");
+    for pair in pairs3().iter().filter(|pair| arguments.wants("table2", pair.stack.name)) {
+        shaken::<N, 3>(pair, arguments);
+    }
+    for pair in pairs2().iter().filter(|pair| arguments.wants("table2", pair.stack.name)) {
+        shaken::<N, 2>(pair, arguments);
+    }
+}
+
+fn rest<N: Stage<D>, const D: usize>(stack: &Stack<D>, arguments: &Arguments) {
+    let mut source = Impinge::<N, D>::new(stack, arguments.choices);
+    let memory = if arguments.is_by_place { Memory::by_place() } else { Memory::by_ids() };
+    let outcome = play(stack, &mut source, memory, arguments.steps.unwrap_or(600));
+    let Outcome { energy, drift, sunk, max_speed, counts, parted, time, slowed } = outcome;
+    let has_fallen = stack.kind == Kind::Rest && (sunk > 0.4 || drift > 0.4);
+    let note = if has_fallen { "  fell".to_owned() } else { String::new() };
+    let note = if stack.kind == Kind::Slide { format!("  slowed {slowed:.1e}") } else { note };
+    println!(
+        "{:<26} {energy:>9.1e} {drift:>8.4} {sunk:>8.4} {max_speed:>8.4} {:>6.2} {:>6.2} {:>7.4} {parted:>6} {:>7.2} {time:>8.4}{note}",
+        stack.name,
+        100.0 * counts.new_share(),
+        100.0 * counts.jump_share(),
+        counts.farthest,
+        counts.points(),
+    );
+}
+
+fn shaken<N: Stage<D>, const D: usize>(pair: &Shaken<D>, arguments: &Arguments) {
+    let cells = [1e-5, 1e-4, 1e-3].map(|way| {
+        let mut source = Impinge::<N, D>::new(&pair.stack, arguments.choices);
+        let counts: Counts = shake(pair, &mut source, way, 1000);
+        format!(
+            "{:>6.2} {:>6.2} {:>7.4}",
+            100.0 * counts.new_share(),
+            100.0 * counts.jump_share(),
+            counts.farthest
+        )
+    });
+    println!("{:<26} {}", pair.stack.name, cells.join("   |"));
+}

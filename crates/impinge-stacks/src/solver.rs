@@ -1,0 +1,231 @@
+//! A sequential-impulse solver: Erin Catto, "Iterative Dynamics with Temporal Coherence" (2005).
+//!
+//! Contacts come as plain data, from any library. Each gets the impulse that its id had a step ago, then all are
+//! solved in turn, several times: the normal impulse pushes only, the friction is at most `friction` times as
+//! large. Overlap beyond the slop is pushed out by Baumgarte's method; gaps may close within a step. Gyroscopic
+//! torques are left out.
+
+use core::hash::Hash;
+
+use impinge::math::{Vector, max};
+
+use crate::{Memory, Turn};
+
+/// A rigid body; one that is fixed has the inverse mass and inertia zero.
+#[derive(Clone, Copy, Debug)]
+pub struct Body<N: Turn<D>, const D: usize> {
+    /// Where its own frame is.
+    pub pose: N::Isometry,
+    /// The center of mass, in its own frame.
+    pub center: Vector<N, D>,
+    /// The velocity of the center of mass.
+    pub velocity: Vector<N, D>,
+    /// The angular velocity, in the world frame.
+    pub spin: N::Spin,
+    /// One over the mass.
+    pub inverse_mass: N,
+    /// The inverse inertia about the center of mass, in its own frame.
+    pub inverse_inertia: N::Inertia,
+}
+
+/// A contact of two bodies.
+#[derive(Clone, Copy, Debug)]
+pub struct Contact<N: Turn<D>, const D: usize, K> {
+    /// The indices of the bodies.
+    pub bodies: [usize; 2],
+    /// The point on either body, in the world frame.
+    pub points: [Vector<N, D>; 2],
+    /// The unit normal from the first body to the second.
+    pub normal: Vector<N, D>,
+    /// The penetration; minus the distance of bodies that are apart.
+    pub depth: N,
+    /// Names the contact from step to step.
+    pub id: K,
+}
+
+/// The impulse that a contact had at the end of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Impulse<N: Turn<D>, const D: usize> {
+    /// Along the normal, at least zero.
+    pub normal: N,
+    /// Within the plane of contact, in the world frame: bases of that plane may differ from step to step.
+    pub friction: Vector<N, D>,
+}
+
+/// The constants of a solver, and the impulses of its last step.
+#[derive(Clone, Debug)]
+pub struct Solver<N: Turn<D>, const D: usize, K> {
+    /// The length of a step in seconds.
+    pub step: N,
+    /// The acceleration of all bodies.
+    pub gravity: Vector<N, D>,
+    /// Coulomb's coefficient.
+    pub friction: N,
+    /// How often all contacts are solved in a step.
+    pub iterations: usize,
+    /// The share of the overlap beyond the slop that goes in a step.
+    pub baumgarte: N,
+    /// An overlap that stays, so that contacts last.
+    pub slop: N,
+    /// The impulses of the last step.
+    pub memory: Memory<N, D, K>,
+}
+
+impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Solver<N, D, K> {
+    /// 60 steps a second, 10 iterations, gravity 10 along the second axis, friction 0.5.
+    #[must_use]
+    pub fn new(memory: Memory<N, D, K>) -> Self {
+        let mut gravity = Vector::<N, D>::zeros();
+        gravity[1] = N::lit(-10.0);
+        let (step, friction) = (N::lit(1.0 / 60.0), N::HALF);
+        let (baumgarte, slop) = (N::lit(0.2), N::lit(0.005));
+        Self { step, gravity, friction, iterations: 10, baumgarte, slop, memory }
+    }
+
+    /// Moves the bodies on by a step; `contacts` are those of their present poses.
+    pub fn step(&mut self, bodies: &mut [Body<N, D>], contacts: &[Contact<N, D, K>]) {
+        for body in bodies.iter_mut().filter(|body| body.inverse_mass != N::ZERO) {
+            body.velocity += self.gravity * self.step;
+        }
+        let inertias: Vec<_> =
+            bodies.iter().map(|body| N::in_world(&body.inverse_inertia, &body.pose)).collect();
+        let old = self.memory.recalled(bodies, contacts);
+        let constraints = contacts.iter().zip(old);
+        let mut constraints: Vec<_> = constraints
+            .map(|(contact, old)| self.constraint(bodies, &inertias, contact, &old))
+            .collect();
+        for constraint in &constraints {
+            constraint.warm_start(bodies);
+        }
+        for _ in 0..self.iterations {
+            for constraint in &mut constraints {
+                constraint.solve_normal(bodies);
+                constraint.solve_friction(self.friction, bodies);
+            }
+        }
+        let impulses = constraints.iter().map(Constraint::impulse);
+        self.memory.store(bodies, contacts, impulses);
+        for body in bodies {
+            let angle = body.spin * self.step;
+            body.pose = N::moved(&body.pose, &body.center, &(body.velocity * self.step), angle);
+        }
+    }
+
+    fn constraint(
+        &self,
+        bodies: &[Body<N, D>],
+        inertias: &[N::Inertia],
+        contact: &Contact<N, D, K>,
+        old: &Impulse<N, D>,
+    ) -> Constraint<N, D> {
+        let sides = [0, 1].map(|side| {
+            let body = &bodies[contact.bodies[side]];
+            let arm = contact.points[side] - N::point(&body.pose, &body.center);
+            Side { arm, inverse_mass: body.inverse_mass, inertia: inertias[contact.bodies[side]] }
+        });
+        let rows = N::basis(&contact.normal).map(|direction| Row::new(direction, &sides));
+        let mut impulses = rows.map(|row| row.direction.dot(&old.friction));
+        impulses[0] = old.normal;
+        let deep = max(contact.depth - self.slop, N::ZERO) * self.baumgarte;
+        let way = if contact.depth < N::ZERO { contact.depth } else { deep };
+        Constraint { bodies: contact.bodies, rows, impulses, parting: way / self.step }
+    }
+}
+
+/// A body as a contact has it.
+struct Side<N: Turn<D>, const D: usize> {
+    /// From the center of mass to the contact.
+    arm: Vector<N, D>,
+    inverse_mass: N,
+    inertia: N::Inertia,
+}
+
+/// One direction in which a contact acts on its bodies.
+#[derive(Clone, Copy)]
+struct Row<N: Turn<D>, const D: usize> {
+    direction: Vector<N, D>,
+    /// The torques of a unit impulse on either body, which both are taken as pushed along `direction`.
+    torques: [N::Spin; 2],
+    /// The spins that these make.
+    responses: [N::Spin; 2],
+    /// The impulse that changes the relative speed by 1.
+    mass: N,
+}
+
+/// A contact as the solver has it: a row along the normal, then those of friction.
+struct Constraint<N: Turn<D>, const D: usize> {
+    bodies: [usize; 2],
+    rows: [Row<N, D>; D],
+    impulses: [N; D],
+    /// The speed at which the bodies must part at least; negative while there is a gap to close.
+    parting: N,
+}
+
+impl<N: Turn<D>, const D: usize> Row<N, D> {
+    fn new(direction: Vector<N, D>, sides: &[Side<N, D>; 2]) -> Self {
+        let torques = [0, 1].map(|side| N::torque(&sides[side].arm, &direction));
+        let responses = [0, 1].map(|side| N::response(&sides[side].inertia, torques[side]));
+        let softness = [0, 1].map(|n| sides[n].inverse_mass + N::dot(torques[n], responses[n]));
+        let total = softness[0] + softness[1];
+        let mass = if total > N::ZERO { N::ONE / total } else { N::ZERO };
+        Self { direction, torques, responses, mass }
+    }
+
+    /// How fast the second body leaves the first along the row.
+    fn speed(&self, [first, second]: [&Body<N, D>; 2]) -> N {
+        self.direction.dot(&(second.velocity - first.velocity))
+            + N::dot(self.torques[1], second.spin)
+            - N::dot(self.torques[0], first.spin)
+    }
+
+    /// Pushes the second body along the row and the first against it.
+    fn push(&self, impulse: N, numbers: [usize; 2], bodies: &mut [Body<N, D>]) {
+        for (side, impulse) in [-impulse, impulse].into_iter().enumerate() {
+            let body = &mut bodies[numbers[side]];
+            body.velocity += self.direction * (impulse * body.inverse_mass);
+            body.spin += self.responses[side] * impulse;
+        }
+    }
+}
+
+impl<N: Turn<D>, const D: usize> Constraint<N, D> {
+    fn warm_start(&self, bodies: &mut [Body<N, D>]) {
+        for (row, impulse) in self.rows.iter().zip(self.impulses) {
+            row.push(impulse, self.bodies, bodies);
+        }
+    }
+
+    fn solve_normal(&mut self, bodies: &mut [Body<N, D>]) {
+        let speed = self.rows[0].speed(self.bodies.map(|n| &bodies[n]));
+        let wanted = self.impulses[0] + (self.parting - speed) * self.rows[0].mass;
+        self.change([max(wanted, N::ZERO)].into_iter(), 0, bodies);
+    }
+
+    /// Stops the sliding as far as the cone of friction allows.
+    fn solve_friction(&mut self, friction: N, bodies: &mut [Body<N, D>]) {
+        let pair = self.bodies.map(|n| &bodies[n]);
+        let mut wanted: [N; D] = core::array::from_fn(|n| {
+            self.impulses[n] - self.rows[n].speed(pair) * self.rows[n].mass
+        });
+        wanted[0] = N::ZERO;
+        let length = wanted.iter().fold(N::ZERO, |sum, x| sum + *x * *x).sqrt();
+        let limit = friction * self.impulses[0];
+        let scale = if length > limit { limit / length } else { N::ONE };
+        self.change(wanted.into_iter().skip(1).map(|x| x * scale), 1, bodies);
+    }
+
+    /// Replaces the impulses of the rows from `first` on and pushes by the differences.
+    fn change(&mut self, wanted: impl Iterator<Item = N>, first: usize, bodies: &mut [Body<N, D>]) {
+        for (n, wanted) in (first..).zip(wanted) {
+            self.rows[n].push(wanted - self.impulses[n], self.bodies, bodies);
+            self.impulses[n] = wanted;
+        }
+    }
+
+    fn impulse(&self) -> Impulse<N, D> {
+        let tangents = self.rows.iter().zip(self.impulses).skip(1);
+        let friction = tangents
+            .fold(Vector::<N, D>::zeros(), |sum, (row, impulse)| sum + row.direction * impulse);
+        Impulse { normal: self.impulses[0], friction }
+    }
+}

@@ -1,0 +1,89 @@
+//! Scenes for a solver, as plain numbers.
+
+use impinge_scenes::{Placement, SceneShape};
+
+/// Solids that a solver shall bring or keep to rest, or let slide.
+#[derive(Clone, Debug)]
+pub struct Stack<const D: usize> {
+    /// A few words, for tables, filters and messages.
+    pub name: &'static str,
+    /// The objects, the fixed ones first.
+    pub items: Vec<Item<D>>,
+    /// Coulomb's coefficient of all pairs.
+    pub friction: f64,
+    /// What is asked of the run.
+    pub kind: Kind,
+}
+
+/// What a scene shows, which decides what is asked of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Solids that stand where they begin.
+    Rest,
+    /// Solids that fall and come to rest somewhere.
+    Fall,
+    /// A solid that slides without friction.
+    Slide,
+}
+
+/// An object of a scene.
+#[derive(Clone, Debug)]
+pub struct Item<const D: usize> {
+    /// Its shape.
+    pub solid: Solid<D>,
+    /// Where it begins.
+    pub placement: Placement<D>,
+    /// Its mass for each unit of volume; zero for what is fixed.
+    pub density: f64,
+    /// The velocity with which it begins.
+    pub velocity: [f64; D],
+}
+
+/// The shape of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Solid<const D: usize> {
+    /// One shape.
+    One(SceneShape<D>),
+    /// Shapes side by side, none of which overlaps another.
+    Compound(Vec<(Placement<D>, SceneShape<D>)>),
+}
+
+/// Mass, center of mass and inertia tensor of a solid of density 1, in its own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mass<const D: usize> {
+    /// The volume; in 2D the area.
+    pub mass: f64,
+    /// The center of mass.
+    pub center: [f64; D],
+    /// The inertia tensor about the center of mass; in 2D the last number of the diagonal alone counts.
+    pub inertia: [[f64; 3]; 3],
+}
+
+impl<const D: usize> Stack<D> {
+    /// An empty scene of the friction 0.5.
+    pub(crate) fn new(name: &'static str, kind: Kind) -> Self {
+        Self { name, items: Vec::new(), friction: 0.5, kind }
+    }
+
+    /// The scene with a fixed object more.
+    pub(crate) fn fixed(self, shape: SceneShape<D>, at: [f64; D]) -> Self {
+        self.item(Item {
+            solid: Solid::One(shape),
+            placement: Placement::at(at),
+            density: 0.0,
+            velocity: [0.0; D],
+        })
+    }
+
+    /// The scene with a movable solid more.
+    pub(crate) fn with(self, shape: SceneShape<D>, placement: Placement<D>) -> Self {
+        let velocity = [0.0; D];
+        self.item(Item { solid: Solid::One(shape), placement, density: 1.0, velocity })
+    }
+
+    /// The scene with an object more.
+    pub(crate) fn item(mut self, item: Item<D>) -> Self {
+        self.items.push(item);
+        self
+    }
+}

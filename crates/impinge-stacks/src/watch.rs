@@ -1,0 +1,113 @@
+//! How contacts change from step to step.
+
+use core::hash::Hash;
+use std::collections::{HashMap, HashSet};
+
+use impinge::math::Vector;
+
+use crate::memory::{own_points, way};
+use crate::{Body, Contact, Turn};
+
+/// A point further than this share of the solids' extent from where it was has jumped.
+pub const JUMP: f64 = 0.05;
+
+/// Counts of the contacts of some steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Counts {
+    /// All contacts.
+    pub contacts: usize,
+    /// Those whose ids were not there a step before.
+    pub new: usize,
+    /// Those that are farther than [`JUMP`] from where the contact of their id, or else the nearest one of the
+    /// pair, was a step before, on both solids.
+    pub jumps: usize,
+    /// The farthest of these ways.
+    pub farthest: f64,
+    /// Pairs of solids with contacts.
+    pub pairs: usize,
+    /// Pairs that have no contact any more.
+    pub parted: usize,
+}
+
+impl Counts {
+    /// The share of contacts whose id is new.
+    #[must_use]
+    pub fn new_share(&self) -> f64 {
+        self.new as f64 / self.contacts.max(1) as f64
+    }
+
+    /// The share of contacts that jumped.
+    #[must_use]
+    pub fn jump_share(&self) -> f64 {
+        self.jumps as f64 / self.contacts.max(1) as f64
+    }
+
+    /// The counts of both spans of time together.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            contacts: self.contacts + other.contacts,
+            new: self.new + other.new,
+            jumps: self.jumps + other.jumps,
+            farthest: self.farthest.max(other.farthest),
+            pairs: self.pairs + other.pairs,
+            parted: self.parted + other.parted,
+        }
+    }
+
+    /// Contacts for each pair.
+    #[must_use]
+    pub fn points(&self) -> f64 {
+        self.contacts as f64 / self.pairs.max(1) as f64
+    }
+}
+
+/// The points of contacts in the frames of their bodies.
+type Own<N, const D: usize> = [Vector<N, D>; 2];
+
+/// The contacts of the last step, and counts since they were taken last.
+#[derive(Debug)]
+pub(crate) struct Watch<N: Turn<D>, const D: usize, K> {
+    by_id: HashMap<K, Own<N, D>>,
+    by_pair: HashMap<[usize; 2], Vec<Own<N, D>>>,
+    counts: Counts,
+}
+
+impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Watch<N, D, K> {
+    pub(crate) fn new() -> Self {
+        Self { by_id: HashMap::new(), by_pair: HashMap::new(), counts: Counts::default() }
+    }
+
+    /// The counts so far; they begin again at zero.
+    pub(crate) fn take(&mut self) -> Counts {
+        core::mem::take(&mut self.counts)
+    }
+
+    pub(crate) fn see(&mut self, bodies: &[Body<N, D>], contacts: &[Contact<N, D, K>]) {
+        let mut ids = HashMap::new();
+        let mut pairs: HashMap<_, Vec<_>> = HashMap::new();
+        for contact in contacts {
+            let own = own_points(bodies, contact);
+            self.count(contact, &own);
+            ids.insert(contact.id, own);
+            pairs.entry(contact.bodies).or_default().push(own);
+        }
+        let (old, new): (HashSet<_>, HashSet<_>) =
+            (self.by_pair.keys().collect(), pairs.keys().collect());
+        self.counts.pairs += new.len();
+        self.counts.parted += old.difference(&new).count();
+        (self.by_id, self.by_pair) = (ids, pairs);
+    }
+
+    fn count(&mut self, contact: &Contact<N, D, K>, own: &Own<N, D>) {
+        let Self { by_id, by_pair, counts } = self;
+        counts.contacts += 1;
+        let same = by_id.get(&contact.id).map(|old| way(old, own).as_f64());
+        counts.new += usize::from(same.is_none());
+        let others = by_pair.get(&contact.bodies).into_iter().flatten();
+        let nearest = others.map(|old| way(old, own).as_f64()).min_by(f64::total_cmp);
+        let Some(way) = same.or(nearest) else { return };
+        counts.jumps += usize::from(way > JUMP);
+        counts.farthest = counts.farthest.max(way);
+    }
+}
