@@ -21,7 +21,7 @@ mod watch;
 pub use mass::Weighed;
 pub use memory::{Memory, Place};
 pub use run::{LAST, Outcome, play, shake};
-pub use scenes::{Shaken, pairs2, pairs3, stacks2, stacks3};
+pub use scenes::{pairs2, pairs3, stacks2, stacks3};
 pub use solver::{Body, Contact, Impulse, Solver};
 pub use source::{Choices, ContactSource, Impinge, PREDICTION};
 pub use stack::{Item, Kind, Mass, Solid, Stack};

@@ -7,6 +7,7 @@
 //!   --points N    manifolds of at most N points instead of the default
 //!   --reuse X     pairs keep their contacts up to a way X
 //!   --by-place    the solver finds impulses by the nearest old point, not by id
+//!   --one-way     the solver takes contacts in the same order in all iterations
 //!   --steps N     steps of a scene, 600 if not said
 //!   --f64         in f64 (not with --no-default-features)
 //! ```
@@ -15,7 +16,7 @@
 #![allow(clippy::print_stdout, reason = "printing is what the program is for")]
 
 use impinge_stacks::{
-    Choices, Counts, Impinge, Kind, Memory, Outcome, Shaken, Stack, Stage, pairs2, pairs3, play,
+    Choices, Counts, Impinge, Kind, Memory, Outcome, Solver, Stack, Stage, pairs2, pairs3, play,
     shake, stacks2, stacks3,
 };
 
@@ -25,13 +26,14 @@ struct Arguments {
     words: Vec<String>,
     choices: Choices,
     is_by_place: bool,
+    is_one_way: bool,
     is_double: bool,
     steps: Option<usize>,
 }
 
 fn main() {
     let Some(arguments) = read() else {
-        println!("[WORD...] [--points N] [--reuse X] [--by-place] [--steps N] [--f64]");
+        println!("[WORD...] [--points N] [--reuse X] [--by-place] [--one-way] [--steps N] [--f64]");
         println!("words choose scenes by name; table1 and table2 choose a table");
         return;
     };
@@ -51,6 +53,7 @@ fn read() -> Option<Arguments> {
             "--points" => arguments.choices.max_points = Some(words.next()?.parse().ok()?),
             "--reuse" => arguments.choices.reuse = Some(words.next()?.parse().ok()?),
             "--steps" => arguments.steps = Some(words.next()?.parse().ok()?),
+            "--one-way" => arguments.is_one_way = true,
             "--by-place" => arguments.is_by_place = true,
             "--f64" if cfg!(feature = "f64") => arguments.is_double = true,
             option if option.starts_with("--") => return None,
@@ -91,10 +94,10 @@ fn tables<N: Stage<2> + Stage<3>>(arguments: &Arguments) {
         rest::<N, 2>(stack, arguments);
     }
     println!("\n{:<26} new ids %, jumps %, farthest jump; shaken by 1e-5, 1e-4, 1e-3", "pair");
-    for pair in pairs3().iter().filter(|pair| arguments.wants("table2", pair.stack.name)) {
+    for pair in pairs3().iter().filter(|pair| arguments.wants("table2", pair.name)) {
         shaken::<N, 3>(pair, arguments);
     }
-    for pair in pairs2().iter().filter(|pair| arguments.wants("table2", pair.stack.name)) {
+    for pair in pairs2().iter().filter(|pair| arguments.wants("table2", pair.name)) {
         shaken::<N, 2>(pair, arguments);
     }
 }
@@ -102,11 +105,11 @@ fn tables<N: Stage<2> + Stage<3>>(arguments: &Arguments) {
 fn rest<N: Stage<D>, const D: usize>(stack: &Stack<D>, arguments: &Arguments) {
     let mut source = Impinge::<N, D>::new(stack, arguments.choices);
     let memory = if arguments.is_by_place { Memory::by_place() } else { Memory::by_ids() };
-    let outcome = play(stack, &mut source, memory, arguments.steps.unwrap_or(600));
-    let Outcome { energy, drift, sunk, max_speed, counts, parted, time, slowed } = outcome;
+    let solver = Solver { alternates: !arguments.is_one_way, ..Solver::new(memory) };
+    let outcome = play(stack, &mut source, solver, arguments.steps.unwrap_or(600));
+    let Outcome { energy, drift, sunk, max_speed, counts, parted, time } = outcome;
     let has_fallen = stack.kind == Kind::Rest && (sunk > 0.4 || drift > 0.4);
-    let note = if has_fallen { "  fell".to_owned() } else { String::new() };
-    let note = if stack.kind == Kind::Slide { format!("  slowed {slowed:.1e}") } else { note };
+    let note = if has_fallen { "  fell" } else { "" };
     println!(
         "{:<26} {energy:>9.1e} {drift:>8.4} {sunk:>8.4} {max_speed:>8.4} {:>6.2} {:>6.2} {:>7.4} {parted:>6} {:>7.2} {time:>8.4}{note}",
         stack.name,
@@ -117,9 +120,9 @@ fn rest<N: Stage<D>, const D: usize>(stack: &Stack<D>, arguments: &Arguments) {
     );
 }
 
-fn shaken<N: Stage<D>, const D: usize>(pair: &Shaken<D>, arguments: &Arguments) {
+fn shaken<N: Stage<D>, const D: usize>(pair: &Stack<D>, arguments: &Arguments) {
     let cells = [1e-5, 1e-4, 1e-3].map(|way| {
-        let mut source = Impinge::<N, D>::new(&pair.stack, arguments.choices);
+        let mut source = Impinge::<N, D>::new(pair, arguments.choices);
         let counts: Counts = shake(pair, &mut source, way, 1000);
         format!(
             "{:>6.2} {:>6.2} {:>7.4}",
@@ -128,5 +131,5 @@ fn shaken<N: Stage<D>, const D: usize>(pair: &Shaken<D>, arguments: &Arguments) 
             counts.farthest
         )
     });
-    println!("{:<26} {}", pair.stack.name, cells.join("   |"));
+    println!("{:<26} {}", pair.name, cells.join("   |"));
 }

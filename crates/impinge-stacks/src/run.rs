@@ -2,13 +2,11 @@
 
 use std::time::Instant;
 
-use impinge::math::{Vector, max};
+use impinge::math::Vector;
 use impinge_scenes::Random;
 
-use crate::scenes::Shaken;
-use crate::stack::Kind;
 use crate::watch::{Counts, Watch};
-use crate::{Body, Contact, ContactSource, Memory, Solver, Stack, Stage, bodies_of};
+use crate::{Body, Contact, ContactSource, Solver, Stack, Stage, bodies_of};
 
 /// How many steps at the end of a run show whether the solids are at rest.
 pub const LAST: usize = 120;
@@ -16,17 +14,15 @@ pub const LAST: usize = 120;
 /// How a scene went.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Outcome {
-    /// The largest sum of kinetic energies in the last steps.
+    /// The largest sum of kinetic energies in the last steps, beside solids that go on as they began.
     pub energy: f64,
-    /// How far the center of a solid is at most, at the end, from where it began: along the ground, and for
-    /// solids that slide across their way.
+    /// How far the center of a solid is at most, at the end, from where it would be if it had gone on as it began:
+    /// along the ground.
     pub drift: f64,
     /// How far a solid sank at most.
     pub sunk: f64,
-    /// The largest speed of a center, or for solids that slide along the vertical.
+    /// The largest difference of a center's velocity from the one with which it began.
     pub max_speed: f64,
-    /// What a sliding solid lost of its speed, as a share.
-    pub slowed: f64,
     /// The contacts of the second half of the run.
     pub counts: Counts,
     /// Pairs that ceased to touch in the last steps.
@@ -39,13 +35,14 @@ pub struct Outcome {
 pub fn play<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
     stack: &Stack<D>,
     source: &mut S,
-    memory: Memory<N, D, S::Id>,
+    mut solver: Solver<N, D, S::Id>,
     steps: usize,
 ) -> Outcome {
-    let mut bodies = bodies_of(stack);
-    let begin = centers(&bodies);
-    let mut solver = Solver { friction: N::lit(stack.friction), ..Solver::new(memory) };
-    let mut watch = Watch::new();
+    let begin = bodies_of(stack);
+    let mut bodies = begin.clone();
+    solver.friction = N::lit(stack.friction);
+    solver.iterations = solver.iterations.max(stack.iterations);
+    let mut watch = Watch::new(stack.extents());
     let mut outcome = Outcome::default();
     for step in 0..steps {
         let start = Instant::now();
@@ -55,54 +52,51 @@ pub fn play<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
         if step == steps / 2 {
             watch.take();
         }
-        solver.step(&mut bodies, &contacts);
-        outcome.see(stack.kind, &bodies, step + LAST >= steps);
-        if step + LAST + 1 == steps {
+        if step + LAST == steps {
             outcome.counts = watch.take();
         }
+        solver.step(&mut bodies, &contacts);
+        outcome.see(&begin, &bodies, step + LAST >= steps);
     }
     let last = watch.take();
     outcome.parted = last.parted;
     outcome.counts = outcome.counts.plus(last);
-    outcome.end(stack, &begin, &bodies);
+    outcome.end(&begin, &bodies, solver.step * N::lit(steps as f64));
     outcome
 }
 
 impl Outcome {
     fn see<N: Stage<D>, const D: usize>(
         &mut self,
-        kind: Kind,
+        begin: &[Body<N, D>],
         bodies: &[Body<N, D>],
         is_last: bool,
     ) {
-        for body in bodies.iter().filter(|body| body.inverse_mass != N::ZERO) {
-            let speed =
-                if kind == Kind::Slide { body.velocity[1].abs() } else { body.velocity.norm() };
-            self.max_speed = self.max_speed.max(speed.as_f64());
+        let mut energy = N::ZERO;
+        for (old, body) in begin.iter().zip(bodies).filter(|(old, _)| old.inverse_mass != N::ZERO) {
+            let change = body.velocity - old.velocity;
+            self.max_speed = self.max_speed.max(change.norm().as_f64());
+            let inertia = N::in_world(&body.inverse_inertia, &body.pose);
+            energy += N::HALF * change.norm_squared() / body.inverse_mass;
+            energy += N::energy(&inertia, body.spin);
         }
         if is_last {
-            self.energy = self.energy.max(energy(bodies));
+            self.energy = self.energy.max(energy.as_f64());
         }
     }
 
     fn end<N: Stage<D>, const D: usize>(
         &mut self,
-        stack: &Stack<D>,
-        begin: &[Vector<N, D>],
+        begin: &[Body<N, D>],
         bodies: &[Body<N, D>],
+        time: N,
     ) {
-        for ((old, new), item) in begin.iter().zip(centers(bodies)).zip(&stack.items) {
-            let way = new - old;
-            let along = match stack.kind {
-                Kind::Slide => (2..D).fold(N::ZERO, |sum, axis| sum + way[axis] * way[axis]),
-                _ => way.norm_squared() - way[1] * way[1],
-            };
-            self.drift = self.drift.max(max(along, N::ZERO).sqrt().as_f64());
+        for (old, new) in begin.iter().zip(bodies).filter(|(old, _)| old.inverse_mass != N::ZERO) {
+            let center = |body: &Body<N, D>| N::point(&body.pose, &body.center);
+            let mut way = center(new) - center(old) - old.velocity * time;
             self.sunk = self.sunk.max(-way[1].as_f64());
-            if stack.kind == Kind::Slide && item.density > 0.0 {
-                let body = &bodies[bodies.len() - 1];
-                self.slowed = 1.0 - body.velocity[0].as_f64() / item.velocity[0];
-            }
+            way[1] = N::ZERO;
+            self.drift = self.drift.max(way.norm().as_f64());
         }
     }
 }
@@ -110,15 +104,15 @@ impl Outcome {
 /// Shakes the upper solid of a pair: each step it is off its place by up to `shake` in every direction, and turned
 /// by as many radians.
 pub fn shake<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
-    pair: &Shaken<D>,
+    pair: &Stack<D>,
     source: &mut S,
     shake: f64,
     steps: usize,
 ) -> Counts {
-    let mut bodies: Vec<Body<N, D>> = bodies_of(&pair.stack);
+    let mut bodies: Vec<Body<N, D>> = bodies_of(pair);
     let rest = bodies[1];
     let mut random = Random::new(1);
-    let mut watch = Watch::new();
+    let mut watch = Watch::new(pair.extents());
     for step in 0..=steps {
         let mut draw = || N::lit(random.between(-shake, shake));
         let shift = Vector::<N, D>::from_fn(|_, _| draw());
@@ -131,17 +125,4 @@ pub fn shake<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
         }
     }
     watch.take()
-}
-
-/// The sum of kinetic energies.
-fn energy<N: Stage<D>, const D: usize>(bodies: &[Body<N, D>]) -> f64 {
-    let energies = bodies.iter().filter(|body| body.inverse_mass != N::ZERO).map(|body| {
-        let inertia = N::in_world(&body.inverse_inertia, &body.pose);
-        N::HALF * body.velocity.norm_squared() / body.inverse_mass + N::energy(&inertia, body.spin)
-    });
-    energies.map(N::as_f64).sum()
-}
-
-fn centers<N: Stage<D>, const D: usize>(bodies: &[Body<N, D>]) -> Vec<Vector<N, D>> {
-    bodies.iter().map(|body| N::point(&body.pose, &body.center)).collect()
 }

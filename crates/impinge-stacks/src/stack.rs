@@ -11,6 +11,8 @@ pub struct Stack<const D: usize> {
     pub items: Vec<Item<D>>,
     /// Coulomb's coefficient of all pairs.
     pub friction: f64,
+    /// The iterations of the solver: a tall stack needs more.
+    pub iterations: usize,
     /// What is asked of the run.
     pub kind: Kind,
 }
@@ -59,10 +61,33 @@ pub struct Mass<const D: usize> {
     pub inertia: [[f64; 3]; 3],
 }
 
+impl<const D: usize> Solid<D> {
+    /// The largest edge of its box; infinite for half-spaces.
+    #[must_use]
+    pub fn extent(&self) -> f64 {
+        let boxes: Vec<_> = match self {
+            Self::One(shape) => vec![shape.aabb(&Placement::at([0.0; D]))],
+            Self::Compound(parts) => parts.iter().map(|(at, shape)| shape.aabb(at)).collect(),
+        };
+        let edge = |axis: usize| {
+            let low = boxes.iter().map(|b| b.map_or(f64::NEG_INFINITY, |(low, _)| low[axis]));
+            let high = boxes.iter().map(|b| b.map_or(f64::INFINITY, |(_, high)| high[axis]));
+            high.fold(f64::NEG_INFINITY, f64::max) - low.fold(f64::INFINITY, f64::min)
+        };
+        (0..D).map(edge).fold(0.0, f64::max)
+    }
+}
+
 impl<const D: usize> Stack<D> {
-    /// An empty scene of the friction 0.5.
+    /// The extents of the objects.
+    #[must_use]
+    pub fn extents(&self) -> Vec<f64> {
+        self.items.iter().map(|item| item.solid.extent()).collect()
+    }
+
+    /// An empty scene of the friction 0.5 and 10 iterations.
     pub(crate) fn new(name: &'static str, kind: Kind) -> Self {
-        Self { name, items: Vec::new(), friction: 0.5, kind }
+        Self { name, items: Vec::new(), friction: 0.5, iterations: 10, kind }
     }
 
     /// The scene with a fixed object more.

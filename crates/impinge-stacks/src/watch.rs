@@ -8,7 +8,7 @@ use impinge::math::Vector;
 use crate::memory::{own_points, way};
 use crate::{Body, Contact, Turn};
 
-/// A point further than this share of the solids' extent from where it was has jumped.
+/// A point farther than this share of the smaller solid's extent from where it was has jumped.
 pub const JUMP: f64 = 0.05;
 
 /// Counts of the contacts of some steps.
@@ -21,7 +21,7 @@ pub struct Counts {
     /// Those that are farther than [`JUMP`] from where the contact of their id, or else the nearest one of the
     /// pair, was a step before, on both solids.
     pub jumps: usize,
-    /// The farthest of these ways.
+    /// The farthest of these ways, as a share of the extent.
     pub farthest: f64,
     /// Pairs of solids with contacts.
     pub pairs: usize,
@@ -68,14 +68,17 @@ type Own<N, const D: usize> = [Vector<N, D>; 2];
 /// The contacts of the last step, and counts since they were taken last.
 #[derive(Debug)]
 pub(crate) struct Watch<N: Turn<D>, const D: usize, K> {
+    /// The extents of the bodies.
+    extents: Vec<f64>,
     by_id: HashMap<K, Own<N, D>>,
     by_pair: HashMap<[usize; 2], Vec<Own<N, D>>>,
     counts: Counts,
 }
 
 impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Watch<N, D, K> {
-    pub(crate) fn new() -> Self {
-        Self { by_id: HashMap::new(), by_pair: HashMap::new(), counts: Counts::default() }
+    pub(crate) fn new(extents: Vec<f64>) -> Self {
+        let (by_id, by_pair) = (HashMap::new(), HashMap::new());
+        Self { extents, by_id, by_pair, counts: Counts::default() }
     }
 
     /// The counts so far; they begin again at zero.
@@ -100,14 +103,16 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Watch<N, D, K> {
     }
 
     fn count(&mut self, contact: &Contact<N, D, K>, own: &Own<N, D>) {
-        let Self { by_id, by_pair, counts } = self;
+        let Self { extents, by_id, by_pair, counts } = self;
         counts.contacts += 1;
         let same = by_id.get(&contact.id).map(|old| way(old, own).as_f64());
         counts.new += usize::from(same.is_none());
         let others = by_pair.get(&contact.bodies).into_iter().flatten();
         let nearest = others.map(|old| way(old, own).as_f64()).min_by(f64::total_cmp);
         let Some(way) = same.or(nearest) else { return };
-        counts.jumps += usize::from(way > JUMP);
-        counts.farthest = counts.farthest.max(way);
+        let [extent1, extent2] = contact.bodies.map(|n| extents[n]);
+        let share = way / extent1.min(extent2);
+        counts.jumps += usize::from(share > JUMP);
+        counts.farthest = counts.farthest.max(share);
     }
 }

@@ -1,12 +1,12 @@
 //! The scenes: what stands, what falls, what slides, and pairs to shake.
 
-pub(crate) mod build;
+mod build;
 mod pairs;
 mod plane;
 mod space;
 mod space_terrain;
 
-pub use pairs::{Shaken, pairs2, pairs3};
+pub use pairs::{pairs2, pairs3};
 pub use plane::stacks2;
 
 use crate::Stack;

@@ -1,4 +1,4 @@
-//! Pairs of solids, the upper one to be shaken.
+//! Pairs of solids, the upper one of which is to be shaken.
 
 use impinge_scenes::{Placement, SceneShape};
 
@@ -7,28 +7,18 @@ use super::build::{
 };
 use crate::stack::{Kind, Stack};
 
-/// A fixed solid and one that lies on it.
-#[derive(Clone, Debug)]
-pub struct Shaken<const D: usize> {
-    /// The two.
-    pub stack: Stack<D>,
-    /// The smaller solid's extent, to which jumps of points are compared.
-    pub extent: f64,
-}
-
 /// How deep the upper solid is in the lower one: deeper than any shaking lifts it.
 const DEPTH: f64 = 0.002;
 
-/// All pairs in 3D, those of extent 1.
+/// All pairs in 3D: a fixed solid, and one of extent 1 or 2 that lies on it.
 #[must_use]
-pub fn pairs3() -> Vec<Shaken<3>> {
+pub fn pairs3() -> Vec<Stack<3>> {
     let cylinder = SceneShape::Cylinder { half_height: 0.5, radius: 0.5 };
     let lying = |at| turned(at, [1.0, 0.0, 0.0], QUARTER_TURN);
     let below = [0.0, -0.5, 0.0];
     let up = 0.5 - DEPTH;
     let pair = |name, lower, at, upper, placement| {
-        let stack = Stack::new(name, Kind::Rest).fixed(lower, at);
-        Shaken { stack: stack.with(upper, placement), extent: 1.0 }
+        Stack::new(name, Kind::Rest).fixed(lower, at).with(upper, placement)
     };
     let on_cube = |name, tangent| pair(name, cube(), below, cube(), spun([0.0, up, 0.0], tangent));
     let ground = [0.0; 3];
@@ -86,14 +76,13 @@ pub fn pairs3() -> Vec<Shaken<3>> {
     ]
 }
 
-/// All pairs in 2D.
+/// All pairs in 2D: a fixed solid and one that lies on it.
 #[must_use]
-pub fn pairs2() -> Vec<Shaken<2>> {
+pub fn pairs2() -> Vec<Stack<2>> {
     let up = 0.5 - DEPTH;
     let line = SceneShape::Polyline { vertices: (0..13).map(|n| [6.0 - n as f64, 0.0]).collect() };
     let pair = |name, lower, at, x: f64| {
-        let stack = Stack::new(name, Kind::Rest).fixed(lower, at);
-        Shaken { stack: stack.with(cube(), Placement::at([x, up])), extent: 1.0 }
+        Stack::new(name, Kind::Rest).fixed(lower, at).with(cube(), Placement::at([x, up]))
     };
     vec![
         pair("box on an equal box", cube(), [0.0, -0.5], 0.0),

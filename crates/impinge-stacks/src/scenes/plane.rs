@@ -25,7 +25,8 @@ fn line(height: impl Fn(usize) -> f64) -> SceneShape<2> {
 }
 
 fn tower(name: &'static str, ground: SceneShape<2>) -> Stack<2> {
-    let stack = Stack::new(name, Kind::Rest).fixed(ground, [0.0; 2]);
+    let mut stack = Stack::new(name, Kind::Rest).fixed(ground, [0.0; 2]);
+    stack.iterations = 30;
     (0..20).fold(stack, |stack, n| stack.with(cube(), Placement::at([0.1, n as f64 + 0.5])))
 }
 
