@@ -20,6 +20,7 @@ pub(crate) mod pair;
 pub(crate) mod parts;
 mod raw_manifold;
 pub(crate) mod separation;
+mod size;
 
 pub(crate) use batch::{
     ConvexPair, KeptPairs, PairQuestion, Solid, distances2, distances3, separations2, separations3,

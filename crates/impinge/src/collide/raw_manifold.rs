@@ -5,7 +5,7 @@
 
 use smallvec::SmallVec;
 
-use crate::math::{Point, Real, Vector};
+use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::FeatureId;
 
 /// Which points a manifold shall hold.
@@ -43,10 +43,19 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) distance: N,
     pub(crate) feature1: FeatureId,
     pub(crate) feature2: FeatureId,
-    /// The number of the contact within its pair; kept while the features stay.
+    /// The number of the contact within its pair; kept while it lasts.
     pub(crate) id: u32,
     /// What the builder that made the point knows its features again by; 0 for most.
     pub(crate) code: u32,
+}
+
+impl<N: Real, const D: usize> RawPoint<N, D> {
+    /// The same contact with the second solid first, which is placed in the frame of the first.
+    pub(crate) fn flip(&mut self, pose12: &Pose<N, D>, normal: &Vector<N, D>) {
+        self.point1 = pose12.inverse_point(&(self.point1 + normal * self.distance));
+        core::mem::swap(&mut self.feature1, &mut self.feature2);
+        self.code = 0;
+    }
 }
 
 impl<N: Real, const D: usize> Default for RawPoint<N, D> {
@@ -56,8 +65,8 @@ impl<N: Real, const D: usize> Default for RawPoint<N, D> {
     }
 }
 
-/// A set of points with one normal, in the frame of the first solid. The points stand last: who reads few
-/// of them reads one piece of memory.
+/// A set of points with one normal, in the frame of the first solid. The points stand behind what readers need:
+/// who reads few of them reads one piece of memory.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C)]
 pub(crate) struct RawManifold<N: Real, const D: usize> {
@@ -67,6 +76,9 @@ pub(crate) struct RawManifold<N: Real, const D: usize> {
     pub(crate) ids: PairIds,
     /// No point means that the solids are farther apart than the prediction.
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
+    /// The second solid in the frame of the first when the points were found, by which they are found again on the
+    /// second. Infinitely far away where that is not kept: a ball does not turn, so its own frame tells all.
+    pub(crate) pose12: Pose<N, D>,
 }
 
 /// The numbers given to the contacts of one pair, each once.
@@ -89,7 +101,8 @@ impl PairIds {
 
 impl<N: Real, const D: usize> Default for RawManifold<N, D> {
     fn default() -> Self {
-        Self { normal: Vector::<N, D>::zeros(), points: SmallVec::new(), ids: PairIds::default() }
+        let (normal, points) = (Vector::<N, D>::zeros(), SmallVec::new());
+        Self { normal, points, ids: PairIds::default(), pose12: Pose::identity() }
     }
 }
 
@@ -106,13 +119,18 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
         }
     }
 
-    /// The points named from the other side, so that they are found again when the solids change
-    /// places.
-    pub(crate) fn flip_names(&mut self) {
-        for point in &mut self.points {
-            core::mem::swap(&mut point.feature1, &mut point.feature2);
-            point.code = 0;
-        }
+    /// The same contacts with the second solid first.
+    pub(crate) fn flip(&mut self) {
+        let Self { normal, pose12, points, .. } = self;
+        points.iter_mut().for_each(|point| point.flip(pose12, normal));
+        *normal = -pose12.inverse_vector(normal);
+        *pose12 = pose12.inverse();
+    }
+
+    /// Says that the pose of the solids is not kept.
+    #[inline(always)]
+    pub(crate) fn forget_pose(&mut self) {
+        self.pose12.translation[0] = N::INFINITY;
     }
 
     /// The index of the deepest point, the first of equals; 0 for an empty manifold.

@@ -117,7 +117,7 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
     /// Calls with the normal, the distance and the first point of each contact, as they are kept.
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>));
 
-    /// Computes the contacts for new poses; points whose features stay keep their numbers.
+    /// Computes the contacts for new poses; points that moved keep their ids.
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
 
     /// The contacts as users see them; `posed` is that of the last update and `pair_number` names
@@ -159,17 +159,17 @@ impl<C> InOrder<C> {
         &mut self,
         poses: [&Pose<N, D>; 2],
         [kind1, kind2]: [Kind<'_, N, D>; 2],
-        flip_names: fn(&mut C),
+        flip: fn(&mut C),
     ) -> [usize; 2] {
         let swapped = is_swapped(poses[0], Geometry(kind1), poses[1], Geometry(kind2));
-        self.turn(swapped, flip_names);
+        self.turn(swapped, flip);
         [usize::from(swapped), usize::from(!swapped)]
     }
 
     /// The canonical order is this one now.
-    fn turn(&mut self, swapped: bool, flip_names: fn(&mut C)) {
+    fn turn(&mut self, swapped: bool, flip: fn(&mut C)) {
         if swapped != self.swapped {
-            flip_names(&mut self.contacts);
+            flip(&mut self.contacts);
             self.swapped = swapped;
         }
     }
@@ -203,7 +203,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         {
             return;
         }
-        self.kept.turn(swapped, RawManifold::flip_names);
+        self.kept.turn(swapped, RawManifold::flip);
         (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
     }
 
@@ -258,7 +258,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
         let solids = self.solids.as_ref()?;
         let kinds = [solids[0].kind(), solids[1].kind()];
-        let [first, second] = self.kept.order(poses, kinds, RawManifold::flip_names);
+        let [first, second] = self.kept.order(poses, kinds, RawManifold::flip);
         let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
@@ -343,7 +343,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         let (pair, swapped) = posed.canonical();
-        self.turn(swapped, CompositeContacts::flip_names);
+        self.turn(swapped, CompositeContacts::flip);
         let [first, second] =
             if swapped { [posed.pose2, posed.pose1] } else { [posed.pose1, posed.pose2] };
         let between = Between { pair, pose21: Pose::relative(second, first) };

@@ -7,8 +7,9 @@ use crate::math::{Pose, Real, Unit, Vector};
 
 /// The name of a contact: no two contacts of a world, at any time, share one.
 ///
-/// A contact that moved between two updates keeps its id. The id says nothing else; its order is
-/// that of creation within one pair.
+/// A contact that moved between two updates keeps its id: one on the same features, or one that has moved by no more
+/// than 1/16 of the size of the smaller solid (half the diagonal of its box), on either solid. The id says nothing
+/// else; its order is that of creation within one pair.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -111,9 +112,10 @@ impl<N: Real, const D: usize> TrackedContact<N, D> {
 ///
 /// Two convex solids have one manifold, composites one for each flat patch that they touch in. A box
 /// that rests on a plane is one manifold of four points in 3D and two in 2D; a ball gives
-/// one point. The deepest pair of points of the two solids is always among them, so that
-/// [`Self::deepest_contact`] is the answer of the query for one contact. Empty means that the solids
-/// are farther apart than the prediction.
+/// one point. [`Self::deepest_contact`] has the depth that the query for one contact returns. The first manifold
+/// of a pair holds its deepest point; in later ones a point that was there before may stand for it, if it is within
+/// 1/512 of the size of the smaller solid (half the diagonal of its box) of being as deep. Empty means that the
+/// solids are farther apart than the prediction.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};

@@ -11,8 +11,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ///
     /// The object gets a shape of its own: other objects that share the shape keep it as it is, and
     /// so does the last update, whose contacts can be read until the next. Queries see the new shape
-    /// at once, pairs at the next update, as with [`Self::set_shape`]; contacts on features that
-    /// stay keep their names. Costs a copy of the shape besides what `change` costs.
+    /// at once, pairs at the next update, as with [`Self::set_shape`]; contacts on features or at
+    /// places that stay keep their ids. Costs a copy of the shape besides what `change` costs.
     ///
     /// # Panics
     /// If the handle is stale or the shape of another type; [`Self::try_deform`] returns these.

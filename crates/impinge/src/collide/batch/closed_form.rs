@@ -3,13 +3,12 @@
 
 use core::marker::PhantomData;
 
-use super::gather::Inputs;
+use super::gather::{Inputs, RelativePoses};
 use super::masks::turned;
 use super::vectors::{bits, is_finite};
-use super::{Batch, LANES, PairQuestion};
-use crate::collide::manifold::{Candidate, choose, ids};
+use super::{Batch, LANES, LaneResult, PairQuestion};
+use crate::collide::manifold::{Candidate, PointChoice, choose, ids};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
-use crate::convex::Separation;
 use crate::math::simd::Simd;
 use crate::math::{Point, Real, Space, Vector, Wide};
 use crate::shape::FeatureId;
@@ -25,6 +24,9 @@ pub(super) trait Form<N: Real, const D: usize> {
         inputs: &Inputs<N, D>,
         found: &mut EightContacts<N, D>,
     );
+
+    /// Neither solid is a ball.
+    const KEEPS_POSE: bool = false;
 
     /// The features of the two solids that a pair's byte of [`EightContacts::parts`] stands for.
     fn features(parts: u8) -> [FeatureId; 2];
@@ -72,8 +74,19 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
         lane: usize,
         _: usize,
         raw: &mut RawManifold<N, D>,
-    ) -> bool {
+    ) -> LaneResult {
         found.settle::<F>(lane, raw)
+    }
+
+    fn settle_matched(
+        found: &Self::Found,
+        lane: usize,
+        _: usize,
+        pair: &Pair<'_, N, D>,
+        raw: &mut RawManifold<N, D>,
+    ) {
+        let count = 1 + usize::from(found.is_two >> lane & 1);
+        choose(&mut found.candidates::<F>(lane)[..count], &found.choice(lane, pair), raw);
     }
 
     fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>) {
@@ -83,6 +96,7 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
 
 /// The contacts of eight pairs.
 pub(super) struct EightContacts<N: Real, const D: usize> {
+    pub(super) pose: RelativePoses<N, D>,
     pub(super) normal: [[N; LANES]; D],
     pub(super) gap: [N; LANES],
     /// The first and the second contact: the points on the first solid, and the distances, of which that of a
@@ -105,6 +119,7 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
     const fn new() -> Self {
         let row = [N::ZERO; LANES];
         Self {
+            pose: RelativePoses::new(),
             normal: [row; D],
             gap: row,
             points1: [[row; D]; 2],
@@ -138,57 +153,69 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
         }
     }
 
-    /// Replaces the manifold of one pair; answers whether that was possible.
+    /// Replaces the manifold of one pair if its points have the features of the old ones.
     #[inline(always)]
-    fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
-        let parts = self.parts[lane & (LANES - 1)];
+    fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> LaneResult {
+        let lane = lane & (LANES - 1);
         let [is_found, is_apart, is_two] =
             [self.is_found, self.is_apart, self.is_two].map(|lanes| lanes >> lane & 1 == 1);
-        if is_found {
-            raw.normal = vector(&self.normal, lane);
-            if is_two {
-                self.settle_two([F::features(parts), F::features(parts >> 4)], lane, raw);
-                return true;
+        if is_apart {
+            raw.points.clear();
+        } else if !is_found {
+            return LaneResult::Declined;
+        } else if is_two {
+            let candidates = self.candidates::<F>(lane);
+            if !ids::renew(&candidates, self.gap[lane], raw) {
+                return LaneResult::Unmatched;
             }
-            let (point1, distance) = (vector(&self.points1[0], lane), self.gap[lane & (LANES - 1)]);
-            let features = F::features(parts);
+        } else if raw.points.is_empty() {
+            let id = raw.ids.next();
+            raw.points.push(self.candidates::<F>(lane)[0].named(id));
+        } else {
+            let features = F::features(self.parts[lane]);
             match raw.points.as_mut_slice() {
                 [old] if [old.feature1, old.feature2] == features => {
-                    old.point1 = Point::from(point1);
-                    old.distance = distance;
+                    old.point1 = Point::from(vector(&self.points1[0], lane));
+                    old.distance = self.gap[lane];
                 }
-                _ => replace((point1, distance), features, raw),
+                _ => return LaneResult::Unmatched,
             }
-        } else if is_apart {
-            raw.points.clear();
         }
-        is_found | is_apart
+        if is_found {
+            raw.normal = vector(&self.normal, lane);
+            self.keep_pose::<F>(lane, raw);
+        }
+        LaneResult::Done
     }
 
-    /// Two contacts, whose normal is given.
-    fn settle_two(&self, features: [[FeatureId; 2]; 2], lane: usize, raw: &mut RawManifold<N, D>) {
+    #[inline(always)]
+    fn keep_pose<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) {
+        if F::KEEPS_POSE {
+            self.pose.copy_to(lane, &mut raw.pose12);
+        } else {
+            raw.forget_pose();
+        }
+    }
+
+    /// The first and the second contact; where there is one, the first.
+    fn candidates<F: Form<N, D>>(&self, lane: usize) -> [Candidate<N, D>; 2] {
         let lane = lane & (LANES - 1);
-        let mut candidates = [0, 1].map(|which| Candidate {
+        let is_two = self.is_two >> lane & 1 == 1;
+        [0, 1].map(|which| Candidate {
             point1: Point::from(vector(&self.points1[which], lane)),
-            distance: self.distances[which][lane],
+            distance: if is_two { self.distances[which][lane] } else { self.gap[lane] },
             flat: Vector::<N, 2>::zeros(),
-            features: features[which],
-            kept_id: None,
-        });
-        choose(&mut candidates, self.gap[lane], self.tolerance[lane], 2, raw);
+            features: F::features(self.parts[lane] >> (4 * which)),
+            kept: None,
+        })
     }
-}
 
-/// Makes a point the only one of a manifold which had another, or others.
-#[inline(never)]
-fn replace<N: Real, const D: usize>(
-    (point, distance): (Vector<N, D>, N),
-    features: [FeatureId; 2],
-    raw: &mut RawManifold<N, D>,
-) {
-    let (point1, point2) = (Point::from(point), Point::from(point));
-    let found = Separation { distance, normal: raw.normal, point1, point2 };
-    ids::settle_alone(&Candidate::alone(&found, features), raw);
+    /// What the choice of points is held against; of a lone contact it is of no meaning.
+    fn choice<'p>(&self, lane: usize, pair: &'p Pair<'p, N, D>) -> PointChoice<'p, N, D> {
+        let lane = lane & (LANES - 1);
+        let (normal, distance) = (vector(&self.normal, lane), self.gap[lane]);
+        PointChoice { pair, normal, distance, tolerance: self.tolerance[lane], limit: 2 }
+    }
 }
 
 /// The vector of one lane.

@@ -19,6 +19,8 @@ use crate::shape::FeatureId;
 pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
+    const KEEPS_POSE: bool = true;
+
     #[inline(always)]
     fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
         inputs.put_cores(lane, pair) && pair.request.max_points > 1
@@ -31,6 +33,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
         found: &mut EightContacts<N, 2>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
+        found.pose.store(&pose12.rotation, &pose12.translation);
         let ends1 = [inputs.end::<S, V>(simd, 0, 0), inputs.end::<S, V>(simd, 0, 1)];
         let local2 = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];

@@ -17,6 +17,8 @@ pub(super) struct Segments3;
 type SegmentEnds<V> = [[V; 3]; 2];
 
 impl<N: Real> Form<N, 3> for Segments3 {
+    const KEEPS_POSE: bool = true;
+
     #[inline(always)]
     fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
         inputs.put_cores(lane, pair)
@@ -29,6 +31,7 @@ impl<N: Real> Form<N, 3> for Segments3 {
         found: &mut EightContacts<N, 3>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
+        found.pose.store(&pose12.rotation, &pose12.translation);
         let ends1 = [inputs.end::<S, V>(simd, 0, 0), inputs.end::<S, V>(simd, 0, 1)];
         let local2 = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];

@@ -59,7 +59,7 @@ impl<N: Real> SegmentPair<'_, N> {
         let level = witness.distance + self.tolerance;
         if !candidates.iter().any(|candidate| candidate.distance <= level) {
             let parts = [first.at_witness(&frame), second.at_witness(&frame)];
-            add_witness(&frame, parts, &mut candidates);
+            add_witness(&frame.witness, parts, &mut candidates);
         }
         let nearest = deepest(&candidates, level);
         candidates[nearest].distance = witness.distance;

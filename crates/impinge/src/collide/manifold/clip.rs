@@ -16,9 +16,9 @@
 
 use smallvec::SmallVec;
 
-use super::frame::{Candidate, Candidates, ContactFrame, Which, part_beside};
+use super::frame::{Candidates, ContactFrame, Which, part_beside};
 use super::ring::{LANES, RingCorner, SupportRing};
-use super::{Pair, RawManifold, add_witness, choose, ids};
+use super::{Pair, PointChoice, RawManifold, add_witness, choose};
 use crate::math::lanes::{bits, load, with_lanes};
 use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
@@ -37,16 +37,12 @@ pub(super) fn build<N: Real>(
     if clip.has_area_or_length() {
         clip.candidates(&mut candidates);
     }
-    out.normal = frame.normal();
-    let (nearest, tolerance) = (frame.witness.distance, frame.tolerance);
-    if !candidates.iter().any(|candidate| candidate.distance <= nearest + tolerance) {
+    let nearest = PointChoice::new(pair, frame, limit);
+    if !candidates.iter().any(|candidate| candidate.distance <= nearest.level()) {
         let parts = [clip.part_at_witness(0), clip.part_at_witness(1)];
-        if candidates.is_empty() {
-            return ids::settle_alone(&Candidate::alone(&frame.witness, parts), out);
-        }
-        add_witness(frame, parts, &mut candidates);
+        add_witness(&frame.witness, parts, &mut candidates);
     }
-    choose(&mut candidates, nearest, tolerance, limit, out);
+    choose(&mut candidates, &nearest, out);
 }
 
 /// The part of one of two solids that the nearest point lies on, of those that face the other.
@@ -117,7 +113,7 @@ struct SideRow<N: Real> {
 struct Insides<N: Real> {
     /// Each place has so many rows.
     width: usize,
-    rows: SmallVec<[SideRow<N>; LANES + 1]>,
+    rows: SmallVec<[SideRow<N>; 2 * LANES + 4]>,
 }
 
 impl<N: Real> Insides<N> {

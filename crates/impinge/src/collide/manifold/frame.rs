@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::ids::Inherited;
 use crate::collide::{ManifoldRequest, Pair, RawPoint};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, max, max_component, min};
@@ -96,15 +97,20 @@ pub(in crate::collide) struct Candidate<N: Real, const D: usize> {
     pub(in crate::collide) flat: Vector<N, 2>,
     /// The part of each solid that it lies on.
     pub(in crate::collide) features: [FeatureId; 2],
-    /// The number it had in the previous manifold.
-    pub(in crate::collide) kept_id: Option<u32>,
+    /// The id it has from the previous manifold.
+    pub(in crate::collide) kept: Option<Inherited>,
 }
 
 impl<N: Real, const D: usize> Candidate<N, D> {
     /// The nearest pair of points, which lie on the given parts.
     pub(in crate::collide) fn alone(witness: &Separation<N, D>, features: [FeatureId; 2]) -> Self {
         let (point1, distance) = (witness.point1, witness.distance);
-        Self { point1, distance, flat: Vector::<N, 2>::zeros(), features, kept_id: None }
+        Self { point1, distance, flat: Vector::<N, 2>::zeros(), features, kept: None }
+    }
+
+    /// The previous manifold held it, at this place.
+    pub(in crate::collide) fn is_old(&self) -> bool {
+        self.kept.is_some_and(|kept| kept.is_old)
     }
 
     pub(in crate::collide) fn named(&self, id: u32) -> RawPoint<N, D> {
@@ -199,7 +205,7 @@ impl<N: Real, const D: usize> ContactFrame<N, D> {
     ) -> Option<Candidate<N, D>> {
         let flat = self.flat(&point1);
         let distance = self.admit(distance, &flat)?;
-        Some(Candidate { point1, distance, flat, features, kept_id: None })
+        Some(Candidate { point1, distance, flat, features, kept: None })
     }
 
     /// Adds the candidate of [`Self::candidate`] unless one of the same features is at its position: what

@@ -5,7 +5,8 @@
 //! supporting feature count, on the rounded surface.
 
 use super::frame::{Candidate, Candidates, ContactFrame, MIN_COSINE, Which, lifted};
-use super::{Pair, RawManifold, choose, ids};
+use super::supporting::contact_feature;
+use super::{Pair, PointChoice, RawManifold, choose};
 use crate::math::lanes::{dot, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
@@ -26,11 +27,11 @@ pub(super) fn build<N: Real, const D: usize>(
 ) {
     let mut candidates = Candidates::new();
     let alone = Above { frame }.corners(pair.first, &mut candidates);
-    out.normal = frame.normal();
+    let nearest = PointChoice::new(pair, frame, limit);
     if candidates.is_empty() {
-        return ids::settle_alone(&Candidate::alone(&frame.witness, [alone, BOUNDARY]), out);
+        candidates.push(Candidate::alone(&frame.witness, [alone, BOUNDARY]));
     }
-    choose(&mut candidates, frame.witness.distance, frame.tolerance, limit, out);
+    choose(&mut candidates, &nearest, out);
 }
 
 /// The half-space as the solid sees it.
@@ -114,26 +115,28 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
     /// of what tilts too much.
     fn feature_corners(&self, map: &dyn SupportMap<N, D>, out: &mut Candidates<N, D>) -> FeatureId {
         let (frame, radius, mut feature) = (self.frame, map.rounding(), Feature::default());
-        map.core_feature(&frame.normal(), &mut feature);
-        let below = |at: usize| Which::First.below_witness(&feature.vertices[at], frame);
-        let corners = 0..feature.vertices.len();
-        let lower = |best: usize, at: usize| if below(at) < below(best) { at } else { best };
-        let Some(top) = corners.clone().reduce(lower) else { return feature.id };
+        let extra = contact_feature(map, &frame.normal(), &mut feature);
+        // All corners of a rim have the same ids.
+        let ids = feature.vertex_ids.iter().copied();
+        let ids = ids.clone().take(extra.iter().count()).chain(ids);
+        let corners = extra.iter().chain(&feature.vertices).zip(ids);
+        let below = |core: &Point<N, D>| Which::First.below_witness(core, frame);
+        let lower = |best: (_, _), at: (_, _)| if below(at.0) < below(best.0) { at } else { best };
+        let Some((top, id)) = corners.clone().reduce(lower) else { return feature.id };
         let Some(cosine) = self.cosine(&feature) else { return feature.id };
         // Written so that NaN tilts.
         let is_flat = cosine >= N::lit(MIN_COSINE);
         if !is_flat {
-            return feature.vertex_ids[top];
+            return id;
         }
-        for at in corners {
-            let core = feature.vertices[at];
-            let away = frame.flat(&core) - frame.flat(&feature.vertices[top]);
+        for (core, id) in corners {
+            let away = frame.flat(core) - frame.flat(top);
             let lift = if radius > N::ZERO {
-                lifted(radius, cosine, below(at), below(top), away.norm_squared())
+                lifted(radius, cosine, below(core), below(top), away.norm_squared())
             } else {
                 N::ZERO
             };
-            self.push(feature.vertex_ids[at], core + frame.normal() * lift, out);
+            self.push(id, core + frame.normal() * lift, out);
         }
         feature.id
     }

@@ -32,9 +32,10 @@ pub(crate) use self::witness::{
     features3 as witness_features3,
 };
 use super::separation::{separation_in_plane, separation_in_space};
+use super::size::smaller_size;
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
-use crate::math::{Real, Space, Vector, orthonormal_basis, perp};
+use crate::math::{Real, Space, Vector, max, orthonormal_basis, perp};
 use crate::shape::{FeatureId, Kind};
 
 /// Builds the manifold of two solids in 2D: at most two points.
@@ -129,9 +130,10 @@ fn settle_witness<N: Space<D>, const D: usize>(
     separation: &Separation<N, D>,
     out: &mut RawManifold<N, D>,
 ) {
-    out.normal = separation.normal;
     let parts = (N::tables().witness_features)(pair, separation);
-    ids::settle_alone(&Candidate::alone(separation, parts), out);
+    let (normal, distance) = (separation.normal, separation.distance);
+    let nearest = PointChoice { pair, normal, distance, tolerance: N::ZERO, limit: 1 };
+    choose(&mut [Candidate::alone(separation, parts)], &nearest, out);
 }
 
 /// Two directions that complete a normal of space to a right-handed basis.
@@ -193,62 +195,115 @@ pub(in crate::collide) fn contacts_of_separation2<N: Real>(
     }
 }
 
-/// Replaces the points of a manifold by at most `limit` of the candidates, and at least one. The
-/// nearest stands for the witness and takes the separation's `distance`, which it has but for
-/// rounding.
-pub(in crate::collide) fn choose<N: Real, const D: usize>(
-    candidates: &mut [Candidate<N, D>],
-    distance: N,
-    tolerance: N,
-    limit: usize,
-    out: &mut RawManifold<N, D>,
-) {
-    if candidates.len() <= limit && ids::renew(candidates, distance, out) {
-        return;
-    }
-    ids::inherit(&out.points, candidates);
-    let level = distance + tolerance;
-    let chosen = chosen(candidates, level, tolerance, limit.max(1));
-    let deepest = deepest_of(chosen.len(), level, |at| {
-        let candidate = &candidates[chosen[at]];
-        (candidate.kept_id.is_some(), candidate.distance)
-    });
-    candidates[chosen[deepest]].distance = distance;
-    ids::settle(candidates, &chosen, out);
+/// An old point stands for the deepest one as long as it is no farther than this part of the size of the smaller
+/// solid from being as deep: half the diagonal of its box. So a solid that trembles at rest keeps its points, though
+/// the deepest corner is another one at each step. The points then have the depth of the pair, and are that near to
+/// the surfaces.
+const SLACK: f64 = 1.0 / 512.0;
+
+/// The nearest points of a pair, and how many points its manifold may have.
+pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
+    pub(in crate::collide) pair: &'a Pair<'a, N, D>,
+    /// Unit, from the first solid to the second.
+    pub(in crate::collide) normal: Vector<N, D>,
+    pub(in crate::collide) distance: N,
+    /// Lengths below this are rounding errors.
+    pub(in crate::collide) tolerance: N,
+    pub(in crate::collide) limit: usize,
 }
 
-/// The indices of at most `limit` candidates, one with a distance of at most `level` or the smallest among them.
+impl<'a, N: Real, const D: usize> PointChoice<'a, N, D> {
+    fn new(pair: &'a Pair<'a, N, D>, frame: &ContactFrame<N, D>, limit: usize) -> Self {
+        let (normal, distance) = (frame.normal(), frame.witness.distance);
+        Self { pair, normal, distance, tolerance: frame.tolerance, limit }
+    }
+
+    /// Keeps how the solids lie.
+    fn keep_pose(&self, out: &mut RawManifold<N, D>) {
+        out.normal = self.normal;
+        match self.pair.first {
+            Kind::Ball(_) => out.forget_pose(),
+            _ => out.pose12 = self.pair.pose12,
+        }
+    }
+
+    /// Points up to this distance are as deep as the pair, but for rounding.
+    fn level(&self) -> N {
+        self.distance + self.tolerance
+    }
+
+    /// Old points up to this distance stand for the deepest one.
+    fn slack(&self) -> N {
+        slack_level(
+            self.distance,
+            smaller_size([self.pair.first, self.pair.second]),
+            self.tolerance,
+        )
+    }
+}
+
+/// Old points up to this distance stand for the deepest one, given the distance and the size of the pair.
+pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: N) -> N {
+    distance + max(size * N::lit(SLACK), tolerance)
+}
+
+/// Replaces the points of a manifold by at most `limit` of the candidates, and at least one. One of the deepest
+/// takes the distance of the pair, which it has but for rounding or the slack of an old point.
+pub(in crate::collide) fn choose<N: Real, const D: usize>(
+    candidates: &mut [Candidate<N, D>],
+    nearest: &PointChoice<'_, N, D>,
+    out: &mut RawManifold<N, D>,
+) {
+    let is_renewed =
+        candidates.len() <= nearest.limit && ids::renew(candidates, nearest.distance, out);
+    if !is_renewed {
+        ids::inherit(out, nearest.pair, &nearest.normal, candidates);
+        let chosen = chosen(candidates, nearest);
+        let deepest = deepest_of(chosen.len(), nearest.level(), |at| {
+            let candidate = &candidates[chosen[at]];
+            (candidate.is_old(), candidate.distance)
+        });
+        candidates[chosen[deepest]].distance = nearest.distance;
+        ids::settle(candidates, &chosen, out);
+    }
+    nearest.keep_pose(out);
+}
+
+/// The indices of at most `limit` candidates, one of the deepest among them.
 #[inline]
 fn chosen<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
-    level: N,
-    tolerance: N,
-    limit: usize,
+    nearest: &PointChoice<'_, N, D>,
 ) -> reduce::Indices {
+    let limit = nearest.limit.max(1);
     if candidates.len() <= limit {
         return (0..candidates.len()).collect();
     }
-    let seen = candidates.iter().map(|c| (c.flat, c.distance, c.kept_id.is_some()));
-    reduce::chosen(&mut reduce::projected(seen, level), limit, tolerance)
+    let seen = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
+    let levels = [nearest.level(), nearest.slack()];
+    reduce::chosen(&mut reduce::projected(seen, levels), limit, nearest.tolerance)
 }
 
-/// Adds the witness, in place of any candidate with the same name unless the name is that of two
-/// faces, which many points may share.
+/// Adds the nearest points, in place of the candidate with the same features if there is one: of round rims and of
+/// two faces there may be more.
 fn add_witness<N: Real, const D: usize>(
-    frame: &ContactFrame<N, D>,
+    witness: &Separation<N, D>,
     features: [FeatureId; 2],
     out: &mut Candidates<N, D>,
 ) {
-    let is_shared = features.iter().all(|id| matches!(id, FeatureId::Face(_)));
-    out.retain(|candidate| is_shared || candidate.features != features);
-    out.push(Candidate::alone(&frame.witness, features));
+    let is_face = |id: &FeatureId| matches!(id, FeatureId::Face(_));
+    let is_twin = |candidate: &Candidate<N, D>| candidate.features == features;
+    if !features.iter().all(is_face) && out.iter().filter(|twin| is_twin(twin)).count() == 1 {
+        out.retain(|candidate| !is_twin(candidate));
+    }
+    out.push(Candidate::alone(witness, features));
 }
 
 /// The candidate that stands for the witness; see [`deepest_of`].
 fn deepest<N: Real, const D: usize>(candidates: &[Candidate<N, D>], limit: N) -> usize {
     deepest_of(candidates.len(), limit, |index| {
         let candidate = &candidates[index];
-        (candidate.kept_id.is_some(), candidate.distance)
+        (candidate.is_old(), candidate.distance)
     })
 }
 

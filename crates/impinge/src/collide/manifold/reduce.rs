@@ -8,8 +8,10 @@
 //! polygons", 1985). Both are exact up to [`FEW`] candidates; of a longer hull those corners that add most stand
 //! for all.
 //!
-//! Points of the previous manifold are preferred, so that rounding errors do not exchange the points of solids
-//! at rest.
+//! Points of the previous manifold are kept as they are while they span [`ENOUGH`] of the best choice and have one
+//! of the deepest among them; else each of them counts for a little more than a new one. So solids at rest keep
+//! their points, also where many choices are as good: of the eight corners that two squares turned by 45° share,
+//! either four span as much.
 
 use core::cmp::Ordering;
 
@@ -27,13 +29,16 @@ const NEW: f64 = 63.0 / 64.0;
 /// What a point of the previous manifold counts for among more than four, as a part of the area of all.
 const KEPT: f64 = 1.0 / 256.0;
 
+/// The part of the best area, or of the best length of points in a row, that old points have to span.
+const ENOUGH: f64 = 0.9;
+
 /// A candidate projected along the normal.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Projected<N: Real> {
     pub(in crate::collide) at: Vector<N, 2>,
     /// Which candidate it is.
     pub(in crate::collide) index: usize,
-    /// As deep as the manifold, but for rounding.
+    /// As deep as the manifold, but for rounding or the slack of an old point.
     pub(in crate::collide) is_deepest: bool,
     /// The previous manifold had it.
     pub(in crate::collide) is_kept: bool,
@@ -46,17 +51,18 @@ pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
 /// The candidates, given where each is seen, its distance, and whether the previous manifold had it. As deep as
-/// the manifold are those at most at `level`, or the one with the smallest distance.
+/// the manifold are those at most at `level`, or the one with the smallest distance; old ones up to `slack`.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
-    level: N,
+    [level, slack]: [N; 2],
 ) -> Projections<N> {
     let lowest = candidates.clone().fold(N::INFINITY, |low, (_, distance, _)| min(distance, low));
     let level = max(level, lowest);
     let mut points = Projections::new();
     for (index, (at, distance, is_kept)) in candidates.enumerate() {
-        points.push(Projected { at, index, is_deepest: distance <= level, is_kept });
+        let is_deepest = distance <= level || is_kept && distance <= slack;
+        points.push(Projected { at, index, is_deepest, is_kept });
     }
     points
 }
@@ -75,7 +81,41 @@ pub(in crate::collide) fn chosen<N: Real>(
         return spanning(points, limit, tolerance);
     }
     let tolerance = tolerance * rescale(points);
-    sorted(best_four(points, limit, tolerance))
+    let best = sorted(best_four(points, limit, tolerance));
+    old_or(best, points, limit, tolerance)
+}
+
+/// The old points, if they are few enough and as good as the best choice.
+fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
+    let old: Projections<N> = points.iter().filter(|point| point.is_kept).copied().collect();
+    if old.len() > limit || !old.iter().any(|point| point.is_deepest) {
+        return best;
+    }
+    let is_best = |point: &Projected<N>| best.contains(&point.index);
+    if old.len() == best.len() && old.iter().all(is_best) {
+        return best;
+    }
+    let chosen: Projections<N> = points.iter().filter(|point| is_best(point)).copied().collect();
+    let ([old_area, old_length], [area, length]) = (span(&old), span(&chosen));
+    let is_row = area <= tolerance * length;
+    let is_enough = if is_row {
+        old_length >= length * N::lit(ENOUGH)
+    } else {
+        old_area >= area * N::lit(ENOUGH)
+    };
+    if is_enough { sorted(old.iter().map(|point| point.index).collect()) } else { best }
+}
+
+/// Twice the area of the convex hull of few points, and the largest distance between two of them.
+fn span<N: Real>(points: &Projections<N>) -> [N; 2] {
+    let ring = hull(&mut points.clone(), N::ZERO);
+    let (mut area, mut longest) = (N::ZERO, N::ZERO);
+    for (at, corner) in ring.iter().enumerate() {
+        area += twice_area(&ring[0], &ring[at.saturating_sub(1)], corner);
+        let far = ring[..at].iter().map(|other| (other.at - corner.at).norm());
+        longest = far.fold(longest, max);
+    }
+    [area, longest]
 }
 
 /// As [`chosen`], of the corners of the convex hull alone, also where there are no more than the limit. Costs
@@ -87,6 +127,11 @@ pub(in crate::collide) fn spanning<N: Real>(
     tolerance: N,
 ) -> Indices {
     let tolerance = tolerance * rescale(points);
+    let best = best_spanning(points, limit, tolerance);
+    old_or(best, points, limit, tolerance)
+}
+
+fn best_spanning<N: Real>(points: &mut Projections<N>, limit: usize, tolerance: N) -> Indices {
     let mut ring = hull(points, tolerance);
     let has_deepest = ring.iter().any(|corner| corner.is_deepest);
     let inner = if has_deepest { None } else { Some(points[a_deepest(points)]) };

@@ -1,7 +1,7 @@
 //! The supporting feature of a 3D solid as a ring of corners, seen along the normal of a frame.
 //!
 //! A point has one corner, a segment two and one side, a face three or more and as many sides. Corners lie in
-//! blocks of eight lanes, of which nearly all rings need one. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).
+//! blocks of eight lanes, of which most rings need one, and a leaning round cap two. Ids are those of [`SupportMap::core_feature`](crate::shape::SupportMap::core_feature).
 //! Corners that coincide when seen along the normal are merged; a face without area counts as a segment, and
 //! what tilts too much as its nearest corner.
 
@@ -45,7 +45,7 @@ pub(super) struct SupportRing<'a, N: Real> {
     /// Of corners.
     pub(super) count: usize,
     faces: FaceBlocks<N>,
-    pub(super) blocks: SmallVec<[RingBlock<N>; 1]>,
+    pub(super) blocks: SmallVec<[RingBlock<N>; 2]>,
     /// The outward normal of a face in the frame of the first solid; of others it means nothing.
     normal: Vector<N, 3>,
     /// By the sense of rotation, as seen along the normal, 1 or -1.

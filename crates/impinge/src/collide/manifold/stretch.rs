@@ -17,7 +17,7 @@
 //! ([`ContactFrame::admit`]), and the witness where none of them is as near.
 
 use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
-use super::{Pair, RawManifold, add_witness, choose};
+use super::{Pair, PointChoice, RawManifold, add_witness, choose};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
 
@@ -32,17 +32,16 @@ pub(super) fn build<N: Real>(
     let first = Stretch::of(Which::First, pair.first, None, frame);
     let second = Stretch::of(Which::Second, pair.second, Some(&pair.pose12), frame);
     let (Some(first), Some(second)) = (first, second) else { return false };
-    out.normal = frame.normal();
     let mut candidates = Candidates::new();
     if first.is_side && second.is_side {
         Shared { frame, first: &first, second: &second }.candidates(&mut candidates);
     }
-    let distance = frame.witness.distance;
-    let level = distance + frame.tolerance;
-    if !candidates.iter().any(|candidate| candidate.distance <= level) {
-        add_witness(frame, [first.at_witness(frame), second.at_witness(frame)], &mut candidates);
+    let nearest = PointChoice::new(pair, frame, limit);
+    if !candidates.iter().any(|candidate| candidate.distance <= nearest.level()) {
+        let parts = [first.at_witness(frame), second.at_witness(frame)];
+        add_witness(&frame.witness, parts, &mut candidates);
     }
-    choose(&mut candidates, distance, frame.tolerance, limit, out);
+    choose(&mut candidates, &nearest, out);
     true
 }
 

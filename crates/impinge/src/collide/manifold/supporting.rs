@@ -6,14 +6,14 @@ use smallvec::SmallVec;
 
 use super::ring::LANES;
 use crate::collide::separation::bare;
-use crate::math::{Point, Real, Vector};
+use crate::math::{Point, Real, Vector, max};
 use crate::shape::{
     ConvexPolyhedron, Cuboid, FaceRing, Feature, FeatureId, Geometry, Kind, Polytope, RoundPart,
     Segment, SupportMap, Triangle,
 };
 
 /// The corners of a feature, eight at a time; the id and the normal of the feature are those of the first eight.
-pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 1]>;
+pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 2]>;
 
 /// Fills a blank ring with the supporting feature of a solid's core, and returns the radius around the core.
 pub(super) fn supporting_feature<N: Real>(
@@ -116,6 +116,40 @@ fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bo
     }
 }
 
+/// Fills a feature with the part of a core that faces a direction, as contacts are made of it, and returns a corner
+/// more if there is one, which precedes the first.
+///
+/// A round cap has its corners at fixed places on the solid, those of its own normal, so that a solid that trembles
+/// on its cap touches with the same points however it leans. Where the lowest point of the rim lies between two of
+/// them, it is the corner more.
+pub(super) fn contact_feature<N: Real, const D: usize>(
+    map: &dyn SupportMap<N, D>,
+    direction: &Vector<N, D>,
+    out: &mut Feature<N, D>,
+) -> Option<Point<N, D>> {
+    map.core_feature(direction, out);
+    let normal = if out.vertices.len() > 2 { map.round_face(direction)? } else { return None };
+    map.core_feature(&normal, out);
+    let lowest = map.core_support(direction);
+    let height = |point: &Point<N, D>| point.coords.dot(direction);
+    let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
+    let is_between = height(&lowest) - top > N::lit(4.0) * N::EPSILON * map.reach();
+    is_between.then(|| {
+        turn_behind(&lowest, out);
+        lowest
+    })
+}
+
+/// Makes the corner that follows a point on the rim the first.
+fn turn_behind<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
+    let count = out.vertices.len();
+    let way = |at: usize| (out.vertices[at] - point).norm();
+    let around = |at: usize| way(at) + way((at + 1) % count);
+    let nearer = |best: usize, at: usize| if around(at) < around(best) { at } else { best };
+    let before = (1..count).fold(0, nearer);
+    out.vertices.rotate_left((before + 1) % count);
+}
+
 /// Any feature. One without corners, as users' solids may have, is the support point.
 fn fill_feature<N: Real>(
     map: &dyn SupportMap<N, 3>,
@@ -123,18 +157,24 @@ fn fill_feature<N: Real>(
     faces: &mut FaceBlocks<N>,
 ) {
     let mut feature = Feature::default();
-    map.core_feature(direction, &mut feature);
+    let extra = contact_feature(map, direction, &mut feature);
     if feature.vertices.is_empty() || feature.vertex_ids.is_empty() {
         fill_point(feature.id, &map.core_support(direction), &mut faces[0]);
         return;
     }
     faces[0].id = feature.id;
     faces[0].normal = feature.normal.unwrap_or_else(Vector::<N, 3>::zeros);
-    for (at, (vertex, &id)) in feature.vertices.iter().zip(&feature.vertex_ids).enumerate() {
+    let ids = feature.vertex_ids.iter().enumerate().map(|(at, &id)| {
+        let side = feature.side_ids.get(at).copied();
+        [id, side.unwrap_or(feature.id)]
+    });
+    // All corners of a rim have the same ids.
+    let first = ids.clone().take(extra.iter().count());
+    let corners = extra.iter().chain(&feature.vertices);
+    for (at, (vertex, ids)) in corners.zip(first.chain(ids)).enumerate() {
         if at / LANES == faces.len() {
             faces.push(FaceRing::blank());
         }
-        let side = feature.side_ids.get(at).copied();
-        faces[at / LANES].push(vertex, [id, side.unwrap_or(feature.id)]);
+        faces[at / LANES].push(vertex, ids);
     }
 }

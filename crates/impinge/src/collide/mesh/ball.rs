@@ -45,7 +45,7 @@ pub(crate) fn update_on_surface<N: Real>(
         let query = Query { between, around, reference: &reference, request: &rolling.request };
         query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
     }
-    contacts.conclude(request, reference, center, &part_contacts, &arena);
+    contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
     true
 }
 

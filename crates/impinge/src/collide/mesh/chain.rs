@@ -53,7 +53,7 @@ pub(crate) fn update_chain<N: Real>(
     if !is_settled(&part_contacts) {
         query.settle(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
     }
-    contacts.conclude(request, reference, center, &part_contacts, &arena);
+    contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
     true
 }
 

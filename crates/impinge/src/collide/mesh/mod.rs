@@ -73,7 +73,7 @@ const SMALL: f64 = 1.0 / 4.0;
 
 /// The contacts of two shapes of which one at least is a composite, kept from update to update; in
 /// the frame of the first.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     patches: Vec<Patch<N, D>>,
     ids: PairIds,
@@ -81,7 +81,21 @@ pub(crate) struct CompositeContacts<N: Real, const D: usize> {
     /// the side of the surface that it came from: a solid that was pushed halfway through a surface
     /// with two sides, or jumped there, is still on its old side.
     reference: Reference<N, D>,
+    /// The second shape in the frame of the first when the points were found.
+    pose12: Pose<N, D>,
     around: PartCache<N, D>,
+}
+
+impl<N: Real, const D: usize> Default for CompositeContacts<N, D> {
+    fn default() -> Self {
+        Self {
+            patches: Vec::new(),
+            ids: PairIds::default(),
+            reference: None,
+            pose12: Pose::identity(),
+            around: PartCache::default(),
+        }
+    }
 }
 
 impl<N: Real, const D: usize> CompositeContacts<N, D> {
@@ -125,20 +139,24 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
         }))
     }
 
-    /// The two shapes change places.
-    pub(crate) fn flip_names(&mut self) {
+    /// The same contacts with the second shape first.
+    pub(crate) fn flip(&mut self) {
         self.reference = None;
         self.forget_shapes();
-        for point in self.patches.iter_mut().flat_map(|patch| &mut patch.points) {
-            point.parts.reverse();
-            core::mem::swap(&mut point.raw.feature1, &mut point.raw.feature2);
+        for Patch { normal, points } in &mut self.patches {
+            for PatchPoint { raw, parts } in points {
+                raw.flip(&self.pose12, normal);
+                parts.reverse();
+            }
+            *normal = -self.pose12.inverse_vector(normal);
         }
+        self.pose12 = self.pose12.inverse();
     }
 }
 
 impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
-    /// Computes the contacts for new poses, of two shapes or of one with itself; points whose parts
-    /// and features stay keep their numbers. Other shapes than before have to be announced
+    /// Computes the contacts for new poses, of two shapes or of one with itself; points that
+    /// moved keep their ids. Other shapes than before have to be announced
     /// by [`Self::forget_shapes`].
     pub(crate) fn update(
         &mut self,
@@ -168,16 +186,16 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let query = Query { between, around, reference: &reference, request: &of_parts };
         let mut arena = Arena::default();
         let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
-        self.conclude(request, reference, center, &contacts, &arena);
+        self.conclude(&between.pair, request, [reference, center], &contacts, &arena);
     }
 
     /// Keeps what is found as contacts, and the middle of the first shape: where it counts as being if the
     /// shapes overlap, else where it is.
     fn conclude(
         &mut self,
+        pair: &Pair<'_, N, D>,
         request: &ManifoldRequest<N>,
-        reference: Reference<N, D>,
-        center: Reference<N, D>,
+        [reference, center]: [Reference<N, D>; 2],
         contacts: &[PartContact<N, D>],
         arena: &Arena<N, D>,
     ) {
@@ -193,8 +211,10 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
             // Most pairs never have more than one: what lies close together is read faster.
             self.patches.reserve_exact(1);
         }
-        let merging = Merging { request, tolerance, pieces: &pieces, points: &arena.points };
-        merge(&merging, &mut self.patches, &mut self.ids);
+        let (pieces, points) = (pieces.as_slice(), arena.points.as_slice());
+        let merging = Merging { pair, request, tolerance, pieces, points };
+        merge(&merging, &self.pose12, &mut self.patches, &mut self.ids);
+        self.pose12 = pair.pose12;
     }
 }
 

@@ -3,7 +3,8 @@
 //! The manifolds of the parts of a composite lie side by side. Those with one normal in one plane
 //! are pieces of one area of contact; of all their points those on its outline delimit it.
 //!
-//! A contact point keeps its id while its parts and features stay.
+//! A contact point keeps its id by the rule of [`ids`](crate::collide::manifold::ids), in which the parts count
+//! among the features.
 
 use core::cmp::Ordering;
 use core::ops::Range;
@@ -12,9 +13,11 @@ use smallvec::SmallVec;
 
 use super::patch_groups::Groups;
 use super::patch_points::{Choosing, Members};
+use crate::collide::manifold::ids::{AnchorList, Anchors, Inherited, PairPose, matched};
 use crate::collide::manifold::reduce::ordering;
-use crate::collide::{ManifoldRequest, PairIds, RawPoint};
-use crate::math::{Real, Space, Vector};
+use crate::collide::size::smaller_size;
+use crate::collide::{ManifoldRequest, Pair, PairIds, RawPoint};
+use crate::math::{Pose, Real, Space, Vector};
 
 /// A manifold of two shapes one of which is a composite, in the frame of the first shape.
 #[derive(Clone, Debug)]
@@ -45,6 +48,7 @@ pub(crate) struct Piece<N: Real, const D: usize> {
 
 /// What a merged manifold is made of and how.
 pub(crate) struct Merging<'a, N: Real, const D: usize> {
+    pub(crate) pair: &'a Pair<'a, N, D>,
     pub(crate) request: &'a ManifoldRequest<N>,
     /// Lengths below this are rounding errors.
     pub(crate) tolerance: N,
@@ -53,26 +57,28 @@ pub(crate) struct Merging<'a, N: Real, const D: usize> {
     pub(crate) points: &'a [RawPoint<N, D>],
 }
 
-/// The numbers that points inherit.
-pub(super) type KeptIds = SmallVec<[Option<u32>; 32]>;
+/// The ids that points inherit.
+pub(super) type KeptIds = SmallVec<[Option<Inherited>; 32]>;
 
 /// Merges the manifolds of parts into patches, which come in the order of their first parts, and
-/// replaces those of the update before, whose points on features that are still touched hand on their
-/// numbers.
+/// replaces those of the update before, when the shapes lay at `old_pose12`.
 ///
 /// The manifolds of parts may hold points beyond the prediction, of which those stay that turning
 /// about the patch's nearest point brings near enough.
 pub(crate) fn merge<N: Space<D>, const D: usize>(
     merging: &Merging<'_, N, D>,
+    old_pose12: &Pose<N, D>,
     patches: &mut Vec<Patch<N, D>>,
     ids: &mut PairIds,
 ) {
     match merging.pieces {
         [] => return patches.clear(),
-        [piece] if piece.points.len() == 1 => return merge_one(merging, piece, patches, ids),
+        [piece] if piece.points.len() == 1 => {
+            return merge_one(merging, piece, old_pose12, patches, ids);
+        }
         _ => (),
     }
-    let kept = merging.kept(patches);
+    let kept = merging.kept(old_pose12, patches);
     let (choosing, groups) = (Choosing { merging, kept: &kept }, Groups::of(merging));
     let mut members = Members::new();
     for (at, group) in groups.groups.iter().enumerate() {
@@ -86,6 +92,7 @@ pub(crate) fn merge<N: Space<D>, const D: usize>(
 fn merge_one<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     piece: &Piece<N, D>,
+    old_pose12: &Pose<N, D>,
     patches: &mut Vec<Patch<N, D>>,
     ids: &mut PairIds,
 ) {
@@ -95,14 +102,18 @@ fn merge_one<N: Real, const D: usize>(
     if !is_near {
         return patches.clear();
     }
-    let mut old = patches.iter().flat_map(|patch| &patch.points);
-    let kept = old.find(|old| {
-        let names = (old.raw.feature1, old.raw.feature2);
-        old.parts == piece.parts && names == (raw.feature1, raw.feature2)
-    });
-    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.raw.id);
+    let kept = merging.kept(old_pose12, patches)[piece.points.start];
+    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.id);
     blank(patches, 0, piece.normal).push(PatchPoint { raw, parts: piece.parts });
     patches.truncate(1);
+}
+
+fn anchors<N: Real, const D: usize>(
+    pose: &PairPose<'_, N, D>,
+    raw: &RawPoint<N, D>,
+    parts: [u32; 2],
+) -> Anchors<N, D> {
+    pose.anchors(&raw.point1, raw.distance, (parts, [raw.feature1, raw.feature2]))
 }
 
 /// A patch without points, in the place of an old one if there is one.
@@ -123,31 +134,67 @@ fn blank<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
-    /// Which points have the numbers of old ones: each old number goes to one point on its features,
-    /// the nearest, the first of equals.
-    fn kept(&self, old: &[Patch<N, D>]) -> KeptIds {
+    /// The ids that points have from old ones, by the rule of [`ids`](crate::collide::manifold::ids).
+    fn kept(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>]) -> KeptIds {
+        self.kept_by_names(old).unwrap_or_else(|| self.kept_by_places(old_pose12, old))
+    }
+
+    /// As [`Self::kept`], if parts and features say all: no old point is left but where no new one is.
+    fn kept_by_names(&self, old: &[Patch<N, D>]) -> Option<KeptIds> {
         let mut kept = KeptIds::from_elem(None, self.points.len());
-        let mut at = 0;
+        let (mut at, mut left, mut found) = (0, 0, 0);
         for PatchPoint { raw, parts } in old.iter().flat_map(|patch| &patch.points) {
-            let Some(found) = self.piece_of(*parts, at) else { continue };
-            at = found;
-            let range = self.pieces[at].points.clone();
-            let (mut heir, mut nearest) = (None, N::INFINITY);
-            for (new, id) in self.points[range.clone()].iter().zip(&mut kept[range]) {
-                let is_heir = new.feature1 == raw.feature1 && new.feature2 == raw.feature2;
-                if !is_heir || id.is_some() {
-                    continue;
+            let heir = self.piece_of(*parts, at).and_then(|piece| {
+                at = piece;
+                let mut range = self.pieces[piece].points.clone();
+                let is_heir = |&at: &usize| {
+                    let new = &self.points[at];
+                    new.feature1 == raw.feature1 && new.feature2 == raw.feature2
+                };
+                let heir = range.find(is_heir);
+                // Several points share their features on round rims.
+                heir.filter(|&heir| kept[heir].is_none() && !range.any(|at| is_heir(&at)))
+            });
+            match heir {
+                Some(heir) => {
+                    kept[heir] = Some(Inherited { id: raw.id, is_old: true });
+                    found += 1;
                 }
-                let away = (new.point1 - raw.point1).norm_squared();
-                if heir.is_none() || away < nearest {
-                    (heir, nearest) = (Some(id), away);
-                }
-            }
-            if let Some(heir) = heir {
-                *heir = Some(raw.id);
+                None => left += 1,
             }
         }
+        let count = || self.pieces.iter().map(|piece| piece.points.len()).sum::<usize>();
+        (left == 0 || found == count()).then_some(kept)
+    }
+
+    /// As [`Self::kept`] of any points.
+    fn kept_by_places(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>]) -> KeptIds {
+        let mut olds = AnchorList::new();
+        let mut ids = SmallVec::<[u32; 16]>::new();
+        for Patch { normal, points } in old {
+            let pose = PairPose { pose12: old_pose12, normal };
+            for PatchPoint { raw, parts } in points {
+                olds.push(anchors(&pose, raw, *parts));
+                ids.push(raw.id);
+            }
+        }
+        let mut news = AnchorList::new();
+        for Piece { normal, parts, points } in self.pieces {
+            let pose = PairPose { pose12: &self.pair.pose12, normal };
+            news.extend(self.points[points.clone()].iter().map(|raw| anchors(&pose, raw, *parts)));
+        }
+        let heirs = matched(&olds, |at| ids[at], &news, self.size());
+        let mut kept = KeptIds::from_elem(None, self.points.len());
+        let places = self.pieces.iter().flat_map(|piece| piece.points.clone());
+        for (place, heir) in places.zip(heirs) {
+            kept[place] = heir;
+        }
         kept
+    }
+
+    /// The size of the pair, for lengths in proportion to it.
+    pub(super) fn size(&self) -> N {
+        smaller_size([self.pair.first, self.pair.second])
     }
 
     /// The piece of two parts, most often that at a place or the next: the points of one pair of parts come

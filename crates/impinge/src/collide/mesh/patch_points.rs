@@ -9,8 +9,8 @@ use smallvec::SmallVec;
 use super::super::{PairIds, RawPoint};
 use super::patch::{KeptIds, Merging, PatchPoint};
 use super::patch_groups::Lead;
-use crate::collide::manifold::deepest_of;
 use crate::collide::manifold::reduce::{self, Projections, a_deepest, ordering, projected};
+use crate::collide::manifold::{deepest_of, slack_level};
 use crate::math::{Real, Space, Vector};
 
 /// So many points need no memory for their outline but that of the function.
@@ -67,10 +67,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
 
     /// At most `limit` members, one of the deepest among them.
     fn chosen(&self, members: &[Member<N>], level: N, limit: usize, is_line: bool) -> Members<N> {
-        let seen = members
-            .iter()
-            .map(|member| (member.flat, self.distance(member), self.kept[member.point].is_some()));
-        let (mut points, tolerance) = (projected(seen, level), self.merging.tolerance);
+        let seen =
+            members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
+        let tolerance = self.merging.tolerance;
+        let slack = slack_level(level - tolerance, self.merging.size(), tolerance);
+        let mut points = projected(seen, [level, slack]);
         let indices = if is_line {
             keep_ends(&mut points);
             reduce::chosen(&mut points, limit, tolerance)
@@ -90,10 +91,10 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     ) {
         let level = lowest + self.merging.tolerance;
         let deepest = deepest_of(chosen.len(), level, |at| {
-            (self.kept[chosen[at].point].is_some(), self.distance(&chosen[at]))
+            (self.is_old(&chosen[at]), self.distance(&chosen[at]))
         });
         for (place, &Member { piece, point, .. }) in chosen.iter().enumerate() {
-            let id = self.kept[point].unwrap_or_else(|| ids.next());
+            let id = self.kept[point].map_or_else(|| ids.next(), |kept| kept.id);
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
             if place == deepest {
                 raw.distance = lowest;
@@ -105,6 +106,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
                 at -= 1;
             }
         }
+    }
+
+    /// The previous manifolds held it, at this place.
+    fn is_old(&self, member: &Member<N>) -> bool {
+        self.kept[member.point].is_some_and(|kept| kept.is_old)
     }
 
     fn distance(&self, member: &Member<N>) -> N {
@@ -182,12 +188,13 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     }
 }
 
-/// Leaves of sorted points on a line the two ends and, if neither is as deep, a deepest one.
+/// Leaves of sorted points on a line the two ends, old points, and, if neither end is as deep, a deepest one.
 fn keep_ends<N: Real>(points: &mut Projections<N>) {
     let (last, deepest) = (points.len() - 1, a_deepest(points));
     let is_inner = !(points[0].is_deepest || points[last].is_deepest);
     points.retain(|point| {
-        point.index == 0 || point.index == last || is_inner && point.index == deepest
+        let is_end = point.index == 0 || point.index == last;
+        is_end || point.is_kept || is_inner && point.index == deepest
     });
 }
 

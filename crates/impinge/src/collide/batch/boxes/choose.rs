@@ -2,9 +2,11 @@
 
 use super::LANES;
 use super::admit::Slots;
+use crate::collide::manifold::ids::{AnchorList, Inherited, PairPose, matched};
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
+use crate::collide::manifold::slack_level;
 use crate::collide::{RawManifold, RawPoint};
-use crate::math::{Real, Vector};
+use crate::math::{Point, Real, Vector};
 use crate::shape::FeatureId;
 
 /// The most slots of a pair: those of space.
@@ -20,6 +22,8 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize> {
     pub(super) level: u32,
     pub(super) gap: N,
     pub(super) tolerance: N,
+    /// Of the pair, for what is in proportion to it.
+    pub(super) size: N,
 }
 
 /// How the slots of one pair are named.
@@ -44,9 +48,11 @@ const fn slot_of(code: u32) -> usize {
     (code & SLOT_BITS) as usize
 }
 
-/// The numbers of the old points, for the slots that have their names.
+/// The ids of the old points, for the slots that continue them.
 struct KeptSlots {
     slots: u32,
+    /// Those at the place of the old point.
+    old: u32,
     /// All of the old points are candidates again, and in the same slots.
     is_still: bool,
     ids: [u32; SLOTS],
@@ -60,7 +66,7 @@ impl KeptSlots {
         naming: &impl Naming,
         valid: u32,
     ) -> Self {
-        let mut kept = Self { slots: 0, is_still: true, ids: [0; SLOTS] };
+        let mut kept = Self { slots: 0, old: 0, is_still: true, ids: [0; SLOTS] };
         for point in old {
             let own = slot_of(point.code);
             let is_same = point.code == naming.code(own) && valid >> own & 1 == 1;
@@ -71,6 +77,7 @@ impl KeptSlots {
                 kept.ids[slot] = point.id;
             }
         }
+        kept.old = kept.slots;
         kept
     }
 
@@ -106,17 +113,66 @@ impl Iterator for Ones {
 }
 
 impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
-    /// Replaces the points of a manifold, whose normal is given, by at most `limit` of the candidates.
+    /// Replaces the points of a manifold by at most `limit` of the candidates; answers whether it did. It does not
+    /// where old points and candidates are left that have no features in common.
     #[inline(always)]
-    pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
+    pub(super) fn settle(
+        &self,
+        naming: &impl Naming,
+        limit: usize,
+        raw: &mut RawManifold<N, D>,
+    ) -> bool {
         let kept = KeptSlots::of(&raw.points, naming, self.valid);
+        let is_matched =
+            kept.slots == self.valid || kept.slots.count_ones() as usize == raw.points.len();
+        if is_matched {
+            self.put(&kept, naming, limit, raw);
+        }
+        is_matched
+    }
+
+    /// As [`Self::settle`], by features and places: `pose` is how the pair lies now.
+    pub(super) fn settle_matched(
+        &self,
+        naming: &impl Naming,
+        limit: usize,
+        pose: &PairPose<'_, N, D>,
+        raw: &mut RawManifold<N, D>,
+    ) {
+        let anchors = |slot| {
+            let (point1, features) = (self.point1(slot), naming.features(slot));
+            pose.anchors(&point1, self.distance(slot), ([0; 2], features))
+        };
+        let new: AnchorList<N, D> = ones(self.valid).map(anchors).collect();
+        let mut kept = KeptSlots { slots: 0, old: 0, is_still: false, ids: [0; SLOTS] };
+        let ids = |at: usize| raw.points[at].id;
+        let heirs = matched(&raw.anchors(), ids, &new, self.size);
+        for (slot, Inherited { id, is_old }) in
+            ones(self.valid).zip(heirs).filter_map(|(slot, kept)| Some((slot, kept?)))
+        {
+            kept.slots |= 1 << slot;
+            kept.old |= u32::from(is_old) << slot;
+            kept.ids[slot] = id;
+        }
+        self.put(&kept, naming, limit, raw);
+    }
+
+    /// Replaces the points of a manifold by at most `limit` of the candidates.
+    #[inline(always)]
+    fn put(
+        &self,
+        kept: &KeptSlots,
+        naming: &impl Naming,
+        limit: usize,
+        raw: &mut RawManifold<N, D>,
+    ) {
         let is_full = self.valid.count_ones() as usize <= limit;
-        let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
-        let deepest = self.deepest(slots, kept.slots);
+        let slots = if is_full { self.valid } else { self.chosen(limit, kept.old) };
+        let deepest = self.deepest(slots, kept.old);
         if kept.is_still && kept.slots == slots {
             self.put_all(deepest, raw);
         } else {
-            self.replace(slots, deepest, &kept, naming, raw);
+            self.replace(slots, deepest, kept, naming, raw);
         }
     }
 
@@ -124,7 +180,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     #[inline(always)]
     fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
         for point in &mut raw.points {
-            self.put(slot_of(point.code), deepest, point);
+            self.place(slot_of(point.code), deepest, point);
         }
     }
 
@@ -144,7 +200,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
             point.id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
             is_sorted &= last <= point.id;
             last = point.id;
-            self.put(slot, deepest, point);
+            self.place(slot, deepest, point);
             [point.feature1, point.feature2] = naming.features(slot);
             point.code = naming.code(slot);
         }
@@ -155,12 +211,18 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
 
     /// Says where the candidate of a slot is.
     #[inline(always)]
-    fn put(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
-        let lane = self.lane & (LANES - 1);
-        for (x, row) in point.point1.iter_mut().zip(&self.slots.points1[slot]) {
-            *x = row[lane];
-        }
+    fn place(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
+        point.point1 = self.point1(slot);
         point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
+    }
+
+    #[inline(always)]
+    fn point1(&self, slot: usize) -> Point<N, D> {
+        let (lane, rows) = (self.lane & (LANES - 1), &self.slots.points1[slot]);
+        Point::from(Vector::<N, D>::from_fn(
+            #[inline(always)]
+            |axis, _| rows[axis][lane],
+        ))
     }
 
     #[inline(always)]
@@ -208,9 +270,11 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
             let lowest = ones(self.valid).filter(|&slot| self.distance(slot) <= least);
             level = lowest.fold(0, |slots, slot| slots | 1 << slot);
         }
+        let slack = slack_level(self.gap, self.size, self.tolerance);
         let mut points = Projections::new();
         for slot in ones(self.valid) {
-            let [is_deepest, is_kept] = [level, kept].map(|slots| slots >> slot & 1 == 1);
+            let [is_level, is_kept] = [level, kept].map(|slots| slots >> slot & 1 == 1);
+            let is_deepest = is_level || is_kept && self.distance(slot) <= slack;
             points.push(Projected { at: self.flat(slot), index: slot, is_deepest, is_kept });
         }
         chosen(&mut points, limit, self.tolerance).iter().fold(0, |slots, slot| slots | 1 << slot)

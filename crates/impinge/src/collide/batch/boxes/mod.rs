@@ -86,6 +86,12 @@ pub(super) fn tolerance<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     lit::<S, N, V>(simd, ROUNDING_ERRORS) * V::all(simd, N::EPSILON) * size
 }
 
+/// The size of each pair: half the diagonal of the smaller box.
+#[inline(always)]
+pub(super) fn smaller_size<S: Simd, V: Wide<S>, const D: usize>(boxes: &Boxes<V, D>) -> V {
+    norm(&boxes.half1).smaller(norm(&boxes.half2))
+}
+
 /// The lanes all of whose numbers are finite, and so is the sum of their magnitudes.
 #[inline(always)]
 pub(super) fn is_finite<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(

@@ -133,6 +133,7 @@ fn scales_exactly<N: Scene<D>, const D: usize>() {
             point.point1 *= N::lit(scale);
             point.distance *= N::lit(scale);
         }
+        small.pose12.translation *= N::lit(scale);
         assert_eq!(small, large, "bit for bit");
     }
 }

@@ -12,9 +12,11 @@ use self::names::{BoxPairNames, FaceSide, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::{SLOTS, SlotChoice};
 use super::masks::turned;
-use super::{Boxes, Inputs, LANES};
-use crate::collide::batch::{Batch, PairQuestion};
+use super::{Boxes, Inputs, LANES, smaller_size};
+use crate::collide::batch::gather::RelativePoses;
+use crate::collide::batch::{Batch, LaneResult, PairQuestion};
 use crate::collide::manifold::contacts_of_separation3;
+use crate::collide::manifold::ids::PairPose;
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
@@ -26,6 +28,8 @@ pub(in super::super) struct EightFaces<N: Real> {
     corners: Corners,
     gap: [N; LANES],
     tolerance: [N; LANES],
+    size: [N; LANES],
+    pose: RelativePoses<N, 3>,
     normal: [[N; LANES]; 3],
     /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
     /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
@@ -47,6 +51,8 @@ impl<N: Real> EightFaces<N> {
             corners: Corners::new(),
             gap: row,
             tolerance: row,
+            size: row,
+            pose: RelativePoses::new(),
             normal: [row; 3],
             sides: [0; 8],
             is_apart: 0,
@@ -84,8 +90,18 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 3>,
-    ) -> bool {
+    ) -> LaneResult {
         found.settle(lane & (LANES - 1), max_points, raw)
+    }
+
+    fn settle_matched(
+        found: &EightFaces<N>,
+        lane: usize,
+        max_points: usize,
+        pair: &Pair<'_, N, 3>,
+        raw: &mut RawManifold<N, 3>,
+    ) {
+        found.settle_matched(lane & (LANES - 1), max_points, pair, raw);
     }
 
     fn fall_back(pair: &Pair<'_, N, 3>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 3>) {
@@ -123,6 +139,8 @@ impl<N: Real> EightFaces<N> {
             0,
         ];
         axis.gap.store(&mut self.gap);
+        smaller_size(&boxes).store(&mut self.size);
+        self.pose.store(&boxes.rotation, &boxes.translation);
         faces.tolerance.store(&mut self.tolerance);
         for (row, along) in self.normal.iter_mut().zip(axis.normal) {
             along.store(row);
@@ -136,15 +154,46 @@ impl<N: Real> EightFaces<N> {
     }
 
     #[inline(always)]
-    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
-        let is_apart = self.is_apart >> lane & 1 == 1;
-        let is_built = self.is_built >> lane & 1 == 1;
-        if is_apart {
+    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> LaneResult {
+        if self.is_apart >> lane & 1 == 1 {
             raw.points.clear();
-        } else if is_built {
-            self.choose(lane, max_points, raw);
+            return LaneResult::Done;
         }
-        is_apart | is_built
+        if self.is_built >> lane & 1 == 0 {
+            return LaneResult::Declined;
+        }
+        let (choice, names) = self.choice(lane);
+        if !choice.settle(&names, max_points.max(1), raw) {
+            return LaneResult::Unmatched;
+        }
+        self.keep_pose(lane, raw);
+        LaneResult::Done
+    }
+
+    fn settle_matched(
+        &self,
+        lane: usize,
+        max_points: usize,
+        pair: &Pair<'_, N, 3>,
+        raw: &mut RawManifold<N, 3>,
+    ) {
+        let (choice, names) = self.choice(lane);
+        let (pose12, normal) = (&pair.pose12, &self.normal(lane));
+        choice.settle_matched(&names, max_points.max(1), &PairPose { pose12, normal }, raw);
+        self.keep_pose(lane, raw);
+    }
+
+    #[inline(always)]
+    fn normal(&self, lane: usize) -> Vector<N, 3> {
+        let [x, y, z] = &self.normal;
+        Vector::<N, 3>::new(x[lane], y[lane], z[lane])
+    }
+
+    /// Keeps how the boxes lie.
+    #[inline(always)]
+    fn keep_pose(&self, lane: usize, raw: &mut RawManifold<N, 3>) {
+        raw.normal = self.normal(lane);
+        self.pose.copy_to(lane, &mut raw.pose12);
     }
 
     /// Fills the slots; answers where they hold the separation. `is_partial` where some face leans too far.
@@ -169,8 +218,9 @@ impl<N: Real> EightFaces<N> {
         found.is_found()
     }
 
+    /// The candidates of one pair, and how they are named.
     #[inline(always)]
-    fn choose(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) {
+    fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS>, BoxPairNames) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
         let sides = FaceSides::of(bits);
         let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
@@ -181,10 +231,9 @@ impl<N: Real> EightFaces<N> {
             level: columns.slots(3, lane),
             gap: self.gap[lane],
             tolerance: self.tolerance[lane],
+            size: self.size[lane],
         };
-        choice.settle(&BoxPairNames::new(&sides, bits, parts), max_points.max(1), raw);
-        let [x, y, z] = &self.normal;
-        raw.normal = Vector::<N, 3>::new(x[lane], y[lane], z[lane]);
+        (choice, BoxPairNames::new(&sides, bits, parts))
     }
 }
 

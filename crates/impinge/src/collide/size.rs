@@ -1,0 +1,40 @@
+//! How large the solids of a pair are, for lengths that are in proportion to them.
+
+use crate::math::{Point, Real, Vector, min};
+use crate::shape::{Geometry, Kind, SupportMap};
+
+/// Half the diagonal of the local box of the smaller of two solids; infinite if both are unbounded.
+///
+/// The box, not the reach from the local origin: the vertices of a part may lie far from its origin.
+pub(crate) fn smaller_size<N: Real, const D: usize>(kinds: [Kind<'_, N, D>; 2]) -> N {
+    min(half_diagonal(kinds[0]), half_diagonal(kinds[1]))
+}
+
+fn half_diagonal<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> N {
+    match kind {
+        Kind::Ball(ball) => ball.radius(),
+        Kind::Segment(segment) => between(segment.a(), segment.b()),
+        Kind::Capsule(capsule) => {
+            between(capsule.segment().a(), capsule.segment().b()) + capsule.radius()
+        }
+        Kind::Cuboid(cuboid) => cuboid.half_extents().norm(),
+        Kind::Plane(_) => N::INFINITY,
+        Kind::Composite(parts) => parts.search().bounds().half_extents().norm(),
+        _ => Geometry(kind).as_support_map().map_or(N::INFINITY, of_map),
+    }
+}
+
+fn between<N: Real, const D: usize>(a: &Point<N, D>, b: &Point<N, D>) -> N {
+    (b - a).norm() * N::HALF
+}
+
+fn of_map<N: Real, const D: usize>(map: &dyn SupportMap<N, D>) -> N {
+    let mut half = Vector::<N, D>::zeros();
+    for axis in 0..D {
+        let mut along = Vector::<N, D>::zeros();
+        along[axis] = N::ONE;
+        let [high, low] = [map.core_support(&along), map.core_support(&-along)];
+        half[axis] = (high[axis] - low[axis]) * N::HALF + map.rounding();
+    }
+    half.norm()
+}
