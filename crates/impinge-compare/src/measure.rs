@@ -20,6 +20,16 @@ impl Times {
         times.get(last * percent / 100).copied().unwrap_or(f64::NAN)
     }
 
+    /// The ratio of each time to the time of `other` at the same place.
+    pub fn ratios(&self, other: &Self) -> Self {
+        Self(self.0.iter().zip(&other.0).map(|(time, other)| time / other).collect())
+    }
+
+    /// Keeps the smaller of each time and the time of `other` at the same place.
+    pub fn keep_minima(&mut self, other: &Self) {
+        self.0.iter_mut().zip(&other.0).for_each(|(time, other)| *time = time.min(*other));
+    }
+
     /// The median.
     pub fn median(&self) -> f64 {
         self.quantile(50)

@@ -25,9 +25,10 @@ pub use motion::{Motion, Wave};
 pub use placement::Placement;
 pub use random::Random;
 pub use scenes::{
-    Area, Room, asteroids, crowd, few_moving, mixed_shapes, mixed_sizes, pile, rain, room, sensors,
-    sparse_drift, spawn_and_despawn, terrain_field, terrain_mesh, tower, trembling_vehicles_field,
-    trembling_vehicles_mesh, vehicles_field, vehicles_mesh,
+    Area, Room, SolidKind, aligned_pile, asteroids, crowd, few_asteroids_moving, few_moving,
+    mixed_shapes, mixed_sizes, pile, plates, rain, room, sensors, shaken, solids, solids_on_plain,
+    sparse_drift, spawn_and_despawn, ten_moving, terrain_field, terrain_mesh, tower,
+    trembling_vehicles_field, trembling_vehicles_mesh, turned_pile, vehicles_field, vehicles_mesh,
 };
 pub use shape::SceneShape;
 

@@ -14,8 +14,14 @@
 //!
 //! Then boxes, hulls and capsules as large as vehicles, a twentieth of `--objects`, each on dozens of the
 //! triangles of a mesh or a height field, driving slowly or trembling in place by 0.001; a rain of solids;
-//! rocks that float far apart; sensors, which ask for proximity, among boxes that drift; churn, where a
-//! hundredth of the boxes is removed and as many are added at each step; and, in the plane, a crowd.
+//! rocks that float far apart, all or one in a hundred of which move; sensors, which ask for proximity,
+//! among boxes that drift; churn, where a hundredth of the boxes is removed and as many are added at each
+//! step; ten times as many boxes of which ten move; towers at rest; and, in the plane, a crowd.
+//!
+//! Boxes in a pile that are aligned, or turned at random; solids of several kinds in free space, dense and
+//! loose, and of each kind alone; on a rough plain, a hundredth of `--objects` of plates that each cover up to
+//! 512 triangles, and a twentieth of other solids that move by 0.1 at each step. Shaken scenes displace every
+//! object by up to 0.001 at random at each step.
 //!
 //! `--angular` has all ask for contacts with an angular prediction. The rivals have none: they answer
 //! what they always do.
@@ -55,51 +61,24 @@ mod engines;
 pub mod ours;
 mod parry_tree;
 pub mod rapier;
+mod stages;
 
 #[cfg(feature = "jolt")]
 use impinge_compare_c::Jolt;
 #[cfg(any(feature = "box2d", feature = "box3d"))]
 use impinge_compare_c::Recycling;
 
+use ::impinge;
 use contender::{Contender, Entrant, KINDS, race};
-use impinge_scenes::{
-    Motion, Scene, SceneQuery, asteroids, crowd, few_moving, mixed_shapes, pile, rain, sensors,
-    sparse_drift, spawn_and_despawn, terrain_field, terrain_mesh, trembling_vehicles_field,
-    trembling_vehicles_mesh, vehicles_field, vehicles_mesh,
-};
+use impinge_scenes::Scene;
+pub use stages::{PREDICTION, asking_for_contacts};
+use stages::{Stage, plane_stages, space_stages, stages};
 
 use crate::Arguments;
 use crate::table::Table;
 
-/// Two objects whose distance is at most this have contact points: the sum of what the objects of
-/// the scenes ask for.
-pub const PREDICTION: f32 = 0.002;
-
 /// Makes a world with the objects of a scene as they are at step 0; none where it lacks a shape.
 type Maker<const D: usize> = fn(&Scene<D>) -> Option<Box<dyn Contender<D>>>;
-
-/// A scene of the suite.
-struct Stage<const D: usize> {
-    name: &'static str,
-    /// Makes it, of so many objects.
-    make: fn(usize) -> Scene<D>,
-    /// How many objects it has where so many are asked for.
-    count: fn(usize) -> usize,
-    /// Whether those of its objects that ask for proximity still do; elsewhere all ask for contacts.
-    has_sensors: bool,
-}
-
-impl<const D: usize> Stage<D> {
-    /// As many objects as are asked for, all of which ask for contacts.
-    const fn new(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
-        Self { name, make, count: |objects| objects, has_sensors: false }
-    }
-
-    /// A twentieth of the objects that are asked for, at least one.
-    const fn large(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
-        Self { count: |objects| objects.div_ceil(20), ..Self::new(name, make) }
-    }
-}
 
 /// Runs all scenes.
 pub fn run(arguments: &Arguments) -> Vec<Table> {
@@ -129,39 +108,10 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
         ("jolt rounded", |scene| engines::jolt(scene, Jolt::CONVEX_RADIUS)),
     ];
     run_stages(plane, &stages(), arguments, &mut table);
-    run_stages(plane, &[Stage::new("crowd", crowd)], arguments, &mut table);
+    run_stages(plane, &plane_stages(), arguments, &mut table);
     run_stages(space, &stages(), arguments, &mut table);
+    run_stages(space, &space_stages(), arguments, &mut table);
     vec![table]
-}
-
-/// The scenes, all of which ask for contacts with the same prediction: rapier has one for all.
-fn stages<const D: usize>() -> [Stage<D>; 16] {
-    [
-        Stage::new("pile", pile),
-        Stage { count: |objects| 10 * objects, ..Stage::new("sparse drift", sparse_drift) },
-        Stage::new("1 % moving", few_moving),
-        Stage::new("mixed shapes", mixed_shapes),
-        Stage::new("terrain mesh", terrain_mesh),
-        Stage::new("terrain field", terrain_field),
-        Stage::new("trembling pile", |count| trembling(pile(count))),
-        Stage::new("trembling terrain", |count| trembling(terrain_mesh(count))),
-        Stage::large("vehicles on mesh", vehicles_mesh),
-        Stage::large("vehicles on field", vehicles_field),
-        Stage::large("trembling vehicles on mesh", trembling_vehicles_mesh),
-        Stage::large("trembling vehicles on field", trembling_vehicles_field),
-        Stage::new("rain", rain),
-        Stage::new("asteroids", asteroids),
-        Stage { has_sensors: true, ..Stage::new("sensors", sensors) },
-        Stage::new("churn", spawn_and_despawn),
-    ]
-}
-
-/// The same scene a hundred times as slow, about as things move that come to rest.
-fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
-    for Motion { place, tangent, .. } in scene.objects.iter_mut().map(|object| &mut object.motion) {
-        place.iter_mut().chain([tangent]).for_each(|wave| wave.speed /= 100.0);
-    }
-    scene
 }
 
 fn run_stages<const D: usize>(
@@ -172,42 +122,17 @@ fn run_stages<const D: usize>(
 ) {
     let angular = arguments.angular;
     let angle = if angular == 0.0 { String::new() } else { format!(", {angular} rad") };
-    for Stage { name, make, count, has_sensors } in stages {
-        let count = count(arguments.objects);
+    for stage in stages {
+        let (name, count) = (stage.name, stage.count(arguments.objects));
         let cases = KINDS.map(|kind| format!("{name} {D}D, {count}{angle}: {kind}"));
         if !cases.iter().any(|case| arguments.wants_case(case)) {
             continue;
         }
-        let scene = make(count);
-        let scene = if *has_sensors {
-            predicting(scene, angular)
-        } else {
-            asking_for_contacts(scene, angular)
-        };
+        let scene = stage.scene(arguments.objects, angular);
         let wanted = makers.iter().filter(|(name, _)| arguments.wants_contender(name));
         let made = wanted.filter_map(|(name, make)| Some(Entrant { name, world: make(&scene)? }));
         let mut rows = race(&scene, made.collect(), arguments.steps, &cases);
         rows.retain(|row| arguments.wants_case(&row.case));
         table.add(rows);
     }
-}
-
-/// The same scene, all of whose objects ask for contacts, with these predictions.
-pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
-    for object in &mut scene.objects {
-        object.query = SceneQuery::Contacts { linear: 0.0, angular: 0.0 };
-    }
-    predicting(scene, angular)
-}
-
-/// The same scene, in which the sums over a pair of what is asked for are the prediction and an angle in
-/// radians, where contacts are asked for.
-fn predicting<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
-    let linear = f64::from(PREDICTION) / 2.0;
-    for object in &mut scene.objects {
-        if matches!(object.query, SceneQuery::Contacts { .. }) {
-            object.query = SceneQuery::Contacts { linear, angular: angular / 2.0 };
-        }
-    }
-    scene
 }

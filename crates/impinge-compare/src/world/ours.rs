@@ -1,16 +1,18 @@
 //! impinge, in the plane and in space.
+//!
+//! The library is `super::impinge`, so that this file can be compiled once for each of two versions of it.
 
 use std::hint::black_box;
 
-use impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
-use impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
-use impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
-use impinge::query::{ManifoldView, Proximity};
-use impinge::shape::{
+use super::impinge::math::na::{Quaternion, Translation, Unit, UnitComplex, UnitQuaternion};
+use super::impinge::math::{Isometry2, Isometry3, Point, Space, Vector};
+use super::impinge::narrow_phase::{CollisionObjectHandle, DefaultNarrowPhase, GeometricQueryType};
+use super::impinge::query::{ManifoldView, Proximity};
+use super::impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, HeightField, Plane, Polyline,
     Segment, ShapeHandle, TriMesh, Triangle,
 };
-use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
+use super::impinge::world::{CollisionGroups, CollisionObject, CollisionWorld};
 use impinge_scenes::{Placement, Scene, SceneQuery, SceneShape};
 
 use super::PREDICTION;

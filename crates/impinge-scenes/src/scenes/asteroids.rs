@@ -1,5 +1,6 @@
 //! Rocks that float far from one another.
 
+use super::drift::freeze;
 use super::pile::{axis, edge};
 use super::{MARGIN, NEAR_CONTACTS};
 use crate::random::Random;
@@ -16,6 +17,14 @@ pub fn asteroids<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "asteroids", margin: MARGIN, objects, steps: 100 }
 }
 
+/// The asteroids with all but every hundredth frozen.
+#[must_use]
+pub fn few_asteroids_moving<const D: usize>(count: usize) -> Scene<D> {
+    let mut scene = asteroids(count);
+    freeze(&mut scene, |index| index.is_multiple_of(100));
+    Scene { name: "1 % of asteroids moving", ..scene }
+}
+
 /// The space per rock is a cube of this edge, six times the radius of a middling one.
 const SPACING: f64 = 6.0;
 
@@ -28,13 +37,18 @@ fn floating<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
     let place = velocity.map(|v| Wave::new((0.0, edge), random.between(0.0, edge), v));
     let tangent = Wave::new((-1.0, 1.0), random.between(-1.0, 1.0), random.between(0.001, 0.01));
     let motion = Motion { axis: axis::<D>(random), tangent, ..Motion::translation(place) };
-    SceneObject::new(SceneShape::Convex { points: rock(radius, random) }, NEAR_CONTACTS, motion)
+    let count = 12 + random.below(8);
+    let shape = SceneShape::Convex { points: rock(count, radius, random) };
+    SceneObject::new(shape, NEAR_CONTACTS, motion)
 }
 
 /// The tips of a cross along the axes, so that all dimensions are spanned, and points between, each at
 /// 0.7 to 1 times the radius.
-fn rock<const D: usize>(radius: f64, random: &mut Random) -> Vec<[f64; D]> {
-    let count = 12 + random.below(8);
+pub(super) fn rock<const D: usize>(
+    count: usize,
+    radius: f64,
+    random: &mut Random,
+) -> Vec<[f64; D]> {
     let points = (0..count).map(|n| {
         let distance = radius * random.between(0.7, 1.0);
         let direction = if n < 2 * D { tip(n) } else { random.direction() };

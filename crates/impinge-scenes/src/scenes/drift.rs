@@ -38,12 +38,22 @@ fn drifting<const D: usize>(edge: f64, random: &mut Random) -> SceneObject<D> {
 #[must_use]
 pub fn few_moving<const D: usize>(count: usize) -> Scene<D> {
     let mut scene = sparse_drift(count);
-    for (index, object) in scene.objects.iter_mut().enumerate() {
-        if !index.is_multiple_of(100) {
-            object.motion = object.motion.frozen();
-        }
-    }
+    freeze(&mut scene, |index| index.is_multiple_of(100));
     Scene { name: "1 % moving", ..scene }
+}
+
+/// The sparse drift with all but ten boxes frozen, or all of fewer.
+#[must_use]
+pub fn ten_moving<const D: usize>(count: usize) -> Scene<D> {
+    let mut scene = sparse_drift(count);
+    freeze(&mut scene, |index| index < 10);
+    Scene { name: "ten moving", ..scene }
+}
+
+/// Freezes the objects whose index is not one that `moves`.
+pub(super) fn freeze<const D: usize>(scene: &mut Scene<D>, moves: impl Fn(usize) -> bool) {
+    let frozen = scene.objects.iter_mut().enumerate().filter(|(index, _)| !moves(*index));
+    frozen.for_each(|(_, object)| object.motion = object.motion.frozen());
 }
 
 /// The sparse drift, in which every tenth object is a ball of radius 1.5 that asks which others are

@@ -31,7 +31,7 @@ const fn query(n: usize) -> SceneQuery {
     }
 }
 
-fn flight<const D: usize>(edge: f64, random: &mut Random) -> Motion<D> {
+pub(super) fn flight<const D: usize>(edge: f64, random: &mut Random) -> Motion<D> {
     let speed = random.between(0.01, 0.06);
     let velocity = random.direction::<D>().map(|x| x * speed);
     let place = velocity.map(|v| Wave::new((0.0, edge), random.between(0.0, edge), v));

@@ -19,6 +19,29 @@ pub fn pile<const D: usize>(count: usize) -> Scene<D> {
     Scene { name: "pile", margin: MARGIN, objects, steps: 100 }
 }
 
+/// The pile, whose boxes are not turned.
+#[must_use]
+pub fn aligned_pile<const D: usize>(count: usize) -> Scene<D> {
+    let mut scene = pile(count);
+    for object in &mut scene.objects {
+        object.motion = Motion::translation(object.motion.place);
+    }
+    Scene { name: "aligned pile", ..scene }
+}
+
+/// The pile, whose boxes are turned at random, by up to a quarter turn to either side. Boxes still overlap
+/// those beside them, but not all along the diagonals.
+#[must_use]
+pub fn turned_pile<const D: usize>(count: usize) -> Scene<D> {
+    let random = &mut Random::new(15);
+    let mut scene = pile(count);
+    for object in &mut scene.objects {
+        let (middle, wave) = (random.between(-0.99, 0.99), &mut object.motion.tangent);
+        *wave = Wave::new((middle - 0.01, middle + 0.01), middle, wave.speed);
+    }
+    Scene { name: "turned pile", ..scene }
+}
+
 fn dimension<const D: usize>() -> u32 {
     u32::try_from(D).expect("2 or 3")
 }

@@ -90,6 +90,8 @@ fn standing<const D: usize>(
 pub(super) struct Ground<const D: usize> {
     /// Rows and columns of vertices.
     pub(super) counts: [usize; 2],
+    /// The width of a cell.
+    cell: f64,
     heights: Vec<f64>,
 }
 
@@ -108,24 +110,32 @@ impl<const D: usize> Ground<D> {
         let vertices = (0..counts[0]).flat_map(|row| (0..counts[1]).map(move |n| [row, n]));
         let heights =
             vertices.map(|at| rounded(hill(&lattice, hills[1], at) + random.between(-0.02, 0.02)));
-        Self { counts, heights: heights.collect() }
+        Self { counts, cell: CELL, heights: heights.collect() }
+    }
+
+    /// A square at least as wide as `width`, in the plane a line, without hills, but as rough.
+    pub(super) fn plain(width: f64, cell: f64, random: &mut Random) -> Self {
+        let vertices = (2_usize..).find(|n| (n - 1) as f64 * cell >= width).unwrap_or(2);
+        let counts = [if D < 3 { 1 } else { vertices }, vertices];
+        let heights = (0..counts[0] * counts[1]).map(|_| rounded(random.between(-0.02, 0.02)));
+        Self { counts, cell, heights: heights.collect() }
     }
 
     /// Rows lie along the third axis.
     pub(super) fn extents(&self) -> [f64; D] {
         std::array::from_fn(|axis| match axis {
-            0 => (self.counts[1] - 1) as f64 * CELL,
+            0 => (self.counts[1] - 1) as f64 * self.cell,
             1 => 1.0,
-            _ => (self.counts[0] - 1) as f64 * CELL,
+            _ => (self.counts[0] - 1) as f64 * self.cell,
         })
     }
 
     pub(super) fn vertex(&self, [row, column]: [usize; 2]) -> [f64; D] {
         let extents = self.extents();
         std::array::from_fn(|axis| match axis {
-            0 => column as f64 * CELL - 0.5 * extents[0],
+            0 => column as f64 * self.cell - 0.5 * extents[0],
             1 => self.heights[row * self.counts[1] + column],
-            _ => row as f64 * CELL - 0.5 * extents[axis],
+            _ => row as f64 * self.cell - 0.5 * extents[axis],
         })
     }
 
@@ -166,7 +176,7 @@ impl<const D: usize> Ground<D> {
         let mut at =
             self.vertex([if D < 3 { 0 } else { vertex(self.counts[0]) }, vertex(self.counts[1])]);
         for (_, x) in at.iter_mut().enumerate().filter(|(axis, _)| *axis != 1) {
-            *x += random.between(-0.5, 0.5) * CELL;
+            *x += random.between(-0.5, 0.5) * self.cell;
         }
         at
     }

@@ -76,17 +76,17 @@ fn vehicle<const D: usize>(kind: usize, random: &mut Random) -> SceneShape<D> {
     match kind {
         0 => SceneShape::Cuboid { half_extents: std::array::from_fn(|i| HALF[i]) },
         CAPSULE => SceneShape::Capsule { half_height: HALF[0] - HALF[1], radius: HALF[1] },
-        _ => SceneShape::Convex { points: body(random) },
+        _ => SceneShape::Convex { points: body(HALF, random) },
     }
 }
 
-/// The corners of a box, the upper ones of which are drawn in by a tenth to a third.
-fn body<const D: usize>(random: &mut Random) -> Vec<[f64; D]> {
+/// The corners of a box of these half extents, the upper ones of which are drawn in by a tenth to a third.
+pub(super) fn body<const D: usize>(half: [f64; 3], random: &mut Random) -> Vec<[f64; D]> {
     let corners = (0..1_usize << D).map(|corner| {
         let is_upper = |axis: usize| corner >> axis & 1 == 1;
         let shrink = if is_upper(1) { random.between(0.67, 0.9) } else { 1.0 };
         std::array::from_fn(|axis| {
-            let reach = if axis == 1 { HALF[1] } else { shrink * HALF[axis] };
+            let reach = if axis == 1 { half[1] } else { shrink * half[axis] };
             rounded(if is_upper(axis) { reach } else { -reach })
         })
     });

@@ -1,0 +1,131 @@
+//! The working tree beside an old commit of itself: the scenes of the suite `world` of `impinge-compare`,
+//! the two stepped alternately in one process on one thread, on `f32`.
+//!
+//! `impinge-compare-old [--case TEXT] [--objects N] [--steps N] [--runs N] [--reusing]` prints a
+//! line for each scene:
+//! the median and the worst step of both in microseconds of processor time, and ratios old / new, above 1
+//! where the working tree is quicker. A step sets all new positions, updates, and reads every contact
+//! point; the first, in which everything is new, is left out. `--runs` repeats each scene and keeps the
+//! minimum of each step, which takes most of the noise of a busy machine away. With `--reusing` pairs of both
+//! keep their contacts while they hardly move.
+//!
+//! `CONTRIBUTING.md` says where the old commit has to lie.
+
+mod arguments;
+#[path = "../../impinge-compare/src/world/contender.rs"]
+mod contender;
+#[path = "../../impinge-compare/src/measure.rs"]
+#[expect(dead_code, reason = "the other suites use the rest")]
+mod measure;
+mod new;
+mod old;
+#[path = "../../impinge-compare/src/world/stages.rs"]
+mod stages;
+#[path = "../../impinge-compare/src/table.rs"]
+#[expect(dead_code, reason = "the other suites use the rest")]
+mod table;
+
+use arguments::Arguments;
+use contender::{Contender, Entrant, race};
+use impinge_scenes::Scene;
+use measure::Times;
+use stages::{Stage, plane_stages, space_stages, stages};
+use table::Row;
+
+/// Makes a world with the objects of a scene as they are at step 0.
+type Maker<const D: usize> = fn(&Scene<D>) -> Box<dyn Contender<D>>;
+
+/// The new version and the old one.
+const PLANE: [Maker<2>; 2] =
+    [|scene| Box::new(new::plane(scene)), |scene| Box::new(old::plane(scene))];
+const SPACE: [Maker<3>; 2] =
+    [|scene| Box::new(new::space(scene)), |scene| Box::new(old::space(scene))];
+
+/// Both, where pairs keep their contacts until they have moved by half of the prediction.
+const PLANE_REUSING: [Maker<2>; 2] =
+    [|scene| Box::new(new::plane(scene).reusing()), |scene| Box::new(old::plane(scene).reusing())];
+const SPACE_REUSING: [Maker<3>; 2] =
+    [|scene| Box::new(new::space(scene).reusing()), |scene| Box::new(old::space(scene).reusing())];
+
+fn main() {
+    let arguments = Arguments::of_command_line();
+    println!("microseconds of processor time; ratios old / new, each the median over the steps");
+    println!(
+        "{:<36} {:>7} {:>9} {:>6} {:>10} {:>10} {:>10} {:>10} {:>7} {:>7} {:>7}",
+        "scene",
+        "objects",
+        "touching",
+        "differ",
+        "old",
+        "new",
+        "worst old",
+        "worst new",
+        "ratio",
+        "update",
+        "reading"
+    );
+    let (plane, space) =
+        if arguments.is_reusing { (PLANE_REUSING, SPACE_REUSING) } else { (PLANE, SPACE) };
+    run_stages(plane, &stages(), &arguments);
+    run_stages(plane, &plane_stages(), &arguments);
+    run_stages(space, &stages(), &arguments);
+    run_stages(space, &space_stages(), &arguments);
+}
+
+fn run_stages<const D: usize>(makers: [Maker<D>; 2], stages: &[Stage<D>], arguments: &Arguments) {
+    for stage in stages {
+        let name = format!("{} {D}D", stage.name);
+        if !name.contains(&arguments.case) {
+            continue;
+        }
+        let scene = stage.scene(arguments.objects, 0.0);
+        let rows = rows(makers, &scene, arguments);
+        print(&name, stage.count(arguments.objects), &rows);
+    }
+}
+
+/// The row of the new version and that of the old one, for each kind of time.
+fn rows<const D: usize>(
+    makers: [Maker<D>; 2],
+    scene: &Scene<D>,
+    arguments: &Arguments,
+) -> Vec<Row> {
+    let cases = contender::KINDS.map(str::to_owned);
+    let run = || {
+        let [new, old] = makers.map(|make| make(scene));
+        let entrants =
+            vec![Entrant { name: "new", world: new }, Entrant { name: "old", world: old }];
+        race(scene, entrants, arguments.steps, &cases)
+    };
+    let mut rows = run();
+    for _ in 1..arguments.runs {
+        rows.iter_mut().zip(run()).for_each(|(row, again)| row.times.keep_minima(&again.times));
+    }
+    rows
+}
+
+/// The rows are those of the whole step, of the update and of reading, each of the new version first.
+fn print(name: &str, count: usize, rows: &[Row]) {
+    let [median, worst] = [50, 100].map(|percent| {
+        [1, 0].map(|n: usize| format!("{:.1}", rows[n].times.quantile(percent) * 1e3))
+    });
+    let ratios = [0, 2, 4].map(|n| format!("{:.3}", ratio(&rows[n + 1].times, &rows[n].times)));
+    println!(
+        "{name:<36} {count:>7} {:>9} {:>6} {:>10} {:>10} {:>10} {:>10} {:>7} {:>7} {:>7}",
+        rows[0].answers,
+        rows[1].differ,
+        median[0],
+        median[1],
+        worst[0],
+        worst[1],
+        ratios[0],
+        ratios[1],
+        ratios[2]
+    );
+}
+
+/// The median over the steps of the ratio of the two times of a step. Both were measured within
+/// milliseconds of one another, so that load of the machine which comes and goes is in both.
+fn ratio(old: &Times, new: &Times) -> f64 {
+    old.ratios(new).median()
+}

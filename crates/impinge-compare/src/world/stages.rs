@@ -1,0 +1,182 @@
+//! The scenes of the suite, and the size of each.
+
+use impinge_scenes::{
+    Motion, Scene, SceneQuery, SolidKind, aligned_pile, asteroids, few_asteroids_moving,
+    few_moving, mixed_shapes, pile, plates, rain, sensors, shaken, solids, solids_on_plain,
+    sparse_drift, spawn_and_despawn, ten_moving, terrain_field, terrain_mesh, tower,
+    trembling_vehicles_field, trembling_vehicles_mesh, turned_pile, vehicles_field, vehicles_mesh,
+};
+
+/// Two objects whose distance is at most this have contact points: the sum of what the objects of
+/// the scenes ask for.
+pub const PREDICTION: f32 = 0.002;
+
+/// How far a shaken scene displaces each object at each step, to either side along each axis.
+const SHAKE: f64 = 0.001;
+
+/// A scene of the suite.
+pub struct Stage<const D: usize> {
+    /// The name in the table.
+    pub name: &'static str,
+    /// Makes it, of so many objects.
+    make: fn(usize) -> Scene<D>,
+    /// How many objects it has where so many are asked for.
+    count: fn(usize) -> usize,
+    /// Whether those of its objects that ask for proximity still do; elsewhere all ask for contacts.
+    has_sensors: bool,
+}
+
+impl<const D: usize> Stage<D> {
+    /// As many objects as are asked for, all of which ask for contacts.
+    pub const fn new(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
+        Self { name, make, count: |objects| objects, has_sensors: false }
+    }
+
+    /// Ten times the objects that are asked for.
+    const fn many(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
+        Self { count: |objects| 10 * objects, ..Self::new(name, make) }
+    }
+
+    /// A twentieth of the objects that are asked for, at least one.
+    const fn large(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
+        Self { count: |objects| objects.div_ceil(20), ..Self::new(name, make) }
+    }
+
+    /// A hundredth of the objects that are asked for, at least one.
+    const fn huge(name: &'static str, make: fn(usize) -> Scene<D>) -> Self {
+        Self { count: |objects| objects.div_ceil(100), ..Self::new(name, make) }
+    }
+
+    /// How many objects the scene has where `objects` are asked for.
+    pub fn count(&self, objects: usize) -> usize {
+        (self.count)(objects)
+    }
+
+    /// Makes the scene for `objects` objects asked for; `angular` is the sum over a pair of the angular
+    /// predictions in radians.
+    pub fn scene(&self, objects: usize, angular: f64) -> Scene<D> {
+        let scene = (self.make)(self.count(objects));
+        if self.has_sensors {
+            predicting(scene, angular)
+        } else {
+            asking_for_contacts(scene, angular)
+        }
+    }
+}
+
+/// The scenes of both dimensions, all of which ask for contacts with the same prediction: rapier has one
+/// for all.
+pub fn stages<const D: usize>() -> Vec<Stage<D>> {
+    let mut stages = vec![
+        Stage::new("pile", pile),
+        Stage::many("sparse drift", sparse_drift),
+        Stage::new("1 % moving", few_moving),
+        Stage::many("ten moving", ten_moving),
+        Stage::new("mixed shapes", mixed_shapes),
+        Stage::new("terrain mesh", terrain_mesh),
+        Stage::new("terrain field", terrain_field),
+        Stage::new("trembling pile", |count| trembling(pile(count))),
+        Stage::new("trembling terrain", |count| trembling(terrain_mesh(count))),
+        Stage::large("vehicles on mesh", vehicles_mesh),
+        Stage::large("vehicles on field", vehicles_field),
+        Stage::large("trembling vehicles on mesh", trembling_vehicles_mesh),
+        Stage::large("trembling vehicles on field", trembling_vehicles_field),
+        Stage::new("rain", rain),
+        Stage::new("asteroids", asteroids),
+        Stage::new("asteroids, 1 % moving", few_asteroids_moving),
+        Stage { has_sensors: true, ..Stage::new("sensors", sensors) },
+        Stage::new("churn", spawn_and_despawn),
+        Stage::new("towers at rest", tower),
+    ];
+    stages.extend(shaken_stages());
+    stages.extend(alone());
+    stages.extend(on_plain());
+    stages
+}
+
+/// Boxes in other piles, and scenes in which every step displaces every object at random.
+fn shaken_stages<const D: usize>() -> [Stage<D>; 8] {
+    [
+        Stage::new("aligned pile", aligned_pile),
+        Stage::new("turned pile", turned_pile),
+        Stage::new("shaken pile", |count| shaken(pile(count), SHAKE)),
+        Stage::new("shaken terrain mesh", |count| shaken(terrain_mesh(count), SHAKE)),
+        Stage::new("shaken terrain field", |count| shaken(terrain_field(count), SHAKE)),
+        Stage::large("shaken vehicles on mesh", |count| shaken(vehicles_mesh(count), SHAKE)),
+        Stage::large("shaken vehicles on field", |count| shaken(vehicles_field(count), SHAKE)),
+        Stage::new("shaken towers", |count| shaken(tower(count), SHAKE)),
+    ]
+}
+
+/// Solids in free space, of several kinds and of each kind alone.
+fn alone<const D: usize>() -> [Stage<D>; 6] {
+    use SolidKind::{Ball, Capsule, Cuboid, Hull};
+    [
+        Stage::new("dense solids", |count| solids(count, SolidKind::all::<D>(), 1.0)),
+        Stage::new("loose solids", |count| solids(count, SolidKind::all::<D>(), 2.0)),
+        Stage::new("balls alone", |count| solids(count, &[Ball], 1.3)),
+        Stage::new("cuboids alone", |count| solids(count, &[Cuboid], 1.3)),
+        Stage::new("capsules alone", |count| solids(count, &[Capsule], 1.3)),
+        Stage::new("hulls of 12 alone", |count| solids(count, &[Hull], 1.3)),
+    ]
+}
+
+/// Solids on a rough plain: plates of half extents from 0.5 to 8, and others of half extent 1 that move by
+/// 0.1 per step.
+fn on_plain<const D: usize>() -> [Stage<D>; 14] {
+    use SolidKind::{Ball, Capsule, Cuboid, Hull};
+    [
+        Stage::huge("plates of 0.5", |count| plates(count, 0.5)),
+        Stage::huge("plates of 1", |count| plates(count, 1.0)),
+        Stage::huge("plates of 2", |count| plates(count, 2.0)),
+        Stage::huge("plates of 4", |count| plates(count, 4.0)),
+        Stage::huge("plates of 8", |count| plates(count, 8.0)),
+        Stage::huge("shaken plates of 0.5", |count| shaken(plates(count, 0.5), SHAKE)),
+        Stage::huge("shaken plates of 1", |count| shaken(plates(count, 1.0), SHAKE)),
+        Stage::huge("shaken plates of 2", |count| shaken(plates(count, 2.0), SHAKE)),
+        Stage::huge("shaken plates of 4", |count| shaken(plates(count, 4.0), SHAKE)),
+        Stage::huge("shaken plates of 8", |count| shaken(plates(count, 8.0), SHAKE)),
+        Stage::large("balls on field", |count| solids_on_plain(count, Ball)),
+        Stage::large("cuboids on field", |count| solids_on_plain(count, Cuboid)),
+        Stage::large("capsules on field", |count| solids_on_plain(count, Capsule)),
+        Stage::large("hulls on field", |count| solids_on_plain(count, Hull)),
+    ]
+}
+
+/// The scenes of the plane alone.
+pub fn plane_stages() -> [Stage<2>; 1] {
+    [Stage::new("crowd", impinge_scenes::crowd)]
+}
+
+/// The scenes of space alone.
+pub fn space_stages() -> [Stage<3>; 1] {
+    [Stage::new("cylinders alone", |count| solids(count, &[SolidKind::Cylinder], 1.3))]
+}
+
+/// The same scene a hundred times as slow, about as things move that come to rest.
+fn trembling<const D: usize>(mut scene: Scene<D>) -> Scene<D> {
+    for Motion { place, tangent, .. } in scene.objects.iter_mut().map(|object| &mut object.motion) {
+        place.iter_mut().chain([tangent]).for_each(|wave| wave.speed /= 100.0);
+    }
+    scene
+}
+
+/// The same scene, all of whose objects ask for contacts, with these predictions.
+pub fn asking_for_contacts<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
+    for object in &mut scene.objects {
+        object.query = SceneQuery::Contacts { linear: 0.0, angular: 0.0 };
+    }
+    predicting(scene, angular)
+}
+
+/// The same scene, in which the sums over a pair of what is asked for are the prediction and an angle in
+/// radians, where contacts are asked for.
+fn predicting<const D: usize>(mut scene: Scene<D>, angular: f64) -> Scene<D> {
+    let linear = f64::from(PREDICTION) / 2.0;
+    for object in &mut scene.objects {
+        if matches!(object.query, SceneQuery::Contacts { .. }) {
+            object.query = SceneQuery::Contacts { linear, angular: angular / 2.0 };
+        }
+    }
+    scene
+}
