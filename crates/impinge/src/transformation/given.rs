@@ -59,8 +59,8 @@ impl<N: Real> ConvexHull<N> {
         let size = points.iter().map(|point| max_component(&point.coords)).fold(N::ZERO, max);
         let lowest = -N::lit(SLACK) * N::EPSILON * size;
         let is_on_hull = |face: &F| {
-            let middle = middle(points, face.as_ref());
-            hull.faces().iter().any(|plane| plane.height_of(&middle) >= lowest)
+            let (_, height) = hull.highest_face(&middle(points, face.as_ref()));
+            height >= lowest
         };
         match faces.iter().position(|face| !is_on_hull(face)) {
             // A face whose middle is on the boundary of a convex set lies there wholly.

@@ -1,8 +1,8 @@
 //! Convex hulls in 2D.
 
+use super::lattice::area;
 use super::outline::thinned;
 use super::span::{Scaled, first_three, precedes};
-use crate::math::exact::area;
 use crate::math::{Point, Real};
 use crate::shape::ShapeError;
 

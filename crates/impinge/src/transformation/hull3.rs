@@ -1,7 +1,7 @@
 //! Convex hulls in 3D.
 
-use super::hull_faces::{HullFace, faces, redundant};
-use super::quickhull::{Facet, HullSurface};
+use super::hull_faces::{FaceRings, faces, redundant};
+use super::quickhull::{Facet, HullSurface, at, index_of};
 use super::span::{Scaled, first_four};
 use crate::math::{Point, Real, Vector};
 use crate::shape::{ConvexHull, ShapeError};
@@ -61,64 +61,80 @@ const ROUNDS: usize = 8;
 /// assert_eq!(convex_hull3(&cube).map(|hull| hull.faces.len()), Ok(6));
 /// ```
 pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull<N>, ShapeError> {
-    hull_of(&Scaled::of(points, 4)?)
+    let HullFaces { named, faces } = hull_of(points)?;
+    let ring = |ring: &[u32]| ring.iter().map(|&vertex| named[vertex as usize]).collect();
+    let normals = faces.normals.iter().map(|normal| normal.map(N::lit)).collect();
+    Ok(IndexedHull { faces: faces.rings().map(ring).collect(), normals, vertices: named })
+}
+
+/// A hull in terms of its own vertices.
+struct HullFaces {
+    /// The points that the vertices are, ascending.
+    named: Vec<usize>,
+    faces: FaceRings,
 }
 
 /// Takes redundant vertices out until there are none or nothing would be left.
-fn hull_of<N: Real>(scaled: &Scaled<3>) -> Result<IndexedHull<N>, ShapeError> {
-    let mut grown = Grown::of(scaled, (0..scaled.points.len()).collect())?;
+fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
+    let mut grown = Grown::of(&Scaled::of(points, 4)?)?;
     for _ in 0..ROUNDS {
-        let redundant = redundant(&grown.facets, &grown.points);
+        let redundant = redundant(&grown.facets, &grown.vertices);
         if redundant.is_empty() {
             break;
         }
-        let Ok(next) = Grown::of(scaled, grown.without(&redundant)) else { break };
+        let Ok(next) = grown.without(&redundant) else { break };
         grown = next;
     }
-    Ok(grown.indexed())
+    let mut faces = faces(&grown.facets, &grown.vertices);
+    let (used, places) = numbered(grown.named.len(), faces.corners.iter().copied());
+    faces.corners.iter_mut().for_each(|corner| *corner = places[at(*corner)]);
+    let named = used.into_iter().map(|vertex| grown.named[vertex]).collect();
+    Ok(HullFaces { named, faces })
 }
 
-/// The hull of some of the points, as triangles.
+/// The hull of some points, as triangles.
 struct Grown {
-    /// The points that it was made of, by their indices.
+    /// The points that the vertices are, ascending.
     named: Vec<usize>,
     /// Their positions.
-    points: Scaled<3>,
+    vertices: Scaled<3>,
     facets: Vec<Facet>,
 }
 
 impl Grown {
-    fn of(scaled: &Scaled<3>, named: Vec<usize>) -> Result<Self, ShapeError> {
-        let points = named.iter().map(|&index| scaled.points[index]).collect();
-        let points = Scaled { points, unit: scaled.unit };
-        let index_of = |index: usize| u32::try_from(index).expect("a hull of at most 2³² points");
-        let first = first_four(&points)?.map(index_of);
-        let facets = HullSurface::grown(&points.points, first, 2.0 * scaled.unit);
-        let facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
-        Ok(Self { named, points, facets })
-    }
-
-    /// The other vertices.
-    fn without(&self, redundant: &[u32]) -> Vec<usize> {
-        let mut needed: Vec<u32> = self.facets.iter().flat_map(|facet| facet.corners).collect();
-        needed.sort_unstable();
-        needed.dedup();
-        needed.retain(|vertex| redundant.binary_search(vertex).is_err());
-        needed.into_iter().map(|vertex| self.named[vertex as usize]).collect()
-    }
-
-    fn indexed<N: Real>(&self) -> IndexedHull<N> {
-        let name = |vertex: &u32| self.named[*vertex as usize];
-        let (mut loops, mut normals) = (Vec::<Vec<usize>>::new(), Vec::new());
-        for HullFace { normal, ring } in faces(&self.facets, &self.points) {
-            loops.push(ring.iter().map(name).collect());
-            normals.push(normal.map(N::lit));
+    fn of(scaled: &Scaled<3>) -> Result<Self, ShapeError> {
+        let first = first_four(scaled)?.map(index_of);
+        let facets = HullSurface::grown(&scaled.points, first, 2.0 * scaled.unit);
+        let mut facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
+        let corners = facets.iter().flat_map(|facet| facet.corners);
+        let (named, places) = numbered(scaled.points.len(), corners);
+        for facet in &mut facets {
+            facet.corners = facet.corners.map(|corner| places[at(corner)]);
         }
-        let mut vertices = loops.concat();
-        vertices.sort_unstable();
-        vertices.dedup();
-        IndexedHull { vertices, faces: loops, normals }
+        let points = named.iter().map(|&index| scaled.points[index]).collect();
+        Ok(Self { named, vertices: Scaled { points, unit: scaled.unit }, facets })
     }
+
+    /// The hull of the other vertices.
+    fn without(&self, redundant: &[u32]) -> Result<Self, ShapeError> {
+        let is_kept = |&vertex: &usize| redundant.binary_search(&index_of(vertex)).is_err();
+        let kept: Vec<usize> = (0..self.named.len()).filter(is_kept).collect();
+        let points = kept.iter().map(|&vertex| self.vertices.points[vertex]).collect();
+        let mut next = Self::of(&Scaled { points, unit: self.vertices.unit })?;
+        next.named.iter_mut().for_each(|name| *name = self.named[kept[*name]]);
+        Ok(next)
+    }
+}
+
+/// The vertices in use, ascending, and the place of each among them.
+fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
+    let (mut places, mut used) = (vec![0; count], Vec::with_capacity(count));
+    corners.for_each(|corner| places[at(corner)] = 1);
+    for (vertex, place) in places.iter_mut().enumerate().filter(|(_, place)| **place == 1) {
+        *place = index_of(used.len());
+        used.push(vertex);
+    }
+    (used, places)
 }
 
 impl<N: Real> ConvexHull<N> {
@@ -127,12 +143,10 @@ impl<N: Real> ConvexHull<N> {
     /// # Errors
     /// For fewer than four points, a coordinate that is not finite, and points that span no volume.
     pub fn try_from_points(points: &[Point<N, 3>]) -> Result<Self, ShapeError> {
-        let IndexedHull { vertices, faces, normals } = convex_hull3(points)?;
-        let place = |index: &usize| vertices.binary_search(index).ok();
-        let rings: Option<Vec<Vec<usize>>> =
-            faces.iter().map(|face| face.iter().map(place).collect()).collect();
-        let corners = vertices.iter().map(|&index| points[index]).collect();
-        let solid = rings.and_then(|rings| Self::from_closed_faces(corners, &normals, &rings));
+        let HullFaces { named, faces } = hull_of(points)?;
+        let corners = named.iter().map(|&index| points[index]).collect();
+        let normals = faces.normals.iter().map(|normal| normal.map(N::lit));
+        let solid = Self::from_closed_faces(corners, normals.zip(faces.rings()));
         solid.ok_or(ShapeError::Degenerate { dimension: 2 })
     }
 }

@@ -1,34 +1,17 @@
 //! From the triangles of a hull to its faces: which vertices add nothing, and which triangles are one
 //! polygon.
 
-use super::quickhull::Facet;
+use super::lattice::area_vector;
+use super::quickhull::{DOUBT, Facet, at};
 use super::span::{Scaled, direction, distance_from_segment, precedes};
+use crate::math::order::sort_keyed;
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;
 
-fn at(index: u32) -> usize {
-    index as usize
-}
-
-/// The vertices next to each vertex: pairs (vertex, neighbor), sorted, and whether the surface turns
-/// at the edge between them.
-fn spokes(facets: &[Facet], points: &Scaled<3>) -> Vec<(u32, u32, bool)> {
-    let mut spokes = Vec::with_capacity(3 * facets.len());
-    for facet in facets {
-        for side in 0..3 {
-            let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]];
-            let beyond = &facets[at(facet.neighbors[side])];
-            spokes.push((from, to, !is_flat(facet, beyond, points)));
-        }
-    }
-    spokes.sort_unstable();
-    spokes
-}
-
 /// The smaller of two neighbors lies in the plane of the larger.
 fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
-    let is_first_larger = facet1.doubled_area() >= facet2.doubled_area();
+    let is_first_larger = facet1.doubled_area >= facet2.doubled_area;
     let (large, small) = if is_first_larger { (facet1, facet2) } else { (facet2, facet1) };
     let mut far = small.corners.iter().filter(|&corner| !large.corners.contains(corner));
     far.all(|&corner| large.height(&points.points, corner).abs() <= points.flat())
@@ -38,21 +21,51 @@ fn is_flat(facet1: &Facet, facet2: &Facet, points: &Scaled<3>) -> bool {
 /// lie on the segment between two neighbors or in the plane of all of them.
 pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     let points = &scaled.points;
-    let spokes = spokes(facets, scaled);
-    let mut is_kept = vec![false; points.len()];
-    let mut redundant = Vec::new();
-    for ring in spokes.chunk_by(|a, b| a.0 == b.0) {
-        let vertex = ring[0].0;
-        // At a true corner three edges meet at least, or slivers hide some of them.
-        let turns = ring.iter().filter(|spoke| spoke.2).count();
-        let is_candidate = turns <= 2 && ring.len() <= 64 && !is_kept[at(vertex)];
-        let neighbors = || ring.iter().map(|spoke| points[at(spoke.1)]).collect::<Vec<P3>>();
-        if is_candidate && is_inside(&points[at(vertex)], &neighbors(), scaled.flat()) {
+    // For each vertex one of its facets, and at how many of its edges the surface turns.
+    let mut around = vec![(0, 0_u32); points.len()];
+    for (index, facet) in (0..).zip(facets) {
+        for side in 0..3 {
+            let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]].map(at);
+            let beyond = facet.neighbors[side];
+            let turns = index < beyond && !is_flat(facet, &facets[at(beyond)], scaled);
+            around[from].1 += u32::from(turns);
+            around[to].1 += u32::from(turns);
+            around[from].0 = index;
+        }
+    }
+    // At a true corner three edges meet at least, or slivers hide some of them.
+    let candidates = (0..).zip(around).filter(|&(_, (_, turns))| turns <= 2);
+    let (mut kept, mut redundant) = (Vec::new(), Vec::new());
+    for (vertex, (facet, _)) in candidates {
+        kept.resize(points.len(), false);
+        if kept[at(vertex)] {
+            continue;
+        }
+        let ring = ring_around(vertex, facet, facets);
+        let neighbors = || ring.iter().map(|&neighbor| points[at(neighbor)]).collect::<Vec<P3>>();
+        if ring.len() <= 64 && is_inside(&points[at(vertex)], &neighbors(), scaled.flat()) {
             redundant.push(vertex);
-            ring.iter().for_each(|spoke| is_kept[at(spoke.1)] = true);
+            ring.iter().for_each(|&neighbor| kept[at(neighbor)] = true);
         }
     }
     redundant
+}
+
+/// The vertices next to a vertex, ascending, found from one of its facets.
+fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
+    let (mut ring, mut facet) = (Vec::new(), first);
+    loop {
+        let Facet { corners, neighbors, .. } = &facets[at(facet)];
+        let place = corners.iter().position(|&corner| corner == vertex);
+        let place = place.expect("facets around a vertex have it as a corner");
+        ring.push(corners[(place + 1) % 3]);
+        facet = neighbors[(place + 2) % 3];
+        if facet == first {
+            break;
+        }
+    }
+    ring.sort_unstable();
+    ring
 }
 
 fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
@@ -87,168 +100,91 @@ fn widest_normal<'a>(
     direction(&widest).map(|(normal, _)| normal)
 }
 
-/// A face of the hull.
-#[derive(Clone, Debug)]
-pub(super) struct HullFace {
-    /// The outward unit normal of the largest triangle in it: the hull has no point in front of that,
+/// The faces of a hull, one after the other.
+#[derive(Default)]
+pub(super) struct FaceRings {
+    /// The outward unit normal of the largest triangle in each face: the hull has no point in front of that,
     /// however much smaller triangles are bent within the tolerance.
-    pub(super) normal: Vector<f64, 3>,
-    /// The vertices, counter-clockwise from outside, from the first in order of coordinates.
-    pub(super) ring: Vec<u32>,
+    pub(super) normals: Vec<Vector<f64, 3>>,
+    /// The vertices of each face, counter-clockwise from outside, from the first in order of coordinates.
+    pub(super) corners: Vec<u32>,
+    /// Where the vertices of each face end.
+    ends: Vec<usize>,
 }
 
-/// The faces: triangles within the tolerance of one plane are one face.
-///
-/// Should the merging ever fail to close the surface, the triangles are the faces: they do close it.
-pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> Vec<HullFace> {
-    let points = &scaled.points;
-    let mut faces = Merger::new(facets, scaled).merged();
-    if !(straighten(&mut faces, scaled) && is_closed(&faces)) {
-        let triangle =
-            |facet: &Facet| HullFace { normal: facet.normal(points), ring: facet.corners.to_vec() };
-        faces = facets.iter().map(triangle).collect();
+impl FaceRings {
+    fn with_capacity(faces: usize) -> Self {
+        let (normals, ends) = (Vec::with_capacity(faces), Vec::with_capacity(faces));
+        Self { normals, corners: Vec::with_capacity(3 * faces), ends }
     }
-    for HullFace { ring, .. } in &mut faces {
+
+    /// Adds a face that has the normal of a facet. Points that came in `f32` are far coarser than the normal used so far.
+    fn push(&mut self, scaled: &Scaled<3>, seed: &Facet, ring: &[u32]) {
+        let points = &scaled.points;
+        let exact = || area_vector(seed.corners.map(|corner| &points[at(corner)]));
+        let is_coarse = scaled.unit > DOUBT;
+        // Of zeros the positive one.
+        let normal = if is_coarse { seed.normal.add_scalar(0.0) } else { exact().normalize() };
+        self.normals.push(normal);
         let first = (1..ring.len()).fold(0, |first, candidate| {
             let is_before = precedes(&points[at(ring[candidate])], &points[at(ring[first])]);
             if is_before { candidate } else { first }
         });
-        ring.rotate_left(first);
-    }
-    faces
-}
-
-/// A corner of a face that grows, and the facet beyond the side to the next corner.
-#[derive(Clone, Copy)]
-struct HullCorner {
-    vertex: u32,
-    beyond: u32,
-}
-
-struct Merger<'a> {
-    facets: &'a [Facet],
-    points: &'a [P3],
-    flat: f64,
-    /// Which facets are part of a face.
-    is_taken: Vec<bool>,
-    /// For each vertex, one more than the last seed in whose face it is.
-    in_face_of: Vec<u32>,
-}
-
-impl<'a> Merger<'a> {
-    fn new(facets: &'a [Facet], scaled: &'a Scaled<3>) -> Self {
-        Self {
-            facets,
-            points: &scaled.points,
-            flat: scaled.flat(),
-            is_taken: vec![false; facets.len()],
-            in_face_of: vec![0; scaled.points.len()],
-        }
+        self.corners.extend_from_slice(&ring[first..]);
+        self.corners.extend_from_slice(&ring[..first]);
+        self.ends.push(self.corners.len());
     }
 
-    /// Grows a face from each facet that is in none yet, the largest first.
-    fn merged(mut self) -> Vec<HullFace> {
-        let mut seeds: Vec<u32> = (0..).take(self.facets.len()).collect();
-        let area = |facet: u32| self.facets[at(facet)].doubled_area();
-        seeds.sort_by(|&a, &b| area(b).total_cmp(&area(a)).then(a.cmp(&b)));
-        let mut faces = Vec::new();
-        for seed in seeds {
-            if !self.is_taken[at(seed)] {
-                let normal = self.facets[at(seed)].normal(self.points);
-                faces.push(HullFace { normal, ring: self.grow(seed) });
+    /// The vertices around each face.
+    pub(super) fn rings(&self) -> impl Iterator<Item = &[u32]> {
+        let starts = core::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| &self.corners[start..end])
+    }
+
+    /// Drops the vertices that only two faces share: in each of them the sides there form one line. Answers
+    /// false if there is one where they do not, as where two faces that hardly lean against each other meet all
+    /// around: a vertex of two sides is none.
+    fn straighten(&mut self, scaled: &Scaled<3>) -> bool {
+        let mut uses = vec![(0_u32, [0; 2]); scaled.points.len()];
+        for (face, ring) in self.rings().enumerate() {
+            for &vertex in ring {
+                let (count, users) = &mut uses[at(vertex)];
+                if let Some(user) = users.get_mut(at(*count)) {
+                    *user = face;
+                }
+                *count += 1;
             }
         }
-        faces
-    }
-
-    fn grow(&mut self, seed: u32) -> Vec<u32> {
-        let facet = &self.facets[at(seed)];
-        self.is_taken[at(seed)] = true;
-        let mut ring = Vec::with_capacity(4);
-        for side in 0..3 {
-            self.in_face_of[at(facet.corners[side])] = seed + 1;
-            ring.push(HullCorner { vertex: facet.corners[side], beyond: facet.neighbors[side] });
+        if uses.iter().all(|&(count, _)| count != 2) {
+            return true;
         }
-        // Each success takes one facet more; after a whole turn without any the face is done.
-        let (mut position, mut failures) = (0, 0);
-        while failures < ring.len() {
-            position %= ring.len();
-            if self.take_beyond(seed, &mut ring, position) {
-                failures = 0;
-            } else {
-                failures += 1;
-                position += 1;
+        let mut rings: Vec<Vec<u32>> = self.rings().map(<[u32]>::to_vec).collect();
+        for (vertex, (_, users)) in (0_u32..).zip(uses).filter(|(_, (count, _))| *count == 2) {
+            let can_do_without =
+                |&user: &usize| rings[user].len() > 3 && is_straight(&rings[user], vertex, scaled);
+            if !users.iter().all(can_do_without) {
+                return false;
             }
+            users.iter().for_each(|&user| rings[user].retain(|&corner| corner != vertex));
         }
-        ring.iter().map(|corner| corner.vertex).collect()
+        self.corners = rings.concat();
+        self.ends.clear();
+        self.ends.extend(rings.iter().scan(0, |end, ring| {
+            *end += ring.len();
+            Some(*end)
+        }));
+        self.is_closed()
     }
 
-    /// Takes in the facet beyond a side, if it is coplanar with the seed and the face stays
-    /// convex.
-    fn take_beyond(&mut self, seed: u32, ring: &mut Vec<HullCorner>, position: usize) -> bool {
-        let (from, beyond) = (ring[position].vertex, ring[position].beyond);
-        let facet = &self.facets[at(beyond)];
-        let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
-            return false;
-        };
-        // Seen from there the side runs backwards, to `from`; then come the far corner and back.
-        let far = facet.corners[(shared + 1) % 3];
-        let is_free = !self.is_taken[at(beyond)] && self.in_face_of[at(far)] != seed + 1;
-        let is_level = || self.facets[at(seed)].height(self.points, far).abs() <= self.flat;
-        if !(is_free && is_level() && self.stays_convex(seed, ring, position, far)) {
-            return false;
-        }
-        self.is_taken[at(beyond)] = true;
-        self.in_face_of[at(far)] = seed + 1;
-        ring[position].beyond = facet.neighbors[shared];
-        ring.insert(
-            position + 1,
-            HullCorner { vertex: far, beyond: facet.neighbors[(shared + 1) % 3] },
-        );
-        true
+    /// Each side of a face is, backwards, the side of one other face.
+    fn is_closed(&self) -> bool {
+        let sides = self.rings().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
+        let mut forward: Vec<(u32, u32)> = sides.map(|(&from, &to)| (from, to)).collect();
+        let mut backward: Vec<(u32, u32)> = forward.iter().map(|&(from, to)| (to, from)).collect();
+        forward.sort_unstable();
+        backward.sort_unstable();
+        forward == backward && forward.windows(2).all(|pair| pair[0] != pair[1])
     }
-
-    fn stays_convex(&self, seed: u32, ring: &[HullCorner], position: usize, far: u32) -> bool {
-        let count = ring.len();
-        let vertex = |step: usize| ring[(position + step) % count].vertex;
-        let (before, from, to, after) = (vertex(count - 1), vertex(0), vertex(1), vertex(2));
-        let normal = self.facets[at(seed)].normal(self.points);
-        let turns_left = |corners: [u32; 3]| {
-            let [a, b, c] = corners.map(|corner| self.points[at(corner)]);
-            // How far b lies outside the line from a to c, times its length.
-            (b - a).cross(&(c - b)).dot(&normal) >= -self.flat * (c - a).norm()
-        };
-        turns_left([before, from, far])
-            && turns_left([from, far, to])
-            && turns_left([far, to, after])
-    }
-}
-
-/// Drops the vertices that only two faces share: in each of them the sides there form one line. Answers
-/// false if there is one where they do not, as where two faces that hardly lean against each other meet all
-/// around: a vertex of two sides is none.
-fn straighten(faces: &mut [HullFace], scaled: &Scaled<3>) -> bool {
-    let mut uses = vec![(0_u32, [0_usize; 2]); scaled.points.len()];
-    for (index, face) in faces.iter().enumerate() {
-        for &vertex in &face.ring {
-            let (count, users) = &mut uses[at(vertex)];
-            if let Some(user) = users.get_mut(at(*count)) {
-                *user = index;
-            }
-            *count += 1;
-        }
-    }
-    (0_u32..).zip(uses).filter(|(_, (count, _))| *count == 2).all(|(vertex, (_, users))| {
-        let can_do_without = |user: &usize| {
-            let ring = &faces[*user].ring;
-            ring.len() > 3 && is_straight(ring, vertex, scaled)
-        };
-        let is_needless = users.iter().all(can_do_without);
-        if is_needless {
-            users.iter().for_each(|&user| faces[user].ring.retain(|&corner| corner != vertex));
-        }
-        is_needless
-    })
 }
 
 /// A vertex of a ring lies on the segment between those before and after it.
@@ -258,15 +194,122 @@ fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
     distance_from_segment(corner(0), corner(ring.len() - 1), corner(1)) <= scaled.flat()
 }
 
-/// Each side of a face is, backwards, the side of one other face.
-fn is_closed(faces: &[HullFace]) -> bool {
-    let sides = |HullFace { ring, .. }: &HullFace| {
-        let next = ring.iter().cycle().skip(1);
-        ring.iter().copied().zip(next.copied()).collect::<Vec<_>>()
-    };
-    let mut forward: Vec<(u32, u32)> = faces.iter().flat_map(sides).collect();
-    let mut backward: Vec<(u32, u32)> = forward.iter().map(|&(from, to)| (to, from)).collect();
-    forward.sort_unstable();
-    backward.sort_unstable();
-    forward == backward && forward.windows(2).all(|pair| pair[0] != pair[1])
+/// The faces: triangles within the tolerance of one plane are one face.
+///
+/// Each side of such a face is, backwards, a side of the triangle beyond and so of the face that this is in. Only the
+/// straightening can spoil that; then the triangles are the faces.
+pub(super) fn faces(facets: &[Facet], scaled: &Scaled<3>) -> FaceRings {
+    let mut faces = Merger::new(facets, scaled).merged();
+    if !faces.straighten(scaled) {
+        faces = FaceRings::with_capacity(facets.len());
+        for facet in facets {
+            faces.push(scaled, facet, &facet.corners);
+        }
+    }
+    faces
+}
+
+struct Merger<'a> {
+    facets: &'a [Facet],
+    scaled: &'a Scaled<3>,
+    /// Which facets are part of a face.
+    is_taken: Vec<bool>,
+    /// For each vertex, one more than the last seed in whose face it is.
+    in_face_of: Vec<u32>,
+    /// The vertices of the face that grows.
+    ring: Vec<u32>,
+    /// For each of them the facet beyond the side to the next.
+    beyond: Vec<u32>,
+}
+
+impl<'a> Merger<'a> {
+    fn new(facets: &'a [Facet], scaled: &'a Scaled<3>) -> Self {
+        Self {
+            facets,
+            scaled,
+            is_taken: vec![false; facets.len()],
+            in_face_of: vec![0; scaled.points.len()],
+            ring: Vec::new(),
+            beyond: Vec::new(),
+        }
+    }
+
+    /// Grows a face from each facet that is in none yet, the largest first.
+    fn merged(mut self) -> FaceRings {
+        // The bits of numbers that are not negative have their order.
+        let area = |facet: &Facet| !facet.doubled_area.to_bits();
+        let mut seeds: Vec<(u64, u32)> = self.facets.iter().map(area).zip(0..).collect();
+        sort_keyed(&mut seeds);
+        let mut faces = FaceRings::with_capacity(self.facets.len());
+        for (_, seed) in seeds {
+            if !self.is_taken[at(seed)] {
+                self.grow(seed);
+                faces.push(self.scaled, &self.facets[at(seed)], &self.ring);
+            }
+        }
+        faces
+    }
+
+    fn grow(&mut self, seed: u32) {
+        let facet = &self.facets[at(seed)];
+        self.is_taken[at(seed)] = true;
+        self.ring.clear();
+        self.ring.extend(facet.corners);
+        self.beyond.clear();
+        self.beyond.extend(facet.neighbors);
+        facet.corners.iter().for_each(|&corner| self.in_face_of[at(corner)] = seed + 1);
+        // Each success takes one facet more; after a whole turn without any the face is done.
+        let (mut position, mut failures) = (0, 0);
+        while failures < self.ring.len() {
+            position %= self.ring.len();
+            if self.take_beyond(seed, position) {
+                failures = 0;
+            } else {
+                failures += 1;
+                position += 1;
+            }
+        }
+    }
+
+    /// Takes in the facet beyond a side, if it is coplanar with the seed and the face stays
+    /// convex.
+    fn take_beyond(&mut self, seed: u32, position: usize) -> bool {
+        let (from, beyond) = (self.ring[position], self.beyond[position]);
+        let facet = &self.facets[at(beyond)];
+        if self.is_taken[at(beyond)] {
+            return false;
+        }
+        let Some(shared) = facet.corners.iter().position(|&corner| corner == from) else {
+            return false;
+        };
+        // Seen from there the side runs backwards, to `from`; then come the far corner and back.
+        let far = facet.corners[(shared + 1) % 3];
+        let Scaled { points, .. } = self.scaled;
+        let is_level = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();
+        let is_free = self.in_face_of[at(far)] != seed + 1;
+        if !(is_free && is_level() && self.stays_convex(seed, position, far)) {
+            return false;
+        }
+        self.is_taken[at(beyond)] = true;
+        self.in_face_of[at(far)] = seed + 1;
+        self.beyond[position] = facet.neighbors[shared];
+        self.beyond.insert(position + 1, facet.neighbors[(shared + 1) % 3]);
+        self.ring.insert(position + 1, far);
+        true
+    }
+
+    fn stays_convex(&self, seed: u32, position: usize, far: u32) -> bool {
+        let count = self.ring.len();
+        let vertex = |step: usize| self.ring[(position + step) % count];
+        let (before, from, to, after) = (vertex(count - 1), vertex(0), vertex(1), vertex(2));
+        let normal = &self.facets[at(seed)].normal;
+        let turns_left = |corners: [u32; 3]| {
+            let [a, b, c] = corners.map(|corner| self.scaled.points[at(corner)]);
+            // How far b lies outside the line from a to c, times its length.
+            (b - a).cross(&(c - b)).dot(normal) >= -self.scaled.flat() * (c - a).norm()
+        };
+        turns_left([before, from, far])
+            && turns_left([from, far, to])
+            && turns_left([far, to, after])
+    }
 }

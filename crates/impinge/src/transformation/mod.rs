@@ -8,6 +8,7 @@ mod given;
 mod hull2;
 mod hull3;
 mod hull_faces;
+mod lattice;
 mod outline;
 mod quickhull;
 mod span;

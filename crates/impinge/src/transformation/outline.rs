@@ -1,8 +1,8 @@
 //! Convex outlines in 2D, and polygons made of points.
 
 use super::hull2::convex_hull2;
+use super::lattice::area;
 use super::span::{Scaled, distance_from_segment, first_three};
-use crate::math::exact::area;
 use crate::math::{Point, Real};
 use crate::shape::{ConvexPolygon, ShapeError};
 

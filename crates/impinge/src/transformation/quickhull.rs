@@ -1,17 +1,25 @@
 //! Quickhull in 3D, with exact decisions and a tolerance on what is worth a vertex.
 //!
 //! Barber, Dobkin and Huhdanpaa, "The Quickhull Algorithm for Convex Hulls" (1996). Who sees which
-//! facet is decided by exact orientation, so the facets a point sees are always connected and their
-//! border is always one loop: the surface stays closed and weakly convex whatever the input. Points
-//! that are outside by no more than the tolerance are left there.
+//! facet is decided by exact orientation, so the facets a point sees are always connected, their
+//! border is always one loop, and no facet is without area: the surface stays closed and weakly convex
+//! whatever the input. Points that are outside by no more than the tolerance are left there.
 
+use super::lattice::{area_vector, volume};
 use super::span::{distance_from_segment, larger, precedes};
-use crate::math::exact::{area_vector, volume};
 use crate::math::{Point, Vector};
 
 type P3 = Point<f64, 3>;
 
 const NONE: u32 = u32::MAX;
+
+/// The number of the last search of a facet that is part of the surface no more.
+const GONE: u32 = u32::MAX;
+
+/// 2⁻⁴⁰: heights above the plane of a facet that are larger have the right sign and the right magnitude within a quarter.
+///
+/// A normal is off by 2⁻⁴⁵ and meets offsets below 7; rounding the products adds 2⁻⁴⁹.
+pub(super) const DOUBT: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// A triangle of the surface, counter-clockwise from outside.
 #[derive(Clone, Debug)]
@@ -19,22 +27,59 @@ pub(super) struct Facet {
     pub(super) corners: [u32; 3],
     /// The facet beyond the side from each corner to the next.
     pub(super) neighbors: [u32; 3],
+    /// The outward unit normal, within 2⁻⁴⁵.
+    pub(super) normal: Vector<f64, 3>,
+    /// How far its plane lies along the normal.
+    offset: f64,
     /// Twice the area: volumes over it are heights.
-    doubled_area: f64,
-    /// Points in front of it and how far, each on the list of one facet only.
-    outside: Vec<(u32, f64)>,
-    is_alive: bool,
+    pub(super) doubled_area: f64,
+    /// The first of the points that wait in front of it.
+    waiting: u32,
     /// The number of the last search that came by.
     seen: u32,
 }
 
-/// The surface while it grows.
-pub(super) struct HullSurface<'a> {
-    points: &'a [P3],
-    facets: Vec<Facet>,
-    /// Points no higher than this above every facet are left outside.
-    tolerance: f64,
-    searches: u32,
+impl Facet {
+    fn new(points: &[P3], corners: [u32; 3], neighbors: [u32; 3]) -> Self {
+        let places = corners.map(|corner| &points[at(corner)]);
+        let [a, b, c] = places;
+        let (u, v) = (b - a, c - a);
+        let mut across = u.cross(&v);
+        // Rounding is 2⁻⁵⁰ of the product of the lengths: 2⁻⁴⁵ of an area that is 1/32 of it.
+        if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
+            across = area_vector(places);
+        }
+        let doubled_area = across.norm();
+        let normal = across * (1.0 / doubled_area);
+        let offset = normal.dot(&a.coords);
+        Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, seen: 0 }
+    }
+
+    /// How far a point lies in front of it, within [`DOUBT`].
+    fn rough_height(&self, point: &P3) -> f64 {
+        self.normal.dot(&point.coords) - self.offset
+    }
+
+    /// How far a point lies in front of it; the sign is exact.
+    pub(super) fn height(&self, points: &[P3], point: u32) -> f64 {
+        let point = &points[at(point)];
+        let height = self.rough_height(point);
+        if height.abs() > DOUBT { height } else { self.exact_height(points, point) }
+    }
+
+    #[cold]
+    fn exact_height(&self, points: &[P3], point: &P3) -> f64 {
+        volume(self.corners.map(|corner| &points[at(corner)]), point) / self.doubled_area
+    }
+}
+
+/// A point outside, on the list of one facet that it is in front of.
+#[derive(Clone, Copy)]
+struct WaitingPoint {
+    /// How far it is in front of the facet.
+    height: f64,
+    /// The next on the list.
+    next: u32,
 }
 
 /// A side of a visible facet beyond which lies an invisible one.
@@ -45,50 +90,53 @@ struct HorizonSide {
     beyond: u32,
 }
 
-fn at(index: u32) -> usize {
+/// The surface while it grows.
+pub(super) struct HullSurface<'a> {
+    points: &'a [P3],
+    /// Points no higher than this above every facet are left outside.
+    tolerance: f64,
+    facets: Vec<Facet>,
+    /// For each point, its place on a list.
+    waiting: Vec<WaitingPoint>,
+    searches: u32,
+    /// The facets that the last search found visible.
+    visible: Vec<u32>,
+    /// Their border, in order of the vertices that its sides start from.
+    horizon: Vec<HorizonSide>,
+    /// For each vertex of the last border, the new facet on the side that starts there.
+    fan: Vec<u32>,
+}
+
+pub(super) fn at(index: u32) -> usize {
     index as usize
 }
 
-fn index_of(position: usize) -> u32 {
-    // `convex_hull3` refuses more points than this holds, and facets are at most four per point.
-    u32::try_from(position).expect("counts fit 32 bits")
-}
-
-fn area_vector_of(points: &[P3], [a, b, c]: [u32; 3]) -> Vector<f64, 3> {
-    area_vector(&points[at(a)], &points[at(b)], &points[at(c)])
-}
-
-fn volume_over(points: &[P3], [a, b, c]: [u32; 3], point: u32) -> f64 {
-    volume(&points[at(a)], &points[at(b)], &points[at(c)], &points[at(point)])
-}
-
-impl Facet {
-    /// The outward unit normal.
-    pub(super) fn normal(&self, points: &[P3]) -> Vector<f64, 3> {
-        area_vector_of(points, self.corners) / larger(self.doubled_area, f64::MIN_POSITIVE)
-    }
-
-    /// Twice the area.
-    pub(super) const fn doubled_area(&self) -> f64 {
-        self.doubled_area
-    }
-
-    /// How far a point lies in front of it; the sign is exact.
-    pub(super) fn height(&self, points: &[P3], point: u32) -> f64 {
-        volume_over(points, self.corners, point) / larger(self.doubled_area, f64::MIN_POSITIVE)
-    }
+pub(super) fn index_of(position: usize) -> u32 {
+    u32::try_from(position).expect("a hull has fewer than 2³² points and triangles")
 }
 
 impl<'a> HullSurface<'a> {
     /// The facets of the hull, grown from a tetrahedron of four of the points; `None` if these lie in
     /// a plane.
     pub(super) fn grown(points: &'a [P3], first: [u32; 4], tolerance: f64) -> Option<Vec<Facet>> {
-        let mut surface = Self { points, facets: Vec::new(), tolerance, searches: 0 };
+        let mut surface = Self {
+            points,
+            tolerance,
+            facets: Vec::with_capacity(32),
+            waiting: vec![WaitingPoint { height: 0.0, next: NONE }; points.len()],
+            searches: 0,
+            visible: Vec::with_capacity(16),
+            horizon: Vec::with_capacity(16),
+            fan: vec![NONE; points.len()],
+        };
         surface.start(first)?;
-        surface.distribute((0..).take(points.len()), &[0, 1, 2, 3]);
-        // Each call adds a vertex, gives a point up, or finds that a facet has nothing to add. The
-        // last facet first: that stays where the memory is warm.
-        let mut pending: Vec<u32> = vec![0, 1, 2, 3];
+        for point in (0..).take(points.len()).filter(|point| !first.contains(point)) {
+            surface.assign(point, 0);
+        }
+        // Each call adds a vertex or finds that a facet has nothing to add. The last facet first: that stays where
+        // the memory is warm.
+        let mut pending: Vec<u32> = Vec::with_capacity(32);
+        pending.extend([0, 1, 2, 3]);
         while !pending.is_empty() {
             while let Some(facet) = pending.pop() {
                 surface.raise(facet, &mut pending);
@@ -99,7 +147,8 @@ impl<'a> HullSurface<'a> {
     }
 
     fn start(&mut self, [a, b, c, d]: [u32; 4]) -> Option<()> {
-        let height = volume_over(self.points, [a, b, c], d);
+        let [e, f, g] = [a, b, c].map(|corner| &self.points[at(corner)]);
+        let height = volume([e, f, g], &self.points[at(d)]);
         if height == 0.0 {
             return None;
         }
@@ -111,148 +160,137 @@ impl<'a> HullSurface<'a> {
             ([c, d, a], [1, 3, 0]),
             ([a, d, b], [2, 1, 0]),
         ] {
-            self.push(corners, neighbors);
+            self.facets.push(Facet::new(self.points, corners, neighbors));
         }
         Some(())
     }
 
-    fn push(&mut self, corners: [u32; 3], neighbors: [u32; 3]) -> u32 {
-        let doubled_area = area_vector_of(self.points, corners).norm();
-        let outside = Vec::new();
-        self.facets.push(Facet {
-            corners,
-            neighbors,
-            doubled_area,
-            outside,
-            is_alive: true,
-            seen: 0,
-        });
-        index_of(self.facets.len() - 1)
-    }
-
-    fn height(&self, facet: u32, point: u32) -> f64 {
-        self.facets[at(facet)].height(self.points, point)
-    }
-
-    /// Puts each point on the list of the facet that it lies farthest in front of; drops those in
-    /// front of none: they are inside for good.
+    /// Puts a point on the list of the facet, among those from the `first` on, that it lies farthest in front of; drops
+    /// it if it is in front of none: then it is inside for good.
     ///
     /// A point in front of a facet that was taken away, and outside, is in front of one of those put
     /// in its place.
-    fn distribute(&mut self, points: impl Iterator<Item = u32>, facets: &[u32]) {
-        for point in points {
-            let (mut best, mut top) = (NONE, 0.0);
-            for &facet in facets {
-                let height = self.height(facet, point);
-                if height > top {
-                    (best, top) = (facet, height);
-                }
-            }
-            if best != NONE {
-                self.facets[at(best)].outside.push((point, top));
-            }
+    #[inline]
+    fn assign(&mut self, point: u32, first: u32) {
+        let place = self.points[at(point)];
+        let (mut best, mut top) = self.highest(first, |facet| facet.rough_height(&place));
+        if top.abs() <= DOUBT {
+            (best, top) = self.highest(first, |facet| facet.height(self.points, point));
+        }
+        if top > 0.0 {
+            self.wait(point, best, top);
         }
     }
 
-    /// The point farthest in front of a facet, if any is above the tolerance.
-    fn farthest(&self, facet: u32) -> Option<u32> {
-        let outside = &self.facets[at(facet)].outside;
-        let top = outside.iter().fold(0.0, |top, &(_, height)| larger(top, height));
-        let mut best = None;
-        for &(point, height) in outside {
-            let precedes = |best: u32| precedes(&self.points[at(best)], &self.points[at(point)]);
-            if height >= top - 0.25 * self.tolerance && best.is_none_or(precedes) {
-                best = Some(point);
-            }
+    /// The facet, among those from the `first` on, with the largest height, and the height.
+    #[inline]
+    fn highest(&self, first: u32, height: impl Fn(&Facet) -> f64) -> (u32, f64) {
+        let (mut best, mut top) = (NONE, f64::NEG_INFINITY);
+        for (index, facet) in (first..).zip(&self.facets[at(first)..]) {
+            let height = height(facet);
+            (best, top) = if height > top { (index, height) } else { (best, top) };
         }
-        best.filter(|_| top > self.tolerance)
+        (best, top)
+    }
+
+    fn wait(&mut self, point: u32, facet: u32, height: f64) {
+        let next = core::mem::replace(&mut self.facets[at(facet)].waiting, point);
+        self.waiting[at(point)] = WaitingPoint { height, next };
+    }
+
+    /// The points on a list, with their heights.
+    fn waiting_at(&self, facet: u32) -> impl Iterator<Item = (u32, f64)> {
+        let listed = |point: u32| (point != NONE).then_some(point);
+        let first = listed(self.facets[at(facet)].waiting);
+        let next = move |&point: &u32| listed(self.waiting[at(point)].next);
+        core::iter::successors(first, next).map(|point| (point, self.waiting[at(point)].height))
+    }
+
+    /// The point farthest in front of a facet, if any is above the tolerance. Of points that coincide it is the first.
+    fn farthest(&self, facet: u32) -> Option<u32> {
+        let top = self.waiting_at(facet).fold(0.0, |top, (_, height)| larger(top, height));
+        if top <= self.tolerance {
+            return None;
+        }
+        let tied =
+            self.waiting_at(facet).filter(|&(_, height)| height >= top - 0.25 * self.tolerance);
+        let later = |best: u32, point: u32| {
+            let [b, p] = [best, point].map(|index| &self.points[at(index)]);
+            if precedes(b, p) || (b == p && point < best) { point } else { best }
+        };
+        tied.map(|(point, _)| point).reduce(later)
     }
 
     /// Draws the surface out to the point farthest in front of a facet.
     fn raise(&mut self, facet: u32, pending: &mut Vec<u32>) {
-        if !self.facets[at(facet)].is_alive {
+        if self.facets[at(facet)].seen == GONE {
             return;
         }
         let Some(point) = self.farthest(facet) else { return };
-        let visible = self.visible_from(point, facet);
-        let Some(horizon) = self.horizon(&visible) else {
-            // Only products below the range of doubles lead here: the point is given up.
-            self.facets[at(facet)].outside.retain(|&(other, _)| other != point);
-            pending.push(facet);
-            return;
-        };
-        let created = self.replace(point, &horizon);
-        let mut orphans = Vec::new();
-        for facet in visible {
-            let facet = &mut self.facets[at(facet)];
-            facet.is_alive = false;
-            orphans.append(&mut facet.outside);
+        self.look(point, facet);
+        let first = self.replace(point);
+        for index in 0..self.visible.len() {
+            let facet = &mut self.facets[at(self.visible[index])];
+            facet.seen = GONE;
+            let mut next = facet.waiting;
+            while next != NONE {
+                let orphan = next;
+                next = self.waiting[at(orphan)].next;
+                if orphan != point {
+                    self.assign(orphan, first);
+                }
+            }
         }
-        let orphans = orphans.into_iter().map(|(orphan, _)| orphan);
-        self.distribute(orphans.filter(|&orphan| orphan != point), &created);
-        pending.extend(created);
+        pending.extend(first..index_of(self.facets.len()));
     }
 
-    /// The facets that a point is in front of, found from one of them: they are connected.
-    fn visible_from(&mut self, point: u32, first: u32) -> Vec<u32> {
+    /// Finds the facets that a point is in front of, from one of them (they are connected), and their border.
+    fn look(&mut self, point: u32, first: u32) {
         self.searches += 1;
-        let search = self.searches;
-        self.facets[at(first)].seen = search;
-        let mut visible = vec![first];
+        self.visible.clear();
+        self.horizon.clear();
+        self.facets[at(first)].seen = self.searches;
+        self.visible.push(first);
         let mut next = 0;
-        while let Some(&facet) = visible.get(next) {
+        while let Some(&facet) = self.visible.get(next) {
             next += 1;
-            for neighbor in self.facets[at(facet)].neighbors {
-                if self.facets[at(neighbor)].seen != search && self.height(neighbor, point) > 0.0 {
-                    self.facets[at(neighbor)].seen = search;
-                    visible.push(neighbor);
-                }
-            }
-        }
-        visible
-    }
-
-    /// The border of the facets just found visible, in order of its vertices; `None` if it is not
-    /// one loop.
-    fn horizon(&self, visible: &[u32]) -> Option<Vec<HorizonSide>> {
-        let mut sides = Vec::new();
-        for &facet in visible {
-            let Facet { corners, neighbors, .. } = &self.facets[at(facet)];
+            let Facet { corners, neighbors, .. } = self.facets[at(facet)];
             for side in 0..3 {
-                let beyond = neighbors[side];
-                if self.facets[at(beyond)].seen != self.searches {
-                    sides.push(HorizonSide {
-                        from: corners[side],
-                        to: corners[(side + 1) % 3],
-                        beyond,
-                    });
+                let neighbor = neighbors[side];
+                let beyond = &mut self.facets[at(neighbor)];
+                if beyond.seen == self.searches {
+                    continue;
+                }
+                if beyond.height(self.points, point) > 0.0 {
+                    beyond.seen = self.searches;
+                    self.visible.push(neighbor);
+                } else {
+                    let (from, to) = (corners[side], corners[(side + 1) % 3]);
+                    self.horizon.push(HorizonSide { from, to, beyond: neighbor });
                 }
             }
         }
-        sides.sort_unstable_by_key(|side| side.from);
-        let is_distinct = sides.windows(2).all(|pair| pair[0].from < pair[1].from);
-        (is_distinct && sides.len() >= 3 && loop_length(&sides)? == sides.len()).then_some(sides)
     }
 
-    /// Puts a fan of facets from the horizon to a point.
-    fn replace(&mut self, point: u32, horizon: &[HorizonSide]) -> Vec<u32> {
+    /// Puts a fan of facets from the border to a point; returns the first of them.
+    fn replace(&mut self, point: u32) -> u32 {
+        self.horizon.sort_unstable_by_key(|side| side.from);
         let first = index_of(self.facets.len());
-        let facet_from = |vertex: u32| {
-            let position = horizon.binary_search_by_key(&vertex, |side| side.from);
-            first + index_of(position.expect("the horizon is one loop"))
-        };
-        let mut before = vec![NONE; horizon.len()];
-        for (position, side) in horizon.iter().enumerate() {
-            before[at(facet_from(side.to) - first)] = first + index_of(position);
+        for (created, side) in (first..).zip(&self.horizon) {
+            self.fan[at(side.from)] = created;
         }
-        for (side, before) in horizon.iter().zip(before) {
-            let neighbors = [side.beyond, facet_from(side.to), before];
-            let created = self.push([side.from, side.to, point], neighbors);
-            let beyond = &mut self.facets[at(side.beyond)];
-            let shared = beyond.corners.iter().position(|&corner| corner == side.to);
+        for (created, side) in (first..).zip(&self.horizon) {
+            let HorizonSide { from, to, beyond } = *side;
+            let neighbors = [beyond, self.fan[at(to)], NONE];
+            self.facets.push(Facet::new(self.points, [from, to, point], neighbors));
+            let beyond = &mut self.facets[at(beyond)];
+            let shared = beyond.corners.iter().position(|&corner| corner == to);
             beyond.neighbors[shared.expect("neighbors share a side")] = created;
         }
-        (first..index_of(self.facets.len())).collect()
+        for (created, side) in (first..).zip(&self.horizon) {
+            self.facets[at(self.fan[at(side.to)])].neighbors[2] = created;
+        }
+        first
     }
 
     /// Moves each point left outside to the facet that it is highest over, and names those facets
@@ -260,12 +298,15 @@ impl<'a> HullSurface<'a> {
     /// them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
-            if !self.facets[at(facet)].is_alive {
+            if self.facets[at(facet)].seen == GONE {
                 continue;
             }
-            for (point, _) in core::mem::take(&mut self.facets[at(facet)].outside) {
+            let mut next = core::mem::replace(&mut self.facets[at(facet)].waiting, NONE);
+            while next != NONE {
+                let point = next;
+                next = self.waiting[at(point)].next;
                 let (best, distance) = self.farthest_outside(point, facet);
-                self.facets[at(best)].outside.push((point, distance));
+                self.wait(point, best, distance);
                 if distance > self.tolerance {
                     pending.push(best);
                 }
@@ -277,10 +318,10 @@ impl<'a> HullSurface<'a> {
     /// outside: by that height, or from the surface. Beside the rim of something thin no facet has it in
     /// front by much.
     fn farthest_outside(&mut self, point: u32, first: u32) -> (u32, f64) {
+        self.look(point, first);
         let mut best = (first, 0.0);
-        let visible = self.visible_from(point, first);
-        for &facet in &visible {
-            let height = self.height(facet, point);
+        for &facet in &self.visible {
+            let height = self.facets[at(facet)].height(self.points, point);
             if height > best.1 {
                 best = (facet, height);
             }
@@ -288,7 +329,7 @@ impl<'a> HullSurface<'a> {
         if best.1 > self.tolerance {
             return best;
         }
-        let distances = visible.iter().map(|&facet| self.distance(facet, point));
+        let distances = self.visible.iter().map(|&facet| self.distance(facet, point));
         (best.0, larger(best.1, distances.fold(f64::INFINITY, f64::min)))
     }
 
@@ -296,10 +337,11 @@ impl<'a> HullSurface<'a> {
     fn distance(&self, facet: u32, point: u32) -> f64 {
         let facet = &self.facets[at(facet)];
         let [a, b, c] = facet.corners.map(|corner| &self.points[at(corner)]);
-        let (place, normal) = (&self.points[at(point)], facet.normal(self.points));
+        let place = &self.points[at(point)];
         let sides = [(a, b), (b, c), (c, a)];
-        let is_inside =
-            |(from, to): &(&P3, &P3)| normal.cross(&(*to - *from)).dot(&(place - *from)) >= 0.0;
+        let is_inside = |(from, to): &(&P3, &P3)| {
+            facet.normal.cross(&(*to - *from)).dot(&(place - *from)) >= 0.0
+        };
         if sides.iter().all(is_inside) {
             return facet.height(self.points, point);
         }
@@ -312,30 +354,15 @@ impl<'a> HullSurface<'a> {
         let mut renamed = vec![NONE; self.facets.len()];
         let mut count = 0;
         for (facet, name) in self.facets.iter().zip(&mut renamed) {
-            if facet.is_alive {
+            if facet.seen != GONE {
                 *name = count;
                 count += 1;
             }
         }
-        self.facets.retain(|facet| facet.is_alive);
+        self.facets.retain(|facet| facet.seen != GONE);
         for facet in &mut self.facets {
             facet.neighbors = facet.neighbors.map(|neighbor| renamed[at(neighbor)]);
         }
         self.facets
     }
-}
-
-/// How many sides it takes to come back to the first, the sides sorted by their start.
-fn loop_length(sides: &[HorizonSide]) -> Option<usize> {
-    let first = sides.first()?.from;
-    let (mut vertex, mut length) = (first, 0);
-    while length <= sides.len() {
-        let position = sides.binary_search_by_key(&vertex, |side| side.from).ok()?;
-        vertex = sides[position].to;
-        length += 1;
-        if vertex == first {
-            break;
-        }
-    }
-    Some(length)
 }

@@ -1,11 +1,12 @@
 //! What points span: numbers checked and scaled, and a first simplex.
 
+use super::lattice::rounded;
 use crate::math::{Point, Real, Vector, max};
 use crate::shape::ShapeError;
 
 /// Points as doubles between −2 and 2, and what counts as noise among them.
 pub(super) struct Scaled<const D: usize> {
-    /// The points over a power of two, exactly.
+    /// The points over a power of two, which is exact, rounded to multiples of 2⁻⁶⁰: at most 1/512 of `unit`.
     pub(super) points: Vec<Point<f64, D>>,
     /// One rounding unit of the scalar that the points came in, at the largest coordinate.
     pub(super) unit: f64,
@@ -16,15 +17,18 @@ impl<const D: usize> Scaled<D> {
         if points.len() < needed {
             return Err(ShapeError::TooFewPoints { given: points.len(), needed });
         }
-        if let Some(index) = points.iter().position(|p| !p.iter().all(|x| x.is_finite_number())) {
+        let is_finite = |p: &Point<N, D>| p.iter().fold(true, |is, x| is & x.is_finite_number());
+        if !points.iter().fold(true, |are, p| are & is_finite(p)) {
+            let index = points.iter().position(|p| !is_finite(p)).unwrap_or(0);
             return Err(ShapeError::PointNotFinite { index });
         }
         let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
         let size = points.iter().fold(N::ZERO, largest);
-        let (size, scale) = (size.as_f64(), size.power_of_two_below().as_f64());
-        let points =
-            points.iter().map(|p| Point::from(p.coords.map(|x| x.as_f64() / scale))).collect();
-        Ok(Self { points, unit: N::EPSILON.as_f64() * (size / scale) })
+        // The inverse of a power of two is a number too, and as exact.
+        let scale = 1.0 / size.power_of_two_below().as_f64();
+        let scaled = |p: &Point<N, D>| Point::from(p.coords.map(|x| rounded(x.as_f64() * scale)));
+        let unit = N::EPSILON.as_f64() * (size.as_f64() * scale);
+        Ok(Self { points: points.iter().map(scaled).collect(), unit })
     }
 
     /// Points nearer than this to what the others span count as part of it.
@@ -50,55 +54,45 @@ pub(super) fn precedes<const D: usize>(a: &Point<f64, D>, b: &Point<f64, D>) -> 
     (0..D).find(|&axis| a[axis] != b[axis]).is_some_and(|axis| a[axis] < b[axis])
 }
 
-/// The index of the point that a measure finds largest, and the measure; the last in order of
-/// coordinates among those within `tie` of it.
-pub(super) fn farthest<const D: usize>(
-    points: &[Point<f64, D>],
-    tie: f64,
-    measure: impl Fn(&Point<f64, D>) -> f64,
-) -> (usize, f64) {
-    let top = points.iter().fold(f64::NEG_INFINITY, |top, p| larger(top, measure(p)));
-    let mut best = None;
-    for (index, point) in points.iter().enumerate() {
-        let is_later = best.is_none_or(|best: usize| precedes(&points[best], point));
-        if is_later && measure(point) >= top - tie {
-            best = Some(index);
+/// The last in order of coordinates of the points whose measure is at least `tied`.
+fn last<const D: usize>(points: &[Point<f64, D>], measures: &[f64], tied: f64) -> usize {
+    let mut last = None;
+    for (index, &measure) in measures.iter().enumerate() {
+        let is_later = |last: usize| precedes(&points[last], &points[index]);
+        if measure >= tied && last.is_none_or(is_later) {
+            last = Some(index);
         }
     }
-    (best.unwrap_or(0), top)
+    last.unwrap_or(0)
 }
 
-/// The two points that are farthest apart along the axis on which the points spread most.
+/// The two points that are farthest apart along the axis on which the points spread most; among points equally far along
+/// it the last in order of coordinates.
 ///
 /// # Errors
 /// [`ShapeError::Degenerate`] with dimension 0 if the points coincide.
 pub(super) fn first_two<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 2], ShapeError> {
     let points = &scaled.points;
-    let spread = |axis: usize| {
-        let (high, top) = farthest(points, 0.0, |p| p[axis]);
-        let (low, bottom) = farthest(points, 0.0, |p| -p[axis]);
-        (low, high, top + bottom)
-    };
-    let widest = (1..D).fold(spread(0), |best, axis| {
-        let candidate = spread(axis);
-        if candidate.2 > best.2 { candidate } else { best }
-    });
-    let (low, high, size) = widest;
-    if size > scaled.flat() {
-        Ok([low, high])
+    let mut ends = [[0; 2]; D];
+    let [mut lows, mut highs] = [points[0]; 2];
+    for (index, p) in points.iter().enumerate().skip(1) {
+        for axis in 0..D {
+            let is_later = |end: usize| precedes(&points[end], p);
+            if p[axis] <= lows[axis] && (p[axis] < lows[axis] || is_later(ends[axis][0])) {
+                (lows[axis], ends[axis][0]) = (p[axis], index);
+            }
+            if p[axis] >= highs[axis] && (p[axis] > highs[axis] || is_later(ends[axis][1])) {
+                (highs[axis], ends[axis][1]) = (p[axis], index);
+            }
+        }
+    }
+    let spread = |axis: usize| highs[axis] - lows[axis];
+    let widest = (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });
+    if spread(widest) > scaled.flat() {
+        Ok(ends[widest])
     } else {
         Err(ShapeError::Degenerate { dimension: 0 })
     }
-}
-
-/// The distance of a point from the line through `a` along a unit vector, in any dimension.
-pub(super) fn distance_from_line<const D: usize>(
-    point: &Point<f64, D>,
-    a: &Point<f64, D>,
-    along: &Vector<f64, D>,
-) -> f64 {
-    let offset = point - a;
-    (offset - along * along.dot(&offset)).norm()
 }
 
 /// The distance of a point from the segment between two others, in any dimension.
@@ -121,9 +115,19 @@ pub(super) fn first_three<const D: usize>(scaled: &Scaled<D>) -> Result<[usize; 
     let line = ShapeError::Degenerate { dimension: 1 };
     let a = &scaled.points[first];
     let (along, _) = direction(&(scaled.points[second] - a)).ok_or(line)?;
-    let measure = |p: &Point<f64, D>| distance_from_line(p, a, &along);
-    let (third, height) = farthest(&scaled.points, scaled.unit, measure);
-    if height > scaled.flat() { Ok([first, second, third]) } else { Err(line) }
+    let squared_distance = |p: &Point<f64, D>| {
+        let offset = p - a;
+        (offset - along * along.dot(&offset)).norm_squared()
+    };
+    let squares: Vec<f64> = scaled.points.iter().map(squared_distance).collect();
+    let top = squares.iter().copied().fold(0.0, larger);
+    if top <= scaled.flat() * scaled.flat() {
+        return Err(line);
+    }
+    let tied = top.sqrt() - scaled.unit;
+    // Rounding may take the square above the largest.
+    let tied = -larger(-tied * tied, -top);
+    Ok([first, second, last(&scaled.points, &squares, tied)])
 }
 
 /// Four points that span a tetrahedron as large as can be found at once.
@@ -136,8 +140,15 @@ pub(super) fn first_four(scaled: &Scaled<3>) -> Result<[usize; 4], ShapeError> {
     let a = &scaled.points[first];
     let across = (scaled.points[second] - a).cross(&(scaled.points[third] - a));
     let (normal, _) = direction(&across).ok_or(plane)?;
-    let (above, top) = farthest(&scaled.points, scaled.unit, |p| normal.dot(&(p - a)));
-    let (below, bottom) = farthest(&scaled.points, scaled.unit, |p| -normal.dot(&(p - a)));
-    let (fourth, height) = if bottom > top { (below, bottom) } else { (above, top) };
-    if height > scaled.flat() { Ok([first, second, third, fourth]) } else { Err(plane) }
+    let mut heights: Vec<f64> = scaled.points.iter().map(|p| normal.dot(&(p - a))).collect();
+    let top = heights.iter().copied().fold(0.0, larger);
+    let depth = heights.iter().map(|height| -height).fold(0.0, larger);
+    if larger(top, depth) <= scaled.flat() {
+        return Err(plane);
+    }
+    if depth > top {
+        heights.iter_mut().for_each(|height| *height = -*height);
+    }
+    let tied = larger(top, depth) - scaled.unit;
+    Ok([first, second, third, last(&scaled.points, &heights, tied)])
 }

@@ -6,32 +6,42 @@ use crate::math::{Point, Real, Vector, max, perp, unit};
 use crate::shape::polytope::count32;
 use crate::shape::{Polytope, PolytopeEdge, PolytopeFace};
 
-/// Points as doubles near 1, in which products neither overflow nor vanish, and the power of two
-/// that takes them back.
-struct ScaledPoints<const D: usize> {
-    points: Vec<Point<f64, D>>,
-    scale: f64,
+/// The mean of some points, computed with doubles near 1, whose sum does not overflow.
+fn center_of<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> {
+    let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
+    let scale = points.iter().fold(N::ZERO, largest).power_of_two_below().as_f64();
+    let scaled = |p: &Point<N, D>| p.coords.map(|x| x.as_f64() / scale);
+    let sum = points.iter().fold(Vector::<f64, D>::zeros(), |sum, p| sum + scaled(p));
+    let count = f64::from(count32(points.len()));
+    Point::from((sum / count).map(|x| N::lit(x * scale)))
 }
 
-impl<const D: usize> ScaledPoints<D> {
-    fn of<N: Real>(points: &[Point<N, D>]) -> Self {
-        let largest = |size, p: &Point<N, D>| p.iter().fold(size, |size, x| max(size, x.abs()));
-        let scale = points.iter().fold(N::ZERO, largest).power_of_two_below().as_f64();
-        let points = points.iter().map(|p| Point::from(p.coords.map(|x| x.as_f64() / scale)));
-        Self { points: points.collect(), scale }
+/// Values by their owners, of which there are `count`: where those of each owner start, and at last where the last ones
+/// end; and the values. Those of one owner keep their order.
+fn grouped<T: Copy + Default>(
+    count: usize,
+    owned: impl Iterator<Item = (u32, T)> + Clone,
+) -> (Vec<u32>, Vec<T>) {
+    // Filling moves the start of an owner to that of the next, so each is kept one place further.
+    let mut starts = vec![0; count + 2];
+    owned.clone().for_each(|(owner, _)| starts[owner as usize + 2] += 1);
+    for owner in 0..count {
+        starts[owner + 2] += starts[owner + 1];
     }
-
-    /// The mean of the points.
-    fn center<N: Real>(&self) -> Point<N, D> {
-        let sum = self.points.iter().fold(Vector::<f64, D>::zeros(), |sum, p| sum + p.coords);
-        let count = f64::from(count32(self.points.len()));
-        Point::from((sum / count).map(|x| N::lit(x * self.scale)))
+    let mut values = vec![T::default(); starts[count + 1] as usize];
+    for (owner, value) in owned {
+        let start = &mut starts[owner as usize + 1];
+        values[*start as usize] = value;
+        *start += 1;
     }
+    starts.pop();
+    (starts, values)
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
-    fn from_vertices(vertices: Vec<Point<N, D>>, center: Point<N, D>) -> Self {
+    fn from_vertices(vertices: Vec<Point<N, D>>) -> Self {
         Self {
+            center: center_of(&vertices),
             reach: Self::reach_of(&vertices),
             inner_radius: N::ZERO,
             blocks: Self::blocks_of(&vertices),
@@ -45,7 +55,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             fans: Vec::new(),
             fan_starts: Vec::new(),
             fan_directions: Vec::new(),
-            center,
         }
     }
 
@@ -59,11 +68,28 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
+impl<N: Real, const D: usize> Polytope<N, D> {
+    /// For each vertex the edges (in 2D: the faces) that end at it.
+    fn collect_fans(&mut self) {
+        let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
+        let sides = (0_u32..).take(count);
+        let ends = |side: u32| self.side(side).vertices;
+        let ended = sides.clone().flat_map(|side| ends(side).map(|vertex| (vertex, side)));
+        let (starts, fans) = grouped(self.vertices.len(), ended);
+        let direction = |side: u32| {
+            let [a, b] = ends(side).map(|end| self.vertices[end as usize]);
+            unit(&(b - a)).map(|(along, _)| along)
+        };
+        let directions: Vec<_> = sides.map(direction).collect();
+        self.fan_directions = fans.iter().map(|&side| directions[side as usize]).collect();
+        (self.fan_starts, self.fans) = (starts, fans);
+    }
+}
+
 impl<N: Real> Polytope<N, 2> {
     /// The polygon with these corners, which are counter-clockwise and three at least.
     pub(in crate::shape) fn from_corners(corners: Vec<Point<N, 2>>) -> Self {
-        let center = ScaledPoints::of(&corners).center();
-        let mut polygon = Self::from_vertices(corners, center);
+        let mut polygon = Self::from_vertices(corners);
         let count = count32(polygon.vertices.len());
         for side in 0..count {
             let next = if side + 1 < count { side + 1 } else { 0 };
@@ -85,15 +111,10 @@ impl<N: Real> Polytope<N, 3> {
     /// corners at least; `None` unless each side of a face is, backwards, a side of one other.
     pub(in crate::shape) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
-        normals: &[Vector<N, 3>],
-        faces: &[Vec<usize>],
+        faces: impl Iterator<Item = (Vector<N, 3>, impl AsRef<[u32]>)>,
     ) -> Option<Self> {
-        let center = ScaledPoints::of(&corners).center();
-        let mut hull = Self::from_vertices(corners, center);
-        for (normal, face) in normals.iter().zip(faces) {
-            let ring: Vec<u32> = face.iter().map(|&vertex| count32(vertex)).collect();
-            hull.push_face(*normal, &ring);
-        }
+        let mut hull = Self::from_vertices(corners);
+        faces.for_each(|(normal, ring)| hull.push_face(normal, ring.as_ref()));
         hull.collect_planes();
         hull.connect()?;
         hull.collect_fans();
@@ -127,38 +148,65 @@ impl<N: Real> Polytope<N, 3> {
     /// Finds the edges: numbered by the place in the loops where they are seen first.
     fn connect(&mut self) -> Option<()> {
         let sides = self.directed_sides();
-        self.loop_sides = vec![0; sides.len()];
-        let mut sorted: Vec<u32> = (0_u32..).take(sides.len()).collect();
-        sorted.sort_unstable_by_key(|&place| sides[place as usize].0);
-        for (place, &(ends, face)) in (0_u32..).zip(&sides) {
-            let back = [ends[1], ends[0]];
-            let twins = sorted.partition_point(|&other| sides[other as usize].0 < back);
-            let twin =
-                sorted.get(twins).copied().filter(|&other| sides[other as usize].0 == back)?;
-            let next = sorted.get(twins + 1).map(|&other| sides[other as usize].0);
-            if next == Some(back) {
+        let twins = twins(self.vertices.len(), &sides);
+        self.edges.reserve(sides.len() / 2);
+        self.loop_sides = vec![NONE; sides.len()];
+        for (place, side) in sides.iter().enumerate() {
+            let twin = twins[place];
+            if twin == NONE || twins[twin as usize] as usize != place {
                 return None;
             }
-            if place < twin {
+            if self.loop_sides[place] == NONE {
                 let edge = count32(self.edges.len());
-                let faces = [face, sides[twin as usize].1];
-                self.edges.push(PolytopeEdge { vertices: ends, faces });
-                self.loop_sides[place as usize] = edge;
+                let faces = [side.face, sides[twin as usize].face];
+                self.edges.push(PolytopeEdge { vertices: [side.from, side.to], faces });
+                self.loop_sides[place] = edge;
                 self.loop_sides[twin as usize] = edge;
             }
         }
         Some(())
     }
 
-    /// For each entry of the loops: the ends of the side to the next vertex, and the face.
-    fn directed_sides(&self) -> Vec<([u32; 2], u32)> {
+    /// For each entry of the loops: the side to the next vertex.
+    fn directed_sides(&self) -> Vec<DirectedSide> {
         let mut sides = Vec::with_capacity(self.loops.len());
-        for (index, face) in (0_u32..).zip(&self.faces) {
-            let ring = self.face_vertices(face);
-            for (at, &from) in ring.iter().enumerate() {
-                sides.push(([from, ring[(at + 1) % ring.len()]], index));
-            }
+        for (face, of) in (0_u32..).zip(&self.faces) {
+            let ring = self.face_vertices(of);
+            let next = ring[1..].iter().chain(&ring[..1]);
+            sides.extend(ring.iter().zip(next).map(|(&from, &to)| DirectedSide { from, to, face }));
         }
         sides
     }
+}
+
+/// No side.
+const NONE: u32 = u32::MAX;
+
+/// A side of a face, on its way round.
+struct DirectedSide {
+    from: u32,
+    to: u32,
+    face: u32,
+}
+
+/// For each side one that runs backwards; [`NONE`] where there is none. Of sides that are there twice one is nobody's twin.
+///
+/// It is looked for among the sides that leave the end where fewer do. On a closed surface this takes linear time: Chiba and
+/// Nishizeki, "Arboricity and Subgraph Listing Algorithms" (1985).
+fn twins(vertices: usize, sides: &[DirectedSide]) -> Vec<u32> {
+    let leaving = (0..).zip(sides).map(|(place, side)| (side.from, [side.to, place]));
+    let (starts, leaving) = grouped::<[u32; 2]>(vertices, leaving);
+    let around =
+        |vertex: u32| starts[vertex as usize] as usize..starts[vertex as usize + 1] as usize;
+    let mut twins = vec![NONE; sides.len()];
+    for (place, side) in (0..).zip(sides) {
+        let back = around(side.to);
+        if back.len() <= around(side.from).len()
+            && let Some(&[_, twin]) = leaving[back].iter().find(|&&[to, _]| to == side.from)
+        {
+            twins[place as usize] = twin;
+            twins[twin as usize] = place;
+        }
+    }
+    twins
 }

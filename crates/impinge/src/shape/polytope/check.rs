@@ -106,14 +106,13 @@ mod tests {
     use crate::math::{Point, Vector};
     use crate::shape::Polytope;
 
-    const LOOPS: [[usize; 3]; 4] = [[0, 3, 2], [0, 1, 3], [0, 2, 1], [1, 2, 3]];
+    const LOOPS: [[u32; 3]; 4] = [[0, 3, 2], [0, 1, 3], [0, 2, 1], [1, 2, 3]];
 
-    fn tetrahedron(loops: &[[usize; 3]]) -> Option<Polytope<f64, 3>> {
-        let loops: Vec<_> = loops.iter().map(|ring| ring.to_vec()).collect();
+    fn tetrahedron(loops: &[[u32; 3]]) -> Option<Polytope<f64, 3>> {
         let axis = Vector::<f64, 3>::ith;
         let slant = Vector::<f64, 3>::repeat(1.0).normalize();
         let normals = [-axis(0, 1.0), -axis(1, 1.0), -axis(2, 1.0), slant];
-        Polytope::<f64, 3>::from_closed_faces(corners(), &normals, &loops)
+        Polytope::<f64, 3>::from_closed_faces(corners(), normals.into_iter().zip(loops))
     }
 
     fn corners() -> Vec<Point<f64, 3>> {

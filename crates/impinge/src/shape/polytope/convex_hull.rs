@@ -41,10 +41,9 @@ impl<N: Real> ConvexHull<N> {
     /// corners at least; `None` unless the faces close its surface.
     pub(crate) fn from_closed_faces(
         corners: Vec<Point<N, 3>>,
-        normals: &[Vector<N, 3>],
-        faces: &[Vec<usize>],
+        faces: impl Iterator<Item = (Vector<N, 3>, impl AsRef<[u32]>)>,
     ) -> Option<Self> {
-        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, normals, faces)? })
+        Some(Self { polytope: Polytope::<N, 3>::from_closed_faces(corners, faces)? })
     }
 
     /// The solid as vertices, edges, faces and what touches what.
@@ -82,15 +81,15 @@ impl<N: Real> Shape<N, 3> for ConvexHull<N> {
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {
         let scale = Scale::try_new(scale)?;
         let corners = scale.corners(self.polytope.vertices())?;
-        let normals = self.polytope.faces().iter().map(|face| scale.normal(&face.normal));
-        let ring = |face| self.polytope.face_vertices(face).iter().map(|&vertex| vertex as usize);
-        let mut faces: Vec<Vec<_>> =
-            self.polytope.faces().iter().map(|f| ring(f).collect()).collect();
+        let faces = self.polytope.faces();
+        let mut rings: Vec<_> =
+            faces.iter().map(|face| self.polytope.face_vertices(face).to_vec()).collect();
         if scale.is_mirror() {
-            faces.iter_mut().for_each(|face| face.reverse());
+            rings.iter_mut().for_each(|ring| ring.reverse());
         }
+        let normals = faces.iter().map(|face| scale.normal(&face.normal));
         let normals = normals.collect::<Result<Vec<_>, _>>()?;
-        let scaled = Self::from_closed_faces(corners, &normals, &faces);
+        let scaled = Self::from_closed_faces(corners, normals.into_iter().zip(&rings));
         Ok(ShapeHandle::new(scaled.expect("its faces are those of a closed solid")))
     }
 }

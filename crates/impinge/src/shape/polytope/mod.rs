@@ -13,7 +13,7 @@ use core::ops::Range;
 use smallvec::SmallVec;
 
 use crate::math::simd::Level;
-use crate::math::{Point, Real, Vector, max, min, unit};
+use crate::math::{Point, Real, Vector, max, min};
 use crate::shape::FeatureId;
 use crate::shape::polytope::support as polytope_support;
 use crate::shape::solids::segment::length_of;
@@ -291,23 +291,6 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     /// The largest distance of a vertex from the origin.
     pub(in crate::shape) fn reach_of(vertices: &[Point<N, D>]) -> N {
         vertices.iter().fold(N::ZERO, |reach, vertex| max(reach, length_of(&vertex.coords)))
-    }
-
-    /// For each vertex the edges (in 2D: the faces) that end at it.
-    pub(in crate::shape) fn collect_fans(&mut self) {
-        let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
-        let sides = (0_u32..).take(count);
-        let mut ends: Vec<(u32, u32)> =
-            sides.flat_map(|side| self.side(side).vertices.map(|vertex| (vertex, side))).collect();
-        ends.sort_unstable();
-        self.fans = ends.iter().map(|&(_, side)| side).collect();
-        let start = |vertex: u32| ends.partition_point(|&(owner, _)| owner < vertex);
-        self.fan_starts = (0_u32..).take(self.vertices.len() + 1).map(start).map(count32).collect();
-        let direction = |&side: &u32| {
-            let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
-            unit(&(b - a)).map(|(along, _)| along)
-        };
-        self.fan_directions = self.fans.iter().map(direction).collect();
     }
 }
 

@@ -16,7 +16,7 @@ const FLAT: f64 = 4096.0;
 
 /// The corners of the faces of a tetrahedron whose fourth corner sees the first three clockwise;
 /// `FACES[i]` leaves out corner `i`.
-const FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
+const FACES: [[u32; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
 /// The ends of the edges.
 pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
@@ -151,18 +151,15 @@ fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
 /// The vertices, edges and faces of four corners, whatever they span.
 fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N, 3> {
     let places = doubles(&corners);
-    let faces = FACES.map(|[a, b, c]| if is_mirrored { vec![a, c, b] } else { vec![a, b, c] });
-    let normals: Vec<_> = faces
-        .iter()
-        .map(|face| {
-            let [a, b, c] = [face[0], face[1], face[2]].map(|corner| &places[corner]);
-            // A cross product of rounded sides would be off by rounding times length over height.
-            let normal = area_vector(a, b, c).try_normalize(0.0);
-            normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit)
-        })
-        .map(|normal| unit(&normal).map_or(normal, |(normal, _)| normal))
-        .collect();
-    let mut polytope = Polytope::<N, 3>::from_closed_faces(corners.to_vec(), &normals, &faces)
+    let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
+    let faces = faces.into_iter().map(|face| {
+        let [a, b, c] = face.map(|corner| &places[corner as usize]);
+        // A cross product of rounded sides would be off by rounding times length over height.
+        let normal = area_vector(a, b, c).try_normalize(0.0);
+        let normal = normal.unwrap_or_else(Vector::<f64, 3>::y).map(N::lit);
+        (unit(&normal).map_or(normal, |(normal, _)| normal), face)
+    });
+    let mut polytope = Polytope::<N, 3>::from_closed_faces(corners.to_vec(), faces)
         .expect("four triangles around four corners close a surface");
     polytope.name_edges(&EDGES);
     polytope
