@@ -376,7 +376,8 @@ impl<N: Numeric<D>, const D: usize> Impacts<'_, N, D> {
             ..Default::default()
         };
         batch.impacts(self.velocities, &self.options, control, columns)?;
-        let is_reached = status.map(|status| status == Some(ImpactStatus::Reached));
+        let is_known = |status: ImpactStatus| status != ImpactStatus::StepsSpent;
+        let is_reached = status.map(|status| status.is_some_and(is_known));
         Ok([
             Column::Numbers(time),
             Column::Vectors(normal),

@@ -172,7 +172,7 @@ fn columns<N: Numeric<D>, const D: usize>(
         normal[slot] = (*impact.normal).into();
         point1[slot] = impact.world1.coords.into();
         point2[slot] = impact.world2.coords.into();
-        is_reached[slot] = impact.status == ImpactStatus::Reached;
+        is_reached[slot] = impact.status != ImpactStatus::StepsSpent;
     }
     let [normal, point1, point2] = [normal, point1, point2].map(Column::Vectors);
     [Column::Numbers(time), normal, point1, point2, Column::Flags(is_reached)]

@@ -1,13 +1,14 @@
 //! The working tree beside an old commit of itself: the scenes of the suite `world` of `impinge-compare`,
 //! the two stepped alternately in one process on one thread, on `f32`.
 //!
-//! `impinge-compare-old [--case TEXT] [--objects N] [--steps N] [--runs N] [--reusing]` prints a
-//! line for each scene:
-//! the median and the worst step of both in microseconds of processor time, and ratios old / new, above 1
-//! where the working tree is quicker. A step sets all new positions, updates, and reads every contact
-//! point; the first, in which everything is new, is left out. `--runs` repeats each scene and keeps the
-//! minimum of each step, which takes most of the noise of a busy machine away. With `--reusing` pairs of both
-//! keep their contacts while they hardly move.
+//! `impinge-compare-old [--case TEXT] [--exact NAME] [--objects N] [--steps N] [--runs N] [--reusing]`
+//! prints a line for each scene: the median and the worst step of both in microseconds of processor time,
+//! and ratios old / new, above 1 where the working tree is quicker. A step sets all new positions,
+//! updates, and reads every contact point; the first, in which everything is new, is left out.
+//!
+//! `--case` leaves the scenes whose name contains a text, `--exact` the one of a name. `--runs` repeats each
+//! scene and keeps the minimum of each step, which takes most of the noise of a busy machine away. With
+//! `--reusing` pairs of both versions keep their contacts while they hardly move.
 //!
 //! `CONTRIBUTING.md` says where the old commit has to lie.
 
@@ -49,7 +50,9 @@ const SPACE_REUSING: [Maker<3>; 2] =
 
 fn main() {
     let arguments = Arguments::of_command_line();
-    println!("microseconds of processor time; ratios old / new, each the median over the steps");
+    println!(
+        "microseconds of processor time; ratios old / new, each the median over pairs of steps"
+    );
     println!(
         "{:<36} {:>7} {:>9} {:>6} {:>10} {:>10} {:>10} {:>10} {:>7} {:>7} {:>7}",
         "scene",
@@ -75,7 +78,7 @@ fn main() {
 fn run_stages<const D: usize>(makers: [Maker<D>; 2], stages: &[Stage<D>], arguments: &Arguments) {
     for stage in stages {
         let name = format!("{} {D}D", stage.name);
-        if !name.contains(&arguments.case) {
+        if !arguments.wants(&name) {
             continue;
         }
         let scene = stage.scene(arguments.objects, 0.0);
@@ -99,9 +102,16 @@ fn rows<const D: usize>(
     };
     let mut rows = run();
     for _ in 1..arguments.runs {
-        rows.iter_mut().zip(run()).for_each(|(row, again)| row.times.keep_minima(&again.times));
+        rows.iter_mut()
+            .zip(run())
+            .for_each(|(row, again)| keep_minima(&mut row.times, &again.times));
     }
     rows
+}
+
+/// Keeps the smaller time of each step.
+fn keep_minima(times: &mut Times, again: &Times) {
+    times.0.iter_mut().zip(&again.0).for_each(|(time, again)| *time = time.min(*again));
 }
 
 /// The rows are those of the whole step, of the update and of reading, each of the new version first.
@@ -124,8 +134,12 @@ fn print(name: &str, count: usize, rows: &[Row]) {
     );
 }
 
-/// The median over the steps of the ratio of the two times of a step. Both were measured within
-/// milliseconds of one another, so that load of the machine which comes and goes is in both.
+/// The median over pairs of steps of the ratio of the two times; NaN of a single step. Both were measured
+/// within milliseconds of one another, so that load of the machine which comes and goes is in both.
+///
+/// Consecutive steps are summed in pairs, because who goes first, with colder caches, alternates.
 fn ratio(old: &Times, new: &Times) -> f64 {
-    old.ratios(new).median()
+    let pairs = old.0.chunks_exact(2).zip(new.0.chunks_exact(2));
+    let sum = |times: &[f64]| times.iter().sum::<f64>();
+    Times(pairs.map(|(old, new)| sum(old) / sum(new)).collect()).median()
 }

@@ -32,6 +32,7 @@ mod measure;
 mod pairs;
 mod queries;
 mod scale;
+mod stacks;
 mod table;
 mod world;
 
@@ -55,6 +56,7 @@ const SUITES: &[Suite] = &[
     ("batch", batch::run),
     ("build", build::run),
     ("scale", scale::run),
+    ("stacks", stacks::run),
 ];
 
 fn main() {

@@ -4,7 +4,7 @@ use cpu_time::ThreadTime;
 
 /// The times of one contender, in the unit of the caller.
 #[derive(Clone, Debug, Default)]
-pub struct Times(Vec<f64>);
+pub struct Times(pub Vec<f64>);
 
 impl Times {
     /// Keeps one more.
@@ -18,16 +18,6 @@ impl Times {
         times.sort_unstable_by(f64::total_cmp);
         let last = times.len().saturating_sub(1);
         times.get(last * percent / 100).copied().unwrap_or(f64::NAN)
-    }
-
-    /// The ratio of each time to the time of `other` at the same place.
-    pub fn ratios(&self, other: &Self) -> Self {
-        Self(self.0.iter().zip(&other.0).map(|(time, other)| time / other).collect())
-    }
-
-    /// Keeps the smaller of each time and the time of `other` at the same place.
-    pub fn keep_minima(&mut self, other: &Self) {
-        self.0.iter_mut().zip(&other.0).for_each(|(time, other)| *time = time.min(*other));
     }
 
     /// The median.

@@ -80,6 +80,7 @@ fn check<N: Space<D>, R, const D: usize>(
     assert!(pair.is_placed(), "{found:?} of\n{pair:?}");
     assert!(found.toi >= N::ZERO && found.toi <= options.max_time, "{found:?} of\n{pair:?}");
     assert!(found.toi.is_finite_number(), "{found:?} of\n{pair:?}");
+    assert!(!found.status.is_at_start() || found.toi == N::ZERO, "{found:?} of\n{pair:?}");
     assert!(found.part1 < parts_of(&*pair.g1).unwrap_or(1), "{found:?} of\n{pair:?}");
     assert!(found.part2 < parts_of(&*pair.g2).unwrap_or(1), "{found:?} of\n{pair:?}");
     let length = found.normal.norm();
@@ -97,7 +98,7 @@ fn check_meeting<N: Space<D>, R, const D: usize>(
 ) where
     R: impinge::math::AbstractRotation<N, D> + Copy,
 {
-    if !pair.is_moderate || found.status != ImpactStatus::Reached {
+    if !pair.is_moderate || found.status == ImpactStatus::StepsSpent {
         return;
     }
     let moved = |m: &Isometry<N, R, D>, velocity: Vector<N, D>| {

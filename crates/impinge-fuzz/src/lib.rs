@@ -12,6 +12,7 @@ mod bytes;
 mod construct;
 mod impact;
 mod manifolds;
+mod mass;
 mod pair;
 mod place;
 mod recording;
@@ -24,6 +25,7 @@ use bytes::Bytes;
 pub use construct::construct;
 pub use impact::{nonlinear_time_of_impact, time_of_impact};
 pub use manifolds::manifolds;
+pub use mass::mass;
 pub use pair::{closest_points, contact, distance, proximity, witness};
 pub use recording::recording;
 pub use single::{point, ray};
@@ -36,7 +38,7 @@ use place::{Dimension, Plane, Room};
 pub type Target = fn(&[u8]);
 
 /// The targets with their names.
-pub const TARGETS: [(&str, Target); 13] = [
+pub const TARGETS: [(&str, Target); 14] = [
     ("distance", distance),
     ("closest_points", closest_points),
     ("proximity", proximity),
@@ -47,6 +49,7 @@ pub const TARGETS: [(&str, Target); 13] = [
     ("nonlinear_time_of_impact", nonlinear_time_of_impact),
     ("ray", ray),
     ("point", point),
+    ("mass", mass),
     ("construct", construct),
     ("world", world),
     ("recording", recording),

@@ -59,6 +59,8 @@ struct Stage<N: Space<D>, const D: usize> {
     touching: BTreeSet<Handles>,
     near: BTreeMap<Handles, Proximity>,
     is_filtered: bool,
+    /// The next update keeps the events of the last one.
+    keeps_events: bool,
     /// All numbers are: then the world must agree with the model, else only with itself.
     is_moderate: bool,
 }
@@ -75,6 +77,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
             touching: BTreeSet::new(),
             near: BTreeMap::new(),
             is_filtered: false,
+            keeps_events: false,
             is_moderate: bytes.is_moderate(),
         }
     }
@@ -119,7 +122,8 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
             10 => return self.deform::<M>(handle, bytes),
             11 => return self.exchange::<M>(bytes),
             12 | 13 => return self.update::<M>(),
-            _ => return crate::world_queries::ask::<N, M, D>(&self.world, bytes),
+            14 => return crate::world_queries::ask::<N, M, D>(&self.world, bytes),
+            _ => return self.operate_as_engine::<M>(handle, bytes),
         };
         assert_eq!(done == Err(WorldError::StaleHandle(handle)), !is_known, "{done:?} {handle:?}");
     }
@@ -187,27 +191,64 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
+    /// What a solver asks for.
+    fn operate_as_engine<M: Dimension<N, D>>(
+        &mut self,
+        handle: CollisionObjectHandle,
+        bytes: &mut Bytes<'_>,
+    ) {
+        let is_known = self.world.contains(handle);
+        let done = match bytes.choice(6) {
+            0 => self.world.try_set_fixed(handle, bytes.choice(3) > 0),
+            1 => self.world.try_set_skin(handle, bytes.size()),
+            2 => {
+                let [at, next] = [0, 1].map(|_| M::stored(M::position(bytes)));
+                self.world.try_set_position_with_prediction(handle, at, next)
+            }
+            3 => {
+                self.world.keep_events();
+                self.keeps_events = true;
+                return;
+            }
+            4 => {
+                let is_kept = self.world.removed_object(handle).is_some();
+                assert_eq!(self.world.take_removed(handle).is_some(), is_kept && !is_known);
+                return;
+            }
+            _ => {
+                let other = self.handle(bytes).unwrap_or(handle);
+                let is_pair = self.world.pairs_with(handle).any(|one| one.handle() == other);
+                let done = self.world.try_update_pair(handle, other);
+                assert_eq!(done.unwrap_or(false), is_pair, "{done:?}");
+                return;
+            }
+        };
+        assert_eq!(done == Err(WorldError::StaleHandle(handle)), !is_known, "{done:?} {handle:?}");
+    }
+
     /// Updates; events, pairs and the model agree afterwards.
     fn update<M: Dimension<N, D>>(&mut self) {
+        let counts = (self.world.contact_events().len(), self.world.proximity_events().len());
+        let kept = if std::mem::take(&mut self.keeps_events) { counts } else { (0, 0) };
         self.world.update();
         assert_eq!(self.world.validate(), Ok(()));
-        self.hear();
+        self.hear(kept);
         self.check_pairs();
         if self.is_moderate {
             self.check_model::<M>();
         }
     }
 
-    /// Each start has one stop, each change begins where the last one ended.
-    fn hear(&mut self) {
-        for event in self.world.contact_events() {
+    /// Behind the events that were kept: each start has one stop, each change begins where the last one ended.
+    fn hear(&mut self, kept: (usize, usize)) {
+        for event in &self.world.contact_events()[kept.0..] {
             let (handles, changed) = match *event {
                 ContactEvent::Started(one, two) => ((one, two), self.touching.insert((one, two))),
                 ContactEvent::Stopped(one, two) => ((one, two), self.touching.remove(&(one, two))),
             };
             assert!(changed && handles.0 <= handles.1, "{event:?}");
         }
-        for event in self.world.proximity_events() {
+        for event in &self.world.proximity_events()[kept.1..] {
             let handles = (event.collider1, event.collider2);
             let known = self.near.remove(&handles).unwrap_or(Proximity::Disjoint);
             assert_eq!(event.prev_status, known, "{event:?}");
@@ -259,7 +300,8 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         two: &CollisionObject<N, D, u8>,
     ) {
         let handles = (one.handle(), two.handle());
-        let is_allowed = one.collision_groups().can_interact_with_groups(two.collision_groups())
+        let is_allowed = !(one.is_fixed() && two.is_fixed())
+            && one.collision_groups().can_interact_with_groups(two.collision_groups())
             && (!self.is_filtered || may_meet(*one.data(), *two.data()));
         let is_touching = self.touching.contains(&handles);
         let near = self.near.get(&handles).copied().unwrap_or(Proximity::Disjoint);
@@ -271,7 +313,9 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
             [one, two].map(|object| (M::loose(*object.position()), &**object.shape()));
         let (expected, is_proximity) = match (one.query_type(), two.query_type()) {
             (GeometricQueryType::Contacts(a, _), GeometricQueryType::Contacts(b, _)) => {
-                let contact = query::contact(&m1, g1, &m2, g2, a + b);
+                let [skin1, skin2] = [one, two].map(|object| self.world.skin(object.handle()));
+                let skins = skin1.zip(skin2).map_or(N::ZERO, |(skin1, skin2)| skin1 + skin2);
+                let contact = query::contact(&m1, g1, &m2, g2, a + b + skins);
                 assert_eq!(contact.is_some(), is_touching, "{contact:?} {one:?} {two:?}");
                 (Proximity::Disjoint, false)
             }

@@ -26,18 +26,19 @@ pub(crate) struct Two<'a, N: Space<D>, const D: usize, T> {
 /// The query of a pair in a world, and the distance up to which it has an answer.
 #[derive(Clone, Copy, Debug)]
 enum Limit<N> {
-    /// Contacts are kept up to the sum of both predictions.
+    /// Contacts are kept up to the sum of both predictions, and of both skins.
     Prediction(N),
     /// Objects are near up to the sum of both margins.
     Margin(N),
 }
 
 impl<N: Real> Limit<N> {
-    /// Proximity, if either object has a query of that type: then the prediction of the other counts for nothing.
-    fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>) -> Self {
+    /// Proximity, if either object has a query of that type: then the prediction of the other counts for nothing, and
+    /// `skins`, the sum of both, neither.
+    fn of(one: GeometricQueryType<N>, two: GeometricQueryType<N>, skins: N) -> Self {
         use GeometricQueryType::{Contacts, Proximity};
         match (one, two) {
-            (Contacts(first, _), Contacts(second, _)) => Self::Prediction(first + second),
+            (Contacts(first, _), Contacts(second, _)) => Self::Prediction(first + second + skins),
             (Proximity(first), Proximity(second)) => Self::Margin(first + second),
             (Proximity(margin), Contacts(..)) | (Contacts(..), Proximity(margin)) => {
                 Self::Margin(margin)
@@ -72,7 +73,9 @@ pub(crate) const fn proximity_text(proximity: Proximity) -> &'static str {
 impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
     /// The answer to the question. Costs four queries about the two shapes.
     pub(crate) fn answer(&self) -> PairAnswer {
-        let limit = Limit::of(self.one.query_type(), self.two.query_type());
+        let skin = |object: &CollisionObject<N, D, T>| self.world.skin(object.handle());
+        let skins = skin(self.one).zip(skin(self.two)).map_or(N::ZERO, |(one, two)| one + two);
+        let limit = Limit::of(self.one.query_type(), self.two.query_type(), skins);
         let measures = self.measures(limit.length());
         let points = match measures.points {
             ClosestPoints::WithinMargin(point1, point2) => {
@@ -168,7 +171,13 @@ impl<N: Space<D>, const D: usize, T> Two<'_, N, D, T> {
         }
     }
 
+    /// The groups of both, which two fixed objects are not asked for.
     fn groups(&self) -> Test {
+        if self.one.is_fixed() && self.two.is_fixed() {
+            let text =
+                "both are fixed, and fixed objects have no pairs among each other".to_owned();
+            return Test { name: "groups", passes: false, text };
+        }
         let [one, two] = [self.one, self.two].map(|object| Named {
             object: object.handle().uid(),
             groups: object.collision_groups(),

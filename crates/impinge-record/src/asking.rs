@@ -3,9 +3,10 @@
 use impinge::world::CollisionObject;
 
 use crate::RecordData;
-use crate::call::{Call, CastData, QueryData, QuestionData};
+use crate::call::Call;
 use crate::error::RecordError;
 use crate::query::{CastQuestion, Found, PlacedShape, Query, Question, answer_hash};
+use crate::question_data::{CastData, QueryData, QuestionData};
 use crate::recorder::{Recorder, index_of};
 use crate::space::Recordable;
 

@@ -8,7 +8,7 @@ use crate::error::{Problem, ReadError};
 use crate::space::Recordable;
 
 /// The version of the format that this crate writes, and the latest that it reads.
-pub const FORMAT_VERSION: u32 = 2;
+pub const FORMAT_VERSION: u32 = 3;
 
 const MAGIC: [u8; 8] = *b"\x89IPREC\r\n";
 
@@ -89,7 +89,7 @@ impl Header {
     ///
     /// let recorder = Recorder::<f32, 3, ()>::new(0.02, Registry::new()).expect("a usable margin");
     /// let header = Header::read(&recorder.finish().bytes).expect("it was just written");
-    /// assert_eq!((header.version, header.scalar_bytes, header.dimension), (2, 4, 3));
+    /// assert_eq!((header.version, header.scalar_bytes, header.dimension), (3, 4, 3));
     /// ```
     pub fn read(bytes: &[u8]) -> Result<Self, ReadError> {
         Self::fields(&mut Source::new(bytes, 0..bytes.len()))

@@ -64,7 +64,7 @@ pub struct Mark {
     pub removed: u32,
     /// Positions set: an object that is set twice counts twice.
     pub moved: u32,
-    /// Other changes: of shapes, groups, query types, data and filters.
+    /// Other changes: of shapes, groups, query types, data, filters, skins and marks of fixed objects.
     pub changed: u32,
     /// Queries asked.
     pub queries: u32,
@@ -79,15 +79,24 @@ impl Mark {
             Call::Add(_) => self.added += 1,
             Call::Remove(indices) => self.removed += small(indices.len()),
             Call::SetPositions(positions) => self.moved += small(positions.len()),
+            Call::Predict { .. } => self.moved += 1,
             Call::SetShape { .. }
             | Call::SetGroups { .. }
             | Call::SetQueryType { .. }
             | Call::SetData { .. }
+            | Call::SetFixed { .. }
+            | Call::SetSkin { .. }
+            | Call::Refilter(_)
             | Call::RegisterFilter(_)
             | Call::UnregisterFilter(_) => self.changed += 1,
             Call::Query(_) => self.queries += 1,
             Call::Update(observation) => self.events = observation.counts,
-            Call::Shape(_) | Call::KeyFrame(_) | Call::End { .. } => {}
+            Call::Shape(_)
+            | Call::KeyFrame(_)
+            | Call::Refuse(_)
+            | Call::KeepEvents
+            | Call::UpdatePair(_)
+            | Call::End { .. } => {}
         }
     }
 }
@@ -104,6 +113,9 @@ pub(crate) struct FrameMark {
     pub(crate) step: usize,
     /// Where its record begins.
     pub(crate) offset: usize,
+    /// The first step at which a world made here has the events of the recording: not that of the update after
+    /// it, with which all pairs start, nor those that keep the events of that one.
+    whole_from: usize,
 }
 
 /// Where the updates and key frames of a recording are, and what happened.
@@ -115,6 +127,8 @@ pub(crate) struct Timeline {
     pub(crate) marks: Vec<Mark>,
     /// In order; the calls since the last update have no mark yet.
     frames: Vec<FrameMark>,
+    /// The next update keeps the events of the last one.
+    keeps_events: bool,
     /// The calls since the last update.
     next: Mark,
 }
@@ -128,17 +142,29 @@ impl Timeline {
     ) {
         self.next.count(call);
         match call {
-            Call::KeyFrame(_) => self.frames.push(FrameMark { step: self.marks.len(), offset }),
-            Call::Update(_) => self.marks.push(std::mem::take(&mut self.next)),
+            Call::KeyFrame(_) => {
+                let step = self.marks.len();
+                self.frames.push(FrameMark { step, offset, whole_from: step + 2 });
+            }
+            Call::KeepEvents => self.keeps_events = true,
+            Call::Update(_) => self.note_update(),
             _ => {}
         }
     }
 
-    /// The last key frame at least two updates before a step: events of the first update after it are those of
-    /// a new world. The beginning, if there is none.
+    fn note_update(&mut self) {
+        self.marks.push(std::mem::take(&mut self.next));
+        let step = self.marks.len();
+        if std::mem::take(&mut self.keeps_events) {
+            let begun = self.frames.iter_mut().rev().take_while(|frame| frame.whole_from >= step);
+            begun.filter(|frame| frame.whole_from == step).for_each(|frame| frame.whole_from += 1);
+        }
+    }
+
+    /// The last key frame from which a step can be made, with its events. The beginning, if there is none.
     pub(crate) fn frame_before(&self, step: usize) -> FrameMark {
-        let frames = self.frames.partition_point(|frame| frame.step + 2 <= step);
-        let beginning = FrameMark { step: 0, offset: self.start };
+        let frames = self.frames.partition_point(|frame| frame.whole_from <= step);
+        let beginning = FrameMark { step: 0, offset: self.start, whole_from: 0 };
         self.frames[..frames].last().copied().unwrap_or(beginning)
     }
 }

@@ -8,10 +8,12 @@ use impinge::shape::{Ball, ShapeHandle};
 use impinge::world::{CollisionGroups, CollisionWorld};
 
 use crate::RecordData;
-use crate::call::{Call, KeyFrame, ObjectData, QueryData, QuestionData};
+use crate::call::{Call, KeyFrame, ObjectData};
 use crate::divergence::Difference;
 use crate::error::Problem;
 use crate::query::{Asked, CastQuestion, PlacedShape, Query, Question, RayQuestion, answer_hash};
+use crate::question_data::{QueryData, QuestionData};
+use crate::recorder::index_of;
 use crate::registry::Registry;
 use crate::shapes::ShapeTable;
 use crate::space::Recordable;
@@ -31,6 +33,8 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     pub(crate) world: CollisionWorld<N, D, T>,
     handles: Vec<Option<CollisionObjectHandle>>,
     observer: Observer,
+    /// The pairs that a filter lent to the next update refuses, sorted; none without such a filter.
+    refused: Vec<[u32; 2]>,
     /// The queries since the last update.
     asked: Vec<Asked<N, D>>,
     /// The queries between the last two updates.
@@ -39,6 +43,10 @@ pub(crate) struct Player<N: Recordable<D>, const D: usize, T> {
     is_new: bool,
     /// A key frame made the world, and no update followed: the next one starts all pairs at once.
     is_remade: bool,
+    /// The events of the last update are those of a world made anew, not those of the recording.
+    has_other_events: bool,
+    /// The next update keeps the events of the last one.
+    keeps_events: bool,
 }
 
 /// Gives a world new phases of the library, to take over at the next update. What follows depends on the
@@ -61,8 +69,19 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
     /// A world without objects.
     pub(crate) fn around(world: CollisionWorld<N, D, T>) -> Self {
         let (handles, asked, queries) = (Vec::new(), Vec::new(), Vec::new());
-        let observer = Observer::default();
-        Self { world, handles, observer, asked, queries, is_new: true, is_remade: false }
+        let (observer, refused) = (Observer::default(), Vec::new());
+        Self {
+            world,
+            handles,
+            observer,
+            refused,
+            asked,
+            queries,
+            is_new: true,
+            is_remade: false,
+            has_other_events: false,
+            keeps_events: false,
+        }
     }
 
     /// Applies a call; answers in what its outcome differs from the recorded one.
@@ -87,6 +106,26 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
                 self.world.try_set_query_type(self.handle(index)?, query_type)?;
             }
             Call::SetData { index, data } => self.set_data(index, &data)?,
+            Call::SetFixed { index, is_fixed } => {
+                self.world.try_set_fixed(self.handle(index)?, is_fixed)?;
+            }
+            Call::SetSkin { index, skin } => self.world.try_set_skin(self.handle(index)?, skin)?,
+            Call::Predict { index, position, predicted } => {
+                let handle = self.handle(index)?;
+                self.world.try_set_position_with_prediction(handle, position, predicted)?;
+            }
+            Call::Refilter(None) => self.world.refilter_pairs(),
+            Call::Refilter(Some(index)) => {
+                self.world.try_refilter_pairs_of(self.handle(index)?)?;
+            }
+            Call::Refuse(pairs) => self.refuse(pairs),
+            Call::KeepEvents => {
+                self.world.keep_events();
+                self.keeps_events = true;
+            }
+            Call::UpdatePair([one, two]) => {
+                self.world.try_update_pair(self.handle(one)?, self.handle(two)?)?;
+            }
             Call::Remove(indices) => self.remove(&indices)?,
             Call::RegisterFilter(name) => self.register(&name, resources)?,
             Call::UnregisterFilter(name) => {
@@ -145,6 +184,23 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
         let object = self.world.collision_object_mut(handle);
         *object.ok_or(Problem::NoSuchObject(index))?.data_mut() = data_of(data)?;
         Ok(())
+    }
+
+    /// Has the next update refuse pairs.
+    fn refuse(&mut self, mut pairs: Vec<[u32; 2]>) {
+        pairs.sort_unstable();
+        self.refused = pairs;
+    }
+
+    /// Updates the world, with the recorded answers of a filter that was lent to the update.
+    fn update_world(&mut self) {
+        let refused = std::mem::take(&mut self.refused);
+        if refused.is_empty() {
+            return self.world.update();
+        }
+        self.world.update_with(&mut |one, two| {
+            refused.binary_search(&[one, two].map(|object| index_of(object.handle()))).is_err()
+        });
     }
 
     /// Removes objects, whose indices name nothing then.
@@ -222,17 +278,19 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Player<N, D, T> {
     /// Updates the world and compares its hashes. Objects are looked at only if the hash of the state differs.
     fn update(&mut self, recorded: &Observation) -> Option<Difference> {
         let before = self.observer.clone();
-        self.world.update();
+        self.update_world();
         self.queries = std::mem::take(&mut self.asked);
         let replayed = self.observer.observe(&self.world);
         // The recorded world had its pairs before the key frame; in a world made anew all of them start.
-        let is_remade = std::mem::replace(&mut self.is_remade, false);
+        let keeps_events = std::mem::take(&mut self.keeps_events);
+        let has_other_events = std::mem::take(&mut self.is_remade);
+        self.has_other_events = has_other_events || self.has_other_events && keeps_events;
         if replayed.state != recorded.state {
             let known = recorded.changed.as_ref().map(|changed| before.after(changed));
             let object = known.and_then(|known| self.observer.difference(&known));
             return Some(object.unwrap_or(Difference::State));
         }
-        let are_same = is_remade || replayed.events == recorded.events;
+        let are_same = self.has_other_events || replayed.events == recorded.events;
         (!are_same).then_some(Difference::Events)
     }
 }

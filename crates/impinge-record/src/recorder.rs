@@ -53,7 +53,7 @@ use crate::state::Observer;
 /// # Ok::<(), impinge_record::RecordError>(())
 /// ```
 pub struct Recorder<N: Recordable<D>, const D: usize, T> {
-    world: CollisionWorld<N, D, T>,
+    pub(crate) world: CollisionWorld<N, D, T>,
     margin: N,
     registry: Registry<N, D, T>,
     shapes: KnownShapes<N, D>,
@@ -112,7 +112,8 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         let begun = usable.and(unknown).and_then(|()| recorder.key_frame());
         match begun {
             Ok(()) => {
-                recorder.step();
+                recorder.world.update();
+                recorder.end_step();
                 Ok(recorder)
             }
             Err(error) => Err(Refused { error, world: Box::new(recorder.world) }),
@@ -323,15 +324,21 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
 
     /// Updates the world and records the hashes of what it led to.
     pub fn update(&mut self) {
+        self.begin_step();
+        self.world.update();
+        self.end_step();
+    }
+
+    /// Writes a key frame, if it is time for one.
+    pub(crate) fn begin_step(&mut self) {
         if self.key_frames.is_some_and(|every| self.updates > 0 && self.updates % every == 0) {
             let known = self.key_frame();
             debug_assert!(known.is_ok(), "the shapes of all objects are known");
         }
-        self.step();
     }
 
-    fn step(&mut self) {
-        self.world.update();
+    /// Records an update that has been.
+    pub(crate) fn end_step(&mut self) {
         self.updates += 1;
         let observation = self.observer.observe(&self.world);
         self.record(&Call::Update(observation));
@@ -356,6 +363,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Recorder<N, D, T> {
         self.record(&Call::KeyFrame(KeyFrame { filters, vacant, objects }));
         exchange_phases(&mut self.world, self.margin);
         self.observer = Observer::default();
+        self.record_rare_facts();
         Ok(())
     }
 

@@ -393,7 +393,7 @@ impl<N: Recordable<D>, const D: usize, T: RecordData> Replay<N, D, T> {
 
     /// A new world before a key frame, or before the first call.
     fn restart(&mut self, mark: FrameMark) -> Result<(), ReadError> {
-        let FrameMark { step, offset } = mark;
+        let FrameMark { step, offset, .. } = mark;
         let made = Player::new(self.resources.margin);
         self.player = made.map_err(|problem| ReadError { offset, problem })?;
         (self.step, self.offset, self.is_changed) = (step, offset, false);

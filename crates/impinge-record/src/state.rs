@@ -14,7 +14,7 @@ use crate::space::Recordable;
 pub(crate) struct ObjectHashes {
     /// The index of the object.
     pub(crate) index: u32,
-    /// Of position, groups and query type.
+    /// Of what calls have made of the object.
     pub(crate) description: u32,
     /// Of the pairs in which the object is the first, with their contacts.
     pub(crate) pairs: u32,
@@ -57,7 +57,7 @@ impl Observer {
         let mut known = Vec::with_capacity(self.known.len());
         for object in world.collision_objects() {
             let index = object.handle().uid();
-            let description = description_digest(object);
+            let description = description_digest(world, object);
             all.index(index);
             all.word(description.finish());
             all.word(pairs[index].finish());
@@ -158,8 +158,9 @@ impl Observer {
     }
 }
 
-/// Position, groups and query type: what calls have made of an object.
+/// Position, groups, query type, and what few objects have: what calls have made of an object.
 fn description_digest<N: Recordable<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
     object: &CollisionObject<N, D, T>,
 ) -> Digest {
     let mut digest = Digest::new();
@@ -172,6 +173,17 @@ fn description_digest<N: Recordable<D>, const D: usize, T>(
     match object.query_type() {
         GeometricQueryType::Contacts(linear, angular) => digest.numbers(&[linear, angular]),
         GeometricQueryType::Proximity(margin) => digest.numbers(&[margin]),
+    }
+    if object.is_fixed() {
+        digest.word(1);
+    }
+    if let Some(skin) = world.skin(object.handle()).filter(|skin| *skin > N::ZERO) {
+        digest.word(2);
+        digest.numbers(&[skin]);
+    }
+    if let Some(predicted) = world.predicted_position(object.handle()) {
+        digest.word(3);
+        digest.numbers(&N::isometry_numbers(predicted));
     }
     digest
 }

@@ -6,6 +6,7 @@
 //! crate can check it with a pencil.
 //!
 //! - [`geometry`]: poses, convex solids, signed distance, points, rays, boxes
+//! - [`mass`]: area or volume, centre and inertia by counting points
 //! - [`precise`]: signed distance with about 25 digits
 //! - [`world`]: the naive collision world and its event log
 //! - [`random`]: the small deterministic generator that all tests share
@@ -13,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 pub mod geometry;
+pub mod mass;
 pub mod precise;
 pub mod random;
 pub mod topology;

@@ -6,6 +6,7 @@
 //! [`Impinge`] is the one of this library, another one has its own.
 
 #![forbid(unsafe_code)]
+#![expect(clippy::disallowed_types, reason = "maps are looked up by id here, and never walked")]
 
 mod mass;
 mod memory;

@@ -20,7 +20,7 @@ use impinge_stacks::{
     shake, stacks2, stacks3,
 };
 
-/// What the command line asks for.
+/// The options of the command line.
 #[derive(Default)]
 struct Arguments {
     words: Vec<String>,
@@ -73,27 +73,16 @@ impl Arguments {
 }
 
 fn tables<N: Stage<2> + Stage<3>>(arguments: &Arguments) {
-    println!(
-        "{:<26} {:>9} {:>8} {:>8} {:>8} {:>6} {:>6} {:>7} {:>6} {:>7} {:>8}",
-        "scene",
-        "energy",
-        "drift",
-        "sunk",
-        "speed",
-        "new %",
-        "jump %",
-        "far",
-        "parted",
-        "points",
-        "ms"
-    );
+    let head = Outcome::default().columns().map(|(name, _)| format!("{name:>9}"));
+    println!("{:<32}{}", "scene", head.join(""));
     for stack in stacks3().iter().filter(|stack| arguments.wants("table1", stack.name)) {
         rest::<N, 3>(stack, arguments);
     }
     for stack in stacks2().iter().filter(|stack| arguments.wants("table1", stack.name)) {
         rest::<N, 2>(stack, arguments);
     }
-    println!("\n{:<26} new ids %, jumps %, farthest jump; shaken by 1e-5, 1e-4, 1e-3", "pair");
+    let head = Counts::default().columns().map(|(name, _)| format!("{name:>9}"));
+    println!("\n{:<32}{} | by 1e-4 | by 1e-3", "pair, shaken by 1e-5", head.join(""));
     for pair in pairs3().iter().filter(|pair| arguments.wants("table2", pair.name)) {
         shaken::<N, 3>(pair, arguments);
     }
@@ -107,29 +96,16 @@ fn rest<N: Stage<D>, const D: usize>(stack: &Stack<D>, arguments: &Arguments) {
     let memory = if arguments.is_by_place { Memory::by_place() } else { Memory::by_ids() };
     let solver = Solver { alternates: !arguments.is_one_way, ..Solver::new(memory) };
     let outcome = play(stack, &mut source, solver, arguments.steps.unwrap_or(600));
-    let Outcome { energy, drift, sunk, max_speed, counts, parted, time } = outcome;
-    let has_fallen = stack.kind == Kind::Rest && (sunk > 0.4 || drift > 0.4);
-    let note = if has_fallen { "  fell" } else { "" };
-    println!(
-        "{:<26} {energy:>9.1e} {drift:>8.4} {sunk:>8.4} {max_speed:>8.4} {:>6.2} {:>6.2} {:>7.4} {parted:>6} {:>7.2} {time:>8.4}{note}",
-        stack.name,
-        100.0 * counts.new_share(),
-        100.0 * counts.jump_share(),
-        counts.farthest,
-        counts.points(),
-    );
+    let cells = outcome.columns().map(|(_, number)| format!("{number:>9}"));
+    let has_fallen = stack.kind == Kind::Rest && (outcome.sunk > 0.4 || outcome.drift > 0.4);
+    println!("{:<32}{}{}", stack.name, cells.join(""), if has_fallen { "  fell" } else { "" });
 }
 
 fn shaken<N: Stage<D>, const D: usize>(pair: &Stack<D>, arguments: &Arguments) {
     let cells = [1e-5, 1e-4, 1e-3].map(|way| {
         let mut source = Impinge::<N, D>::new(pair, arguments.choices);
-        let counts: Counts = shake(pair, &mut source, way, 1000);
-        format!(
-            "{:>6.2} {:>6.2} {:>7.4}",
-            100.0 * counts.new_share(),
-            100.0 * counts.jump_share(),
-            counts.farthest
-        )
+        let counts = shake(pair, &mut source, way, 1000);
+        counts.columns().map(|(_, number)| format!("{number:>9}")).join("")
     });
-    println!("{:<26} {}", pair.name, cells.join("   |"));
+    println!("{:<32}{}", pair.name, cells.join(" |"));
 }

@@ -136,7 +136,8 @@ fn of_space(shape: &SceneShape<3>) -> Mass<3> {
     }
 }
 
-/// Tetrahedra from the origin to each triangle of each face: Mirtich's integrals (1996) in the form of Blow and Binstock.
+/// Sums the signed tetrahedra from the origin to each triangle of each face, with the covariance of each in closed
+/// form: Jonathan Blow and Atman Binstock, "How to find the inertia tensor of a 3D solid body" (2004).
 fn hull(points: &[[f64; 3]]) -> Mass<3> {
     let hull = space::convex_hull(&rounded(points)).expect("the points span space");
     let (mut volume, mut first) = (0.0, Vector::<f64, 3>::zeros());
@@ -186,4 +187,83 @@ fn matrix(rows: &[[f64; 3]; 3]) -> Matrix<f64, 3> {
 
 fn lifted<const D: usize>(point: &[f64; D]) -> Vector<f64, 3> {
     Vector::<f64, 3>::from_fn(|n, _| point.get(n).copied().unwrap_or(0.0))
+}
+
+#[cfg(test)]
+#[expect(clippy::disallowed_methods, reason = "sums that are compared within a bound")]
+mod tests {
+    use super::*;
+
+    fn close<const D: usize>(a: &Mass<D>, b: &Mass<D>, share: f64) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() <= share * a.abs().max(b.abs()) + 1e-6;
+        let inertias = a.inertia.iter().flatten().zip(b.inertia.iter().flatten());
+        near(a.mass, b.mass)
+            && a.center.iter().zip(&b.center).all(|(a, b)| near(*a, *b))
+            && inertias.into_iter().all(|(a, b)| near(*a, *b))
+    }
+
+    fn corners(half: [f64; 3]) -> Vec<[f64; 3]> {
+        let sign = |n: usize, axis: usize| if n >> axis & 1 == 0 { -1.0 } else { 1.0 };
+        (0..8).map(|n| core::array::from_fn(|axis| sign(n, axis) * half[axis])).collect()
+    }
+
+    /// A circle of many corners at a height.
+    fn ring(radius: f64, height: f64) -> impl Iterator<Item = [f64; 3]> {
+        (0..400).map(move |n| {
+            let (sine, cosine) = (f64::from(n) * PI / 200.0).sin_cos();
+            [radius * cosine, height, radius * sine]
+        })
+    }
+
+    #[test]
+    fn a_box_by_hand_as_a_hull_and_as_two_halves() {
+        let half = [0.5, 1.0, 1.5];
+        let whole = Solid::One(SceneShape::Cuboid { half_extents: half }).mass();
+        assert_eq!((whole.mass, whole.center), (6.0, [0.0; 3]));
+        assert_eq!(whole.inertia[0][0], 6.0 / 12.0 * (4.0 + 9.0), "m/12 (height² + depth²)");
+        let hull = Solid::One(SceneShape::Convex { points: corners(half) }).mass();
+        assert!(close(&whole, &hull, 1e-6), "{hull:?}");
+        let part = SceneShape::Cuboid { half_extents: [0.5, 0.5, 1.5] };
+        // The lower half is turned by half a turn, which changes nothing.
+        let turned =
+            Placement { axis: [0.0, 1.0, 0.0], tangent: 1e9, ..Placement::at([0.0, -0.5, 0.0]) };
+        let halves = vec![(Placement::at([0.0, 0.5, 0.0]), part.clone()), (turned, part)];
+        assert!(close(&whole, &Solid::Compound(halves).mass(), 1e-6));
+    }
+
+    #[test]
+    fn round_solids_as_hulls_of_many_corners() {
+        let (half_height, radius) = (0.7, 0.5);
+        let cylinder = Solid::One(SceneShape::Cylinder { half_height, radius }).mass();
+        let points = ring(radius, -half_height).chain(ring(radius, half_height)).collect();
+        assert!(close(&cylinder, &Solid::One(SceneShape::Convex { points }).mass(), 1e-3));
+        let cone = Solid::One(SceneShape::Cone { half_height, radius }).mass();
+        let points = ring(radius, -half_height).chain([[0.0, half_height, 0.0]]).collect();
+        assert!(close(&cone, &Solid::One(SceneShape::Convex { points }).mass(), 1e-3));
+        let capsule = Solid::One(SceneShape::Capsule { half_height, radius }).mass();
+        let caps = (0..=40).flat_map(|n| {
+            let (sine, cosine) = (f64::from(n) * PI / 80.0).sin_cos();
+            let ring = move |sign: f64| ring(radius * cosine, sign * (half_height + radius * sine));
+            ring(-1.0).chain(ring(1.0)).step_by(4)
+        });
+        let points = caps.collect();
+        assert!(close(&capsule, &Solid::One(SceneShape::Convex { points }).mass(), 5e-3));
+    }
+
+    #[test]
+    fn solids_of_the_plane_as_polygons() {
+        let square = Solid::One(SceneShape::Cuboid { half_extents: [0.5, 1.0] }).mass();
+        let points = vec![[-0.5, -1.0], [0.5, -1.0], [0.5, 1.0], [-0.5, 1.0]];
+        assert!(close(&square, &Solid::One(SceneShape::Convex { points }).mass(), 1e-6));
+        let expected = 2.0 / 12.0 * (1.0 + 4.0);
+        assert!((square.inertia[2][2] - expected).abs() < 1e-15, "m/12 (width² + height²)");
+        let (half_height, radius) = (0.7, 0.5);
+        let capsule = Solid::One(SceneShape::Capsule { half_height, radius }).mass();
+        let points = (0..2000).map(|n| {
+            let (sine, cosine) = (f64::from(n) * PI / 1000.0).sin_cos();
+            [radius * cosine, radius * sine + half_height.copysign(sine)]
+        });
+        let polygon = Solid::One(SceneShape::Convex { points: points.collect() }).mass();
+        assert!(close(&capsule, &polygon, 1e-4), "{capsule:?} {polygon:?}");
+    }
 }

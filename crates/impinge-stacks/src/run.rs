@@ -6,7 +6,7 @@ use impinge::math::Vector;
 use impinge_scenes::Random;
 
 use crate::watch::{Counts, Watch};
-use crate::{Body, Contact, ContactSource, Solver, Stack, Stage, bodies_of};
+use crate::{Body, Contact, ContactSource, Kind, Solver, Stack, Stage, bodies_of};
 
 /// How many steps at the end of a run show whether the solids are at rest.
 pub const LAST: usize = 120;
@@ -23,7 +23,7 @@ pub struct Outcome {
     pub sunk: f64,
     /// The largest difference of a center's velocity from the one with which it began.
     pub max_speed: f64,
-    /// The contacts of the second half of the run.
+    /// The contacts of the second half of the run, or of all of it for solids that slide.
     pub counts: Counts,
     /// Pairs that ceased to touch in the last steps.
     pub parted: usize,
@@ -44,12 +44,13 @@ pub fn play<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
     solver.iterations = solver.iterations.max(stack.iterations);
     let mut watch = Watch::new(stack.extents());
     let mut outcome = Outcome::default();
+    let settled = if stack.kind == Kind::Slide { 1 } else { steps / 2 };
     for step in 0..steps {
         let start = Instant::now();
         let contacts = source.contacts(&bodies);
         outcome.time += start.elapsed().as_secs_f64() * 1e3 / steps as f64;
         watch.see(&bodies, &contacts);
-        if step == steps / 2 {
+        if step < settled {
             watch.take();
         }
         if step + LAST == steps {
@@ -66,6 +67,24 @@ pub fn play<N: Stage<D>, const D: usize, S: ContactSource<N, D>>(
 }
 
 impl Outcome {
+    /// The numbers for tables, with their names.
+    #[must_use]
+    pub fn columns(&self) -> [(&'static str, String); 10] {
+        let Self { energy, drift, sunk, max_speed, counts, parted, time } = self;
+        [
+            ("energy", format!("{energy:.1e}")),
+            ("drift", format!("{drift:.4}")),
+            ("sunk", format!("{sunk:.4}")),
+            ("speed", format!("{max_speed:.4}")),
+            ("new_%", format!("{:.2}", 100.0 * counts.new_share())),
+            ("jump_%", format!("{:.2}", 100.0 * counts.jump_share())),
+            ("farthest", format!("{:.4}", counts.farthest)),
+            ("parted", format!("{parted}")),
+            ("points", format!("{:.2}", counts.points())),
+            ("ms", format!("{time:.4}")),
+        ]
+    }
+
     fn see<N: Stage<D>, const D: usize>(
         &mut self,
         begin: &[Body<N, D>],

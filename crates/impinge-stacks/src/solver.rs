@@ -250,3 +250,127 @@ impl<N: Turn<D>, const D: usize> Constraint<N, D> {
         Impulse { normal: self.impulses[0], friction }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ContactSource, Kind, Stack, Stage, bodies_of, play};
+    use impinge::math::Real;
+    use impinge_scenes::{Placement, SceneShape};
+
+    /// The lowest corners of boxes, or squares, above the half-space below zero, which is the first body: contacts
+    /// that no library made.
+    struct Corners;
+
+    impl<N: Stage<D>, const D: usize> ContactSource<N, D> for Corners {
+        type Id = (usize, usize);
+
+        fn contacts(&mut self, bodies: &[Body<N, D>]) -> Vec<Contact<N, D, Self::Id>> {
+            let corners = (1..bodies.len()).flat_map(|body| (0..1 << D).map(move |n| (body, n)));
+            let corners = corners.map(|(number, n)| {
+                let sign = |axis: usize| if n >> axis & 1 == 0 { -N::HALF } else { N::HALF };
+                let local = Vector::<N, D>::from_fn(|axis, _| sign(axis));
+                let point = N::point(&bodies[number].pose, &local);
+                let mut normal = Vector::<N, D>::zeros();
+                normal[1] = N::ONE;
+                let foot = point - normal * point[1];
+                let bodies = [0, number];
+                Contact { bodies, points: [foot, point], normal, depth: -point[1], id: (number, n) }
+            });
+            corners.filter(|contact| contact.depth > N::lit(-0.02)).collect()
+        }
+    }
+
+    fn boxes<const D: usize>() -> Stack<D> {
+        let up = core::array::from_fn(|axis| if axis == 1 { 1.0 } else { 0.0 });
+        let ground = SceneShape::Plane { normal: up };
+        let cube = SceneShape::Cuboid { half_extents: [0.5; D] };
+        let at = core::array::from_fn(|axis| if axis == 1 { 0.5 } else { 0.0 });
+        Stack::new("box", Kind::Rest).fixed(ground, [0.0; D]).with(cube, Placement::at(at))
+    }
+
+    fn solver<N: Stage<D>, const D: usize>() -> Solver<N, D, (usize, usize)> {
+        Solver::new(Memory::by_ids())
+    }
+
+    fn rests<N: Stage<D>, const D: usize>() {
+        let outcome = play::<N, D, _>(&boxes(), &mut Corners, solver(), 240);
+        assert!(outcome.energy < 1e-9 && outcome.drift < 1e-3, "{outcome:?}");
+        assert_eq!((outcome.counts.new, outcome.counts.points()), (0, (1 << (D - 1)) as f64));
+    }
+
+    /// Gravity leans: a box slides where the slope exceeds the friction, with the rest of the acceleration.
+    fn slides<N: Stage<D>, const D: usize>() {
+        for slope in [0.4, 0.6] {
+            let mut bodies: Vec<Body<N, D>> = bodies_of(&boxes());
+            let mut solver = solver();
+            solver.gravity[0] = N::lit(10.0 * slope);
+            for _ in 0..60 {
+                let contacts = Corners.contacts(&bodies);
+                solver.step(&mut bodies, &contacts);
+            }
+            let (speed, wanted) =
+                (bodies[1].velocity[0].as_f64(), 10.0 * f64::max(slope - 0.5, 0.0));
+            assert!((speed - wanted).abs() < 1e-2, "slope {slope}: {speed} after a second");
+        }
+    }
+
+    /// Two free bodies that collide keep their momentum and their angular momentum about the origin.
+    fn keeps_momentum<N: Stage<D>, const D: usize>() {
+        let mut bodies: Vec<Body<N, D>> = bodies_of(&boxes::<D>());
+        bodies[0] = bodies[1];
+        bodies[0].pose = N::pose_of(&Placement::at([-0.6; D]));
+        bodies[0].velocity[0] = N::lit(3.0);
+        let mut normal = Vector::<N, D>::zeros();
+        (normal[0], normal[1]) = (N::lit(0.8), N::lit(0.6));
+        let point = Vector::<N, D>::from_fn(|axis, _| N::lit(0.1 * axis as f64));
+        let contact =
+            Contact { bodies: [0, 1], points: [point; 2], normal, depth: N::ZERO, id: (0, 0) };
+        let mut solver = solver();
+        solver.gravity = Vector::<N, D>::zeros();
+        solver.step = N::lit(1e-6);
+        let before = momenta(&bodies);
+        solver.step(&mut bodies, &[contact]);
+        let after = momenta(&bodies);
+        let speed = bodies[1].velocity.norm().as_f64();
+        assert!(speed > 0.1, "the second was pushed: {speed}");
+        let off = before.iter().zip(&after).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-4, "{before:?} {after:?}");
+    }
+
+    /// The sums of momenta, and of the angular momentum about a few axes.
+    fn momenta<N: Stage<D>, const D: usize>(bodies: &[Body<N, D>]) -> Vec<f64> {
+        let axes = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]].map(|axis| axis.map(N::lit));
+        let mut sums = vec![0.0; D + axes.len()];
+        for body in bodies {
+            let center = N::point(&body.pose, &body.center);
+            let momentum = body.velocity / body.inverse_mass;
+            let around = N::torque(&center, &momentum);
+            for axis in 0..D {
+                sums[axis] += momentum[axis].as_f64();
+            }
+            for (n, axis) in axes.iter().enumerate() {
+                // The inertia of a cube about every axis is a sixth of its mass.
+                let own = N::dot(body.spin, N::spin(*axis)) / (N::lit(6.0) * body.inverse_mass);
+                sums[D + n] += (own + N::dot(around, N::spin(*axis))).as_f64();
+            }
+        }
+        sums
+    }
+
+    fn all<N: Real>() {
+        rests::<N, 2>();
+        rests::<N, 3>();
+        slides::<N, 2>();
+        slides::<N, 3>();
+        keeps_momentum::<N, 2>();
+        keeps_momentum::<N, 3>();
+    }
+
+    #[test]
+    fn boxes_rest_slide_and_keep_their_momentum() {
+        all::<f32>();
+        #[cfg(feature = "f64")]
+        all::<f64>();
+    }
+}

@@ -14,7 +14,7 @@ use crate::{Body, Contact, Stack, Stage, shape_of};
 /// A distance below which all pairs have contacts.
 pub const PREDICTION: f64 = 0.02;
 
-/// What finds the contacts of bodies.
+/// A way to find the contacts of bodies: a collision library.
 pub trait ContactSource<N: Stage<D>, const D: usize> {
     /// Names a contact from step to step.
     type Id: Copy + Eq + Hash;

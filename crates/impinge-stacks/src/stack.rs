@@ -13,11 +13,11 @@ pub struct Stack<const D: usize> {
     pub friction: f64,
     /// The iterations of the solver: a tall stack needs more.
     pub iterations: usize,
-    /// What is asked of the run.
+    /// Whether the solids stand, fall or slide.
     pub kind: Kind,
 }
 
-/// What a scene shows, which decides what is asked of it.
+/// The behaviour that a scene shows; its measures depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Solids that stand where they begin.

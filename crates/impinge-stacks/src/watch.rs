@@ -16,12 +16,14 @@ pub const JUMP: f64 = 0.05;
 pub struct Counts {
     /// All contacts.
     pub contacts: usize,
-    /// Those whose ids were not there a step before.
+    /// Contacts whose ids did not exist a step before.
     pub new: usize,
-    /// Those that are farther than [`JUMP`] from where the contact of their id, or else the nearest one of the
-    /// pair, was a step before, on both solids.
+    /// Contacts of a step before whose ids are gone.
+    pub lost: usize,
+    /// Contacts whose point is farther than [`JUMP`] from its place a step before, on both solids. The place of a
+    /// contact with a new id is the nearest one of the pair.
     pub jumps: usize,
-    /// The farthest of these ways, as a share of the extent.
+    /// The longest distance of a point from its place a step before, as a share of the extent.
     pub farthest: f64,
     /// Pairs of solids with contacts.
     pub pairs: usize,
@@ -36,6 +38,12 @@ impl Counts {
         self.new as f64 / self.contacts.max(1) as f64
     }
 
+    /// The contacts whose ids are gone, as a share of all contacts.
+    #[must_use]
+    pub fn lost_share(&self) -> f64 {
+        self.lost as f64 / self.contacts.max(1) as f64
+    }
+
     /// The share of contacts that jumped.
     #[must_use]
     pub fn jump_share(&self) -> f64 {
@@ -48,11 +56,22 @@ impl Counts {
         Self {
             contacts: self.contacts + other.contacts,
             new: self.new + other.new,
+            lost: self.lost + other.lost,
             jumps: self.jumps + other.jumps,
             farthest: self.farthest.max(other.farthest),
             pairs: self.pairs + other.pairs,
             parted: self.parted + other.parted,
         }
+    }
+
+    /// The numbers for tables, with their names.
+    #[must_use]
+    pub fn columns(&self) -> [(&'static str, String); 3] {
+        [
+            ("new_%", format!("{:.2}", 100.0 * self.new_share())),
+            ("jump_%", format!("{:.2}", 100.0 * self.jump_share())),
+            ("farthest", format!("{:.4}", self.farthest)),
+        ]
     }
 
     /// Contacts for each pair.
@@ -98,6 +117,7 @@ impl<N: Turn<D>, const D: usize, K: Copy + Eq + Hash> Watch<N, D, K> {
         let (old, new): (HashSet<_>, HashSet<_>) =
             (self.by_pair.keys().collect(), pairs.keys().collect());
         self.counts.pairs += new.len();
+        self.counts.lost += self.by_id.keys().filter(|id| !ids.contains_key(*id)).count();
         self.counts.parted += old.difference(&new).count();
         (self.by_id, self.by_pair) = (ids, pairs);
     }

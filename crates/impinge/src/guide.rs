@@ -41,10 +41,12 @@ macro_rules! chapter {
         #[doc = "[composites#two-sides-or-one]: self::composites#two-sides-or-one"]
         #[doc = "[composites#what-closed-surfaces-enclose]: self::composites#what-closed-surfaces-enclose"]
         #[doc = "[contacts]: self::contacts"]
+        #[doc = "[contacts#substeps]: self::contacts#substeps"]
         #[doc = "[events]: self::events"]
         #[doc = "[guarantees]: self::guarantees"]
         #[doc = "[own-shapes]: self::own_shapes"]
         #[doc = "[performance]: self::performance"]
+        #[doc = "[pipeline#fast-bodies]: self::pipeline#fast-bodies"]
         #[doc = "[queries]: self::queries"]
         #[doc = "[queries#about-two-shapes-that-move]: self::queries#about-two-shapes-that-move"]
         $(#[doc = concat!(

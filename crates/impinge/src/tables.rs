@@ -37,6 +37,7 @@ use crate::narrow_phase::{
 };
 use crate::partitioning::{BoxTree, BoxTreeError, Question, Sweep};
 use crate::query::composite::{PartPoint, RayQuestion, each_hit, is_crossed, nearest_part};
+pub use crate::query::mass::MassKernel;
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
 use crate::query::{
@@ -45,7 +46,9 @@ use crate::query::{
     time_of_pair, witness_in_world,
 };
 use crate::shape::{CompositeShape, FeatureId, FieldTable, Kind, MeshTable, ShapeHandle, Triangle};
-use crate::world::{ChangeList, Readers, WorldBody, WorldBroadPhase, WorldError};
+use crate::world::{
+    ChangeList, DirtyTree, DirtyVisitor, Readers, WorldBody, WorldBroadPhase, WorldError,
+};
 
 /// Function pointers to the entry points for one scalar and dimension.
 pub struct Tables<N: Space<D>, const D: usize> {
@@ -215,13 +218,23 @@ impl<N: Space<D>, const D: usize> PartitioningTables<N, D> {
 pub(crate) struct WorldTables<N: Space<D>, const D: usize> {
     pub(crate) new_broad_phase: fn(N) -> Box<WorldBroadPhase<N, D>>,
     pub(crate) set_isometry: SetIsometryFn<N, D>,
+    pub(crate) set_predicted: SetPredictedFn<N, D>,
     pub(crate) set_shape: fn(&mut WorldBody<N, D>, &mut ChangeList<N, D>, ShapeHandle<N, D>),
     pub(crate) set_query: fn(&mut WorldBody<N, D>, &mut ChangeList<N, D>, GeometricQueryType<N>),
+    pub(crate) set_skin: fn(&mut WorldBody<N, D>, &mut ChangeList<N, D>, N),
     pub(crate) flush: FlushFn<N, D>,
+    /// Making, changing and searching the tree of dirty objects.
+    pub(crate) new_dirty_tree: NewDirtyFn<N, D>,
+    pub(crate) put_dirty: fn(&mut DirtyTree<D>, u32, &Aabb<N, D>),
+    pub(crate) take_dirty: fn(&mut DirtyTree<D>, u32),
+    pub(crate) dirty_by_time: SearchDirtyFn<N, D, Sweep<N, D>>,
+    pub(crate) dirty_by_distance: SearchDirtyFn<N, D, Aabb<N, D>>,
     /// A ray, a point and a point once more, against one object.
     pub(crate) cast_ray: CastRayFn<N, D>,
     pub(crate) project: ProjectFn<N, D>,
     pub(crate) holds: fn(&WorldBody<N, D>, &Point<N, D>) -> bool,
+    pub(crate) update_pair:
+        fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, [u32; 2], &mut Events) -> bool,
     pub(crate) pair_started: fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, u32, u32),
     pub(crate) begin_and_end_pairs:
         fn(&mut DefaultNarrowPhase<N, D>, &ObjectTable<N, D>, &[Interaction], &mut Events),
@@ -236,8 +249,17 @@ type SetIsometryFn<N, const D: usize> = fn(
     &mut ChangeList<N, D>,
     <N as Space<D>>::Isometry,
 ) -> Result<(), WorldError>;
+type NewDirtyFn<N, const D: usize> =
+    fn(bool, &mut dyn Iterator<Item = (u32, Aabb<N, D>)>) -> DirtyTree<D>;
+type SetPredictedFn<N, const D: usize> = fn(
+    &mut WorldBody<N, D>,
+    &mut ChangeList<N, D>,
+    <N as Space<D>>::Isometry,
+    <N as Space<D>>::Isometry,
+) -> Result<(), WorldError>;
 type FlushFn<N, const D: usize> =
-    fn(&mut WorldBody<N, D>, &mut ChangeList<N, D>, &mut Readers<'_, N, D>);
+    fn(&mut ChangeList<N, D>, &mut WorldBody<N, D>, &mut Readers<'_, N, D>);
+type SearchDirtyFn<N, const D: usize, Q> = fn(&DirtyTree<D>, &Q, N, &mut DirtyVisitor<'_, N>);
 type CastRayFn<N, const D: usize> =
     fn(&WorldBody<N, D>, &Ray<N, D>, N, bool) -> Option<RayIntersection<N, D>>;
 type ProjectFn<N, const D: usize> =
@@ -248,12 +270,20 @@ impl<N: Space<D>, const D: usize> WorldTables<N, D> {
         Self {
             new_broad_phase,
             set_isometry: WorldBody::set_isometry,
+            set_predicted: WorldBody::set_predicted,
             set_shape: WorldBody::set_shape,
             set_query: WorldBody::set_query,
-            flush: WorldBody::flush,
+            set_skin: WorldBody::set_skin,
+            flush: ChangeList::flush,
+            new_dirty_tree: DirtyTree::new,
+            put_dirty: DirtyTree::put,
+            take_dirty: DirtyTree::take,
+            dirty_by_time: DirtyTree::by_time,
+            dirty_by_distance: DirtyTree::by_distance,
             cast_ray: WorldBody::cast_ray,
             project: WorldBody::project,
             holds: WorldBody::holds,
+            update_pair: DefaultNarrowPhase::update_pair,
             pair_started: DefaultNarrowPhase::pair_started,
             begin_and_end_pairs: DefaultNarrowPhase::begin_and_end_pairs,
             pair_stopped: DefaultNarrowPhase::pair_stopped,

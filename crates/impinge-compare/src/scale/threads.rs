@@ -11,8 +11,9 @@ use crate::Arguments;
 use crate::build::world::{self, World};
 use crate::table::Table;
 use crate::world::contender::{Change, Contender, Entrant, KINDS, Reading, race};
+use crate::world::ours;
 use crate::world::rapier::{plane, space};
-use crate::world::{asking_for_contacts, ours};
+use crate::world::stages::asking_for_contacts;
 
 /// The boxes of the pile; those that drift apart are ten times as many.
 const PILE: usize = 10_000;

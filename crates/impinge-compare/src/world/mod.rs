@@ -61,7 +61,7 @@ mod engines;
 pub mod ours;
 mod parry_tree;
 pub mod rapier;
-mod stages;
+pub mod stages;
 
 #[cfg(feature = "jolt")]
 use impinge_compare_c::Jolt;
@@ -71,7 +71,7 @@ use impinge_compare_c::Recycling;
 use ::impinge;
 use contender::{Contender, Entrant, KINDS, race};
 use impinge_scenes::Scene;
-pub use stages::{PREDICTION, asking_for_contacts};
+pub use stages::PREDICTION;
 use stages::{Stage, plane_stages, space_stages, stages};
 
 use crate::Arguments;

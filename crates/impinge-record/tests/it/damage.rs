@@ -110,8 +110,8 @@ fn all_shapes_with_damage() {
 fn other_versions_scalars_and_dimensions() {
     let bytes = small();
     let mut later = bytes.clone();
-    later[8] = 3;
-    let version = ReadError { offset: 8, problem: Problem::Version { found: 3 } };
+    later[8] = 4;
+    let version = ReadError { offset: 8, problem: Problem::Version { found: 4 } };
     assert_eq!(outcome(&later), Err(version));
     let other = validate::<f64, 2, u32>(&bytes, &<f64 as Stage<2>>::registry());
     let other = other.expect_err("the numbers are of f32");

@@ -1,6 +1,7 @@
 //! Recordings: the same bits when replayed, in every direction, and errors for all other bytes.
 
 mod damage;
+mod engine;
 mod golden;
 mod growing;
 mod packing;

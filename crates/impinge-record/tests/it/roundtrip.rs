@@ -106,6 +106,6 @@ fn events_do_not_depend_on_key_frames() {
 fn the_header_says_what_it_is() {
     let bytes = Scene::<f64, 2>::new().recorder.finish().bytes;
     let header = Header::read(&bytes).expect("a header");
-    assert_eq!((header.version, header.scalar_bytes, header.dimension), (2, 8, 2));
+    assert_eq!((header.version, header.scalar_bytes, header.dimension), (3, 8, 2));
     assert!(header.writer.starts_with("impinge "), "{header:?}");
 }

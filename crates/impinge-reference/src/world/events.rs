@@ -48,7 +48,8 @@ pub struct ProximityEvent {
 }
 
 /// All events of one update. In both lists the events of removed objects come first, sorted by
-/// pair; then those of living objects, sorted by pair. A pair has at most one event in each list.
+/// pair; then those of living objects, sorted by pair. Pairs computed between updates count to the removals;
+/// only such a pair can have several events in a list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Events {
     /// Starts and stops of contacts.
@@ -93,10 +94,17 @@ impl Events {
         }
     }
 
+    /// Appends the events of a later update.
+    pub fn append(&mut self, later: &Self) {
+        self.contacts.extend(&later.contacts);
+        self.proximities.extend(&later.proximities);
+    }
+
     /// Sorts what was collected while objects were removed, and remembers how much that is.
     pub(super) fn close_removals(&mut self) {
+        // Events of one pair stay in the order in which they came.
         self.contacts.sort_by_key(|event| event.pair());
-        self.proximities.sort();
+        self.proximities.sort_by_key(|event| (event.collider1, event.collider2));
         self.removed_contacts = self.contacts.len();
         self.removed_proximities = self.proximities.len();
     }

@@ -6,8 +6,8 @@
 //! - A handle is an index and a generation. A removed object's index is used again, the last freed
 //!   one first, with the next generation; while none is free the next index is the number of
 //!   objects ever added.
-//! - A pair may interact if the groups allow it and all filters agree. The filters see the two
-//!   indices, the smaller handle's first, and only for pairs that the groups allow.
+//! - A pair may interact if not both objects are fixed, the groups allow it and all filters agree. The
+//!   filters see the two indices, the smaller handle's first, and only for pairs that the groups allow.
 //! - If both objects query contacts, the pair is touching when the signed distance is at most the
 //!   sum of the predictions, and finite: solids that overlap without bound have no contact points.
 //! - If at least one queries proximity only the proximity is computed: intersecting when the signed
@@ -19,6 +19,9 @@
 //! - Removing an object ends its pairs at once: what was touching stops, what was not disjoint
 //!   becomes disjoint, as of the last update. These events come first in the batch of the next
 //!   update. An object that came and went between two updates leaves no trace.
+//! - One pair can be computed between two updates: at the present poses, with the shapes and query types of
+//!   the last update. What that changes is reported first by the next update, too, and it goes on from there.
+//! - A skin adds to the distance up to which an object that queries contacts touches others that do.
 //! - Changes have no effect on events and pair states before the next update; queries see them at
 //!   once.
 //! - Angular predictions add contact points but do not make contact, and self-collision is not
@@ -74,6 +77,10 @@ pub struct Object<const D: usize, S> {
     pub groups: Groups,
     /// What is computed.
     pub query_type: QueryType,
+    /// It does not interact with others that are fixed.
+    pub is_fixed: bool,
+    /// How far from its surface contacts are measured.
+    pub skin: f64,
 }
 
 type Filter = Box<dyn Fn(usize, usize) -> bool>;
@@ -87,8 +94,10 @@ pub struct NaiveWorld<const D: usize, S = Solid<D>> {
     filters: BTreeMap<String, Filter>,
     /// The pairs that were not in the default state at the last update.
     states: BTreeMap<(Handle, Handle), PairState>,
-    /// From removals since the last update.
+    /// From removals and computed pairs since the last update.
     queued: Events,
+    /// The objects as of the last update.
+    updated: BTreeMap<Handle, Object<D, S>>,
 }
 
 /// A place in the table.
@@ -123,6 +132,7 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
             filters: BTreeMap::new(),
             states: BTreeMap::new(),
             queued: Events::default(),
+            updated: BTreeMap::new(),
         }
     }
 
@@ -141,7 +151,9 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         let handle = Handle { index, generation: self.slots[index].generation };
         let order = self.added;
         self.added += 1;
-        self.slots[index].object = Some(Object { handle, order, pose, shape, groups, query_type });
+        let (is_fixed, skin) = (false, 0.0);
+        let object = Object { handle, order, pose, shape, groups, query_type, is_fixed, skin };
+        self.slots[index].object = Some(object);
         handle
     }
 
@@ -213,6 +225,22 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         self.object_mut(handle).map(|object| object.query_type = query)
     }
 
+    /// Marks an object as fixed, or takes the mark away.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_fixed(&mut self, handle: Handle, is_fixed: bool) -> Result<(), StaleHandle> {
+        self.object_mut(handle).map(|object| object.is_fixed = is_fixed)
+    }
+
+    /// Gives an object another skin.
+    ///
+    /// # Errors
+    /// If the handle is stale.
+    pub fn set_skin(&mut self, handle: Handle, skin: f64) -> Result<(), StaleHandle> {
+        self.object_mut(handle).map(|object| object.skin = skin)
+    }
+
     fn object_mut(&mut self, handle: Handle) -> Result<&mut Object<D, S>, StaleHandle> {
         let object = self.slots.get_mut(handle.index).and_then(|slot| slot.object.as_mut());
         object.filter(|object| object.handle == handle).ok_or(StaleHandle(handle))
@@ -230,7 +258,7 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
 }
 
 /// Pairs and events.
-impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
+impl<const D: usize, S: Shape<D> + Clone> NaiveWorld<D, S> {
     /// Computes all pairs and yields what is different since the update before.
     pub fn update(&mut self) -> Events {
         let mut events = std::mem::take(&mut self.queued);
@@ -242,7 +270,29 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
             let state = |states: &BTreeMap<_, _>| states.get(&pair).copied().unwrap_or_default();
             events.push_change(pair, state(&before), state(&self.states));
         }
+        self.updated = self.objects().map(|object| (object.handle, object.clone())).collect();
         events
+    }
+
+    /// Computes the pair of two objects, the smaller handle first, that were there at the last update and were
+    /// a pair then; at the present poses.
+    ///
+    /// # Errors
+    /// The first handle that is stale, or of an object that the last update has not seen.
+    pub fn update_pair(&mut self, handle1: Handle, handle2: Handle) -> Result<(), StaleHandle> {
+        let moved = |handle: Handle| {
+            let object = self.object(handle).zip(self.updated.get(&handle));
+            let (now, then) = object.ok_or(StaleHandle(handle))?;
+            Ok(Object { pose: now.pose, ..then.clone() })
+        };
+        let (pair, objects) = ((handle1, handle2), (moved(handle1)?, moved(handle2)?));
+        let (before, after) =
+            (self.states.remove(&pair), self.compute_interaction(&objects.0, &objects.1));
+        self.queued.push_change(pair, before.unwrap_or_default(), after);
+        if after != PairState::default() {
+            self.states.insert(pair, after);
+        }
+        Ok(())
     }
 
     /// The pairs that had contact points at the last update, sorted, the smaller handle first.
@@ -259,11 +309,12 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
         close.map(|(&(handle1, handle2), state)| (handle1, handle2, state.proximity)).collect()
     }
 
-    /// Whether groups and filters allow a pair.
+    /// Whether groups, filters and marks of fixed objects allow a pair.
     #[must_use]
     pub fn is_allowed(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> bool {
         let uids = (object1.handle.index, object2.handle.index);
-        object1.groups.can_interact(object2.groups)
+        !(object1.is_fixed && object2.is_fixed)
+            && object1.groups.can_interact(object2.groups)
             && self.filters.values().all(|filter| filter(uids.0, uids.1))
     }
 
@@ -288,16 +339,23 @@ impl<const D: usize, S: Shape<D>> NaiveWorld<D, S> {
     }
 
     fn compute_state(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> PairState {
+        if self.is_allowed(object1, object2) {
+            self.compute_interaction(object1, object2)
+        } else {
+            PairState::default()
+        }
+    }
+
+    /// The state of a pair that is allowed.
+    fn compute_interaction(&self, object1: &Object<D, S>, object2: &Object<D, S>) -> PairState {
         use QueryType::{Contacts, Proximity};
         let mut state = PairState::default();
-        if !self.is_allowed(object1, object2) {
-            return state;
-        }
         let query_types = (object1.query_type, object2.query_type);
         let margin = match query_types {
-            (Contacts(margin1), Contacts(margin2)) | (Proximity(margin1), Proximity(margin2)) => {
-                margin1 + margin2
+            (Contacts(prediction1), Contacts(prediction2)) => {
+                prediction1 + prediction2 + object1.skin + object2.skin
             }
+            (Proximity(margin1), Proximity(margin2)) => margin1 + margin2,
             (Proximity(margin), Contacts(_)) | (Contacts(_), Proximity(margin)) => margin,
         };
         if is_far(object1, object2, margin) {

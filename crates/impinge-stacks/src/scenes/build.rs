@@ -63,17 +63,17 @@ pub(crate) fn flat_mesh() -> SceneShape<3> {
     mesh([12, 12], 1.0, |_, _| 0.0)
 }
 
-/// A height field of `cells` × `cells` cells over a square of edge `width`, with the heights by a function of
+/// A height field of `columns` × `rows` cells over a rectangle around the origin, with the heights by a function of
 /// column and row.
 pub(crate) fn field(
-    cells: usize,
-    width: f64,
+    [columns, rows]: [usize; 2],
+    [width, depth]: [f64; 2],
     height: impl Fn(usize, usize) -> f64,
 ) -> SceneShape<3> {
-    let counts = [cells + 1; 2];
-    let heights = (0..=cells).flat_map(|row| (0..=cells).map(move |column| (column, row)));
-    let heights = heights.map(|(column, row)| height(column, row)).collect();
-    SceneShape::HeightField { counts, heights, extents: [width, 1.0, width] }
+    let counts = [rows + 1, columns + 1];
+    let corners = (0..=rows).flat_map(|row| (0..=columns).map(move |column| (column, row)));
+    let heights = corners.map(|(column, row)| height(column, row)).collect();
+    SceneShape::HeightField { counts, heights, extents: [width, 1.0, depth] }
 }
 
 /// Hollows in which solids come to rest: one to every two cells in either direction.

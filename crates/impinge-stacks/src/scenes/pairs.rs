@@ -21,8 +21,7 @@ pub fn pairs3() -> Vec<Stack<3>> {
         Stack::new(name, Kind::Rest).fixed(lower, at).with(upper, placement)
     };
     let on_cube = |name, tangent| pair(name, cube(), below, cube(), spun([0.0, up, 0.0], tangent));
-    let ground = [0.0; 3];
-    let on_diagonal = [0.75, up, 0.75];
+    let (ground, on_diagonal) = ([0.0; 3], [0.75, up, 0.75]);
     vec![
         on_cube("cube on an equal cube", 0.0),
         on_cube("cube turned by pi/4", EIGHTH_TURN),
@@ -31,7 +30,7 @@ pub fn pairs3() -> Vec<Stack<3>> {
         pair("cube on a flat mesh", flat_mesh(), ground, cube(), Placement::at(on_diagonal)),
         pair(
             "cube on a field",
-            field(12, 12.0, |_, _| 0.0),
+            field([12; 2], [12.0; 2], |_, _| 0.0),
             ground,
             cube(),
             spun(on_diagonal, TURN_03),

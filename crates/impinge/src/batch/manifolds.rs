@@ -29,9 +29,8 @@ pub(super) fn manifolds<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     out.clear();
     let sides = batch.prepared();
-    let angle = prediction.angular1() + prediction.angular2();
     let max_points = max_points.unwrap_or(conforming_points::<D>()).max(1);
-    let request = ManifoldRequest::new(prediction.linear(), angle, max_points);
+    let request = prediction.request(max_points);
     let work = |range, rows: &mut ManifoldRows<N, D>| chunk(&sides, range, &request, rows);
     Progress::new(control).collect(batch.len(), work, |rows| out.append(rows))
 }
@@ -131,7 +130,8 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
     /// Appends all points.
     fn write(&self, rows: &mut ManifoldRows<N, D>) {
         let pose1 = &self.placed[0].pose;
-        let placement = Placement { pose1, pair: 0, is_swapped: self.is_swapped };
+        let placement =
+            Placement { pose1, pair: 0, is_swapped: self.is_swapped, skins: [N::ZERO; 2] };
         let pair = PairRef::new(self, [self.is_swapped, !self.is_swapped].map(u32::from));
         if let Some(contacts) = &self.composite {
             let views = (0..).map_while(|patch| contacts.view(patch, placement, pair));

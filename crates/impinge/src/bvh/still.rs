@@ -1,4 +1,4 @@
-//! Trees of boxes that stay where they are: made at once, in an order that costs more and serves longer.
+//! Trees of boxes without a past: made at once, in an order that costs more and serves longer, and changed box by box.
 //!
 //! Ranges of slots are cut where the surface area heuristic likes it best (Goldsmith and Salmon 1987;
 //! binned as by Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), but only
@@ -60,6 +60,24 @@ impl<const D: usize> Tree<D> {
         tree.refit_layers(&[]);
         tree.settle();
         tree
+    }
+
+    /// Gives an object a box as if it had always had it, whether it is in the tree or not. Searches are right at
+    /// once: what is above its block follows, which takes as many steps as there are layers.
+    ///
+    /// An object that would make its block much larger gets another place.
+    pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
+        let slot = self.slot(id);
+        if slot.is_some_and(|slot| self.has_room_for(slot / LANES, bounds)) {
+            self.set_still(id, bounds);
+        } else {
+            if slot.is_some() {
+                self.remove(id);
+            }
+            self.insert_still(id, bounds);
+        }
+        self.refit();
+        self.settle();
     }
 }
 

@@ -9,7 +9,7 @@ use crate::memory::Look;
 
 /// No id, or no slot.
 pub(crate) const NONE: u32 = u32::MAX;
-/// By how much the surface of a leaf block may grow with an object that takes a free lane.
+/// By how much the surface of a leaf block may grow with an object that comes or moves.
 const ROOM: f64 = 0.3;
 /// A tree of more leaf blocks than this gives its memory back when it is empty.
 const KEPT_LEAVES: usize = 256;
@@ -216,7 +216,7 @@ impl<const D: usize> Tree<D> {
         self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
 
-    fn slot(&self, id: u32) -> Option<usize> {
+    pub(super) fn slot(&self, id: u32) -> Option<usize> {
         let slot = self.slots.get(id as usize).copied().filter(|&slot| slot != NONE)?;
         Some(slot as usize)
     }
@@ -370,13 +370,20 @@ impl<const D: usize> Tree<D> {
                 }
             }
             block = least.1;
-            let own = children.get(block)?.half_surface();
-            if layer == 1 && own > 0.0 && least.0 > ROOM * own {
+            if layer == 1 && !self.has_room_for(block, bounds) {
                 return None;
             }
         }
         let slots = self.ids.get(block * LANES..(block + 1) * LANES)?;
         Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
+    }
+
+    /// A leaf block does not grow much with a box in it; false if there is no such block.
+    pub(super) fn has_room_for(&self, block: usize, bounds: &Bounds<D>) -> bool {
+        self.layers[0].bounds.get(block).is_some_and(|block| {
+            let own = block.half_surface();
+            own == 0.0 || block.merged(bounds).half_surface() - own <= ROOM * own
+        })
     }
 
     /// A lane of the leaf block is free. The search keeps no count of it, since it is short.

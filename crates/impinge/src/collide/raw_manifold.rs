@@ -50,9 +50,9 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> RawPoint<N, D> {
-    /// The same contact with the second solid first, which is placed in the frame of the first.
-    pub(crate) fn flip(&mut self, pose12: &Pose<N, D>, normal: &Vector<N, D>) {
-        self.point1 = pose12.inverse_point(&(self.point1 + normal * self.distance));
+    /// The same contact with the second solid first, in the frame of which the first one lies.
+    pub(crate) fn flip(&mut self, pose21: &Pose<N, D>, normal: &Vector<N, D>) {
+        self.point1 = pose21.point(&(self.point1 + normal * self.distance));
         core::mem::swap(&mut self.feature1, &mut self.feature2);
         self.code = 0;
     }
@@ -65,8 +65,8 @@ impl<N: Real, const D: usize> Default for RawPoint<N, D> {
     }
 }
 
-/// A set of points with one normal, in the frame of the first solid. The points stand behind what readers need:
-/// who reads few of them reads one piece of memory.
+/// A set of points with one normal, in the frame of the first solid. The points stand behind what readers need: who
+/// reads few of them reads one piece of memory.
 #[derive(Clone, Debug, PartialEq)]
 #[repr(C)]
 pub(crate) struct RawManifold<N: Real, const D: usize> {
@@ -77,8 +77,8 @@ pub(crate) struct RawManifold<N: Real, const D: usize> {
     /// No point means that the solids are farther apart than the prediction.
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
     /// The second solid in the frame of the first when the points were found, by which they are found again on the
-    /// second. Infinitely far away where that is not kept: a ball does not turn, so its own frame tells all.
-    pub(crate) pose12: Pose<N, D>,
+    /// second. `None` where that is not kept: of boxes, balls and segments, whose vertices are known by their ids.
+    pub(crate) pose12: Option<Pose<N, D>>,
 }
 
 /// The numbers given to the contacts of one pair, each once.
@@ -102,7 +102,7 @@ impl PairIds {
 impl<N: Real, const D: usize> Default for RawManifold<N, D> {
     fn default() -> Self {
         let (normal, points) = (Vector::<N, D>::zeros(), SmallVec::new());
-        Self { normal, points, ids: PairIds::default(), pose12: Pose::identity() }
+        Self { normal, points, ids: PairIds::default(), pose12: None }
     }
 }
 
@@ -119,18 +119,14 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
         }
     }
 
-    /// The same contacts with the second solid first.
-    pub(crate) fn flip(&mut self) {
+    /// The same contacts with the second solid first; `pose21` is how the solids lie now, the first in the frame of the
+    /// second. Where the old pose is not kept, the points stay where they are on the first solid.
+    pub(crate) fn flip(&mut self, pose21: &Pose<N, D>) {
         let Self { normal, pose12, points, .. } = self;
-        points.iter_mut().for_each(|point| point.flip(pose12, normal));
-        *normal = -pose12.inverse_vector(normal);
-        *pose12 = pose12.inverse();
-    }
-
-    /// Says that the pose of the solids is not kept.
-    #[inline(always)]
-    pub(crate) fn forget_pose(&mut self) {
-        self.pose12.translation[0] = N::INFINITY;
+        let old21 = pose12.as_ref().map_or(*pose21, Pose::inverse);
+        points.iter_mut().for_each(|point| point.flip(&old21, normal));
+        *normal = -old21.vector(normal);
+        *pose12 = pose12.map(|_| old21);
     }
 
     /// The index of the deepest point, the first of equals; 0 for an empty manifold.

@@ -180,11 +180,12 @@ pub mod world {
 
 /// Questions about one solid or two.
 pub mod query {
-    pub use crate::narrow_phase::ContactPrediction;
+    pub use crate::narrow_phase::{ContactPrediction, contact_manifolds};
     pub use crate::query::{
-        Barycentric, ContactId, ImpactOptions, ImpactStatus, PointLocation, PointQuery, Proximity,
-        RayCast, RigidMotion, closest_points, contact, distance, impact, nonlinear_time_of_impact,
-        proximity, time_of_impact, witness,
+        Barycentric, ContactId, ImpactOptions, ImpactStatus, MassError, PointLocation, PointQuery,
+        Proximity, RayCast, RigidMotion, closest_points, contact, distance, impact,
+        mass_properties, mass_properties_with, nonlinear_time_of_impact, proximity, time_of_impact,
+        witness,
     };
 
     /// A half-line.
@@ -207,6 +208,8 @@ pub mod query {
     pub type ConstantVelocities<N> = crate::query::ConstantVelocities<N, 2>;
     /// When two moving solids first touch, and where.
     pub type Impact<N> = crate::query::Impact<N, 2>;
+    /// The mass, centre of mass and inertia of a body.
+    pub type MassProperties<N> = crate::query::MassProperties<N, 2>;
     /// How a contact moves with its solids.
     pub type ContactKinematic<N> = crate::query::ContactKinematic<N, 2>;
     /// One solid's share of a contact, for algorithms of one's own.

@@ -8,6 +8,7 @@
 //! trigonometry, and [`min`]/[`max`] are compare-and-select.
 
 pub(crate) mod arrays;
+pub(crate) mod eigen;
 pub(crate) mod exact;
 #[cfg(any(
     all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
@@ -33,7 +34,7 @@ pub use nalgebra::{AbstractRotation, Isometry, Isometry2, Isometry3, Unit};
 
 pub use pose::Pose;
 pub use real::Real;
-pub(crate) use real::{f32_above, f32_below};
+pub(crate) use real::{f32_above, f32_below, f64_power_of_two_below};
 pub(crate) use simd::Wide;
 pub use space::Space;
 pub use vector::{

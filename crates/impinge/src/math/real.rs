@@ -139,8 +139,7 @@ impl Real for f64 {
 
     #[inline]
     fn power_of_two_below(self) -> Self {
-        let power = Self::from_bits(self.to_bits() & 0x7ff0_0000_0000_0000);
-        if power.is_finite() { max(power, Self::MIN_POSITIVE) } else { 1.0 }
+        f64_power_of_two_below(self)
     }
 
     #[inline]
@@ -150,6 +149,19 @@ impl Real for f64 {
 
     fn sine_cosine(self) -> (Self, Self) {
         libm::sincos(self)
+    }
+}
+
+/// [`Real::power_of_two_below`] of a double, which without the feature `f64` is no scalar of the library.
+#[inline]
+pub(crate) fn f64_power_of_two_below(value: f64) -> f64 {
+    let power = f64::from_bits(value.to_bits() & 0x7ff0_0000_0000_0000);
+    if !power.is_finite() {
+        1.0
+    } else if power > f64::MIN_POSITIVE {
+        power
+    } else {
+        f64::MIN_POSITIVE
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
 use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
-use crate::tables::Tables;
+use crate::tables::{MassKernel, Tables};
 use core::fmt::Debug;
 
 /// The scalar `Self` in `D` dimensions: implemented for every [`Real`] with `D` = 2 and `D` = 3.
@@ -40,6 +40,10 @@ pub trait Space<const D: usize>: Real {
     /// The entry points compiled in this crate for this scalar and dimension.
     #[doc(hidden)]
     fn tables() -> &'static Tables<Self, D>;
+
+    /// What is integrated differently by dimension; compiled where it is used.
+    #[doc(hidden)]
+    fn mass_kernel() -> MassKernel<Self, D>;
 }
 
 impl<N: Real> From<Isometry2<N>> for Pose<N, 2> {
@@ -87,6 +91,10 @@ impl<N: Real> Space<2> for N {
     fn tables() -> &'static Tables<N, 2> {
         N::plane()
     }
+
+    fn mass_kernel() -> MassKernel<N, 2> {
+        MassKernel::<N, 2>::in_plane()
+    }
 }
 
 impl<N: Real> Space<3> for N {
@@ -122,6 +130,10 @@ impl<N: Real> Space<3> for N {
     #[inline]
     fn tables() -> &'static Tables<N, 3> {
         N::space()
+    }
+
+    fn mass_kernel() -> MassKernel<N, 3> {
+        MassKernel::<N, 3>::in_space()
     }
 }
 

@@ -258,6 +258,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
                 let taken = self.lanes.contacts[usize::from(old)].swap_remove(place);
                 self.note_move(taken.moved, place);
                 let mut entry = taken.state;
+                let linear = table.beyond_skins(key, linear);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
                 entry.state.set_solids(shapes(table, key));
                 let group = &mut self.lanes.contacts[usize::from(new)];
@@ -267,6 +268,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             (Lane::Composites, Lane::Composites, PairQuery::Contacts { linear, angular }) => {
                 let entry = self.lanes.composites.state_mut(place);
                 entry.state.forget_shapes();
+                let linear = table.beyond_skins(key, linear);
                 entry.request = ManifoldRequest::new(linear, angular, max_points);
             }
             (Lane::Proximity(old), Lane::Proximity(new), PairQuery::Proximity { margin }) => {
@@ -311,6 +313,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         if let Some((lane, max_points)) = self.built_in_lane(table, key) {
             let (is_touching, change) = carried.into_touching();
             let number = self.ids.allocate();
+            let linear = table.beyond_skins(key, linear);
             let request = ManifoldRequest::new(linear, angular, max_points);
             let place = match lane {
                 Lane::Contacts(group) => {

@@ -79,10 +79,11 @@ pub struct ProximityEvent {
     pub new_status: Proximity,
 }
 
-/// The events of one update, and those that removals queue for the next.
+/// The events of one update, or of several that a world was told to keep, and those that removals and
+/// updates of single pairs queue for the next.
 ///
-/// Order within a batch: first what removals queued, then all else; each part sorted by handles,
-/// events of the same pair in the order in which they happened.
+/// Order within the batch of an update: first the queued events, then all else; each part sorted by
+/// handles, events of the same pair in the order in which they happened.
 ///
 /// ```
 /// use impinge::dim2::events::Events;
@@ -95,8 +96,8 @@ pub struct ProximityEvent {
 pub struct Events {
     contacts: Vec<ContactEvent>,
     proximities: Vec<ProximityEvent>,
-    /// How many events at the front of each list came from removals.
-    removed: (usize, usize),
+    /// How many events at the front of each list are in order: kept ones, and those that were queued.
+    sorted: (usize, usize),
 }
 
 impl fmt::Debug for Events {
@@ -109,24 +110,46 @@ impl fmt::Debug for Events {
 }
 
 impl Events {
-    /// Starts the next batch with what the removals since the last one have left in `queued`.
-    pub(crate) fn begin_batch(&mut self, queued: &mut Self) {
-        queued.sort();
+    /// Forgets all events.
+    pub(crate) fn clear(&mut self) {
         self.contacts.clear();
-        self.contacts.append(&mut queued.contacts);
         self.proximities.clear();
-        self.proximities.append(&mut queued.proximities);
-        self.removed = (self.contacts.len(), self.proximities.len());
     }
 
-    /// Brings the events after the removals' into canonical order. What a pair was ends before what
-    /// it is now begins, so of the two events that a pair may have the one that begins is the later.
+    /// Starts the next batch, behind the events that are there, with those that wait in `queued`: sorted by
+    /// handles, and of one pair as they happened.
+    pub(crate) fn begin_batch(&mut self, queued: &mut Self) {
+        queued.contacts.sort_by_key(ContactEvent::handles);
+        queued.proximities.sort_by_key(|event| (event.collider1, event.collider2));
+        self.contacts.append(&mut queued.contacts);
+        self.proximities.append(&mut queued.proximities);
+        self.sorted = (self.contacts.len(), self.proximities.len());
+    }
+
+    /// Brings the events of the update into canonical order. What a pair was ends before what it is now
+    /// begins, so of the two events that a pair may have the one that begins is the later.
     pub(crate) fn sort(&mut self) {
         let begins = |event: &ContactEvent| matches!(event, ContactEvent::Started(..));
-        self.contacts[self.removed.0..].sort_unstable_by_key(|e| (e.handles(), begins(e)));
+        self.contacts[self.sorted.0..].sort_unstable_by_key(|e| (e.handles(), begins(e)));
         let begins = |event: &ProximityEvent| event.prev_status == Proximity::Disjoint;
-        self.proximities[self.removed.1..]
+        self.proximities[self.sorted.1..]
             .sort_unstable_by_key(|e| (e.collider1, e.collider2, begins(e)));
+    }
+
+    /// The objects that events name from some place in each list on; an object as often as it is named.
+    pub(crate) fn named_from(
+        &self,
+        (contacts, proximities): (usize, usize),
+    ) -> impl Iterator<Item = CollisionObjectHandle> + '_ {
+        let contacts = self.contacts[contacts..].iter().map(ContactEvent::handles);
+        let proximities = self.proximities[proximities..].iter();
+        let proximities = proximities.map(|event| (event.collider1, event.collider2));
+        contacts.chain(proximities).flat_map(|(first, second)| [first, second])
+    }
+
+    /// How many events of each kind there are.
+    pub(crate) const fn counts(&self) -> (usize, usize) {
+        (self.contacts.len(), self.proximities.len())
     }
 
     /// How many events there are.

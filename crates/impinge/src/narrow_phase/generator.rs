@@ -69,6 +69,40 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
     }
 }
 
+impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
+    /// Computes the contacts of two solids that may be within the prediction; `number` names the pair.
+    fn refresh(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>, number: u64) {
+        let tables = N::tables();
+        let mut old = core::mem::take(&mut self.manifolds);
+        if posed.has_composite() {
+            // The shapes are given anew at each call.
+            self.composite.forget_shapes();
+            (tables.update_composites)(&mut self.composite, posed, request);
+            self.manifolds = (tables.composite_manifolds)(&self.composite, posed, number, old);
+        } else {
+            (tables.update_contacts)(&mut self.state, posed, request);
+            let manifold = old.pop().unwrap_or_default();
+            let manifold = (tables.public_manifold)(&self.state, posed, number, manifold);
+            old.clear();
+            if !manifold.is_empty() {
+                old.push(manifold);
+            }
+            self.manifolds = old;
+        }
+    }
+
+    /// The manifolds of two solids that may be within the prediction, computed from nothing. The pair has
+    /// the number 0.
+    pub(super) fn once(
+        mut self,
+        posed: &Posed<'_, N, D>,
+        prediction: &ContactPrediction<N>,
+    ) -> Vec<ContactManifold<N, D>> {
+        self.refresh(posed, &prediction.request(self.max_points), 0);
+        self.manifolds
+    }
+}
+
 impl<N: Real, const D: usize> fmt::Debug for PairManifoldGenerator<N, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("PairManifoldGenerator")
@@ -96,30 +130,15 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
         ids: &mut IdAllocator,
     ) -> bool {
         let number = *self.number.get_or_insert_with(|| ids.allocate());
-        let angle = prediction.angular1() + prediction.angular2();
-        let request = ManifoldRequest::new(prediction.linear(), angle, self.max_points);
-        let Some([pose1, pose2]) = poses_within([ma, mb], [a, b], prediction.linear()) else {
-            self.state.clear();
-            self.manifolds.clear();
-            return true;
-        };
-        let posed = Posed::new([&pose1, &pose2], [a, b]);
-        let tables = N::tables();
-        let mut old = core::mem::take(&mut self.manifolds);
-        if posed.has_composite() {
-            // The shapes are given anew at each call.
-            self.composite.forget_shapes();
-            (tables.update_composites)(&mut self.composite, &posed, &request);
-            self.manifolds = (tables.composite_manifolds)(&self.composite, &posed, number, old);
-        } else {
-            (tables.update_contacts)(&mut self.state, &posed, &request);
-            let manifold = old.pop().unwrap_or_default();
-            let manifold = (tables.public_manifold)(&self.state, &posed, number, manifold);
-            old.clear();
-            if !manifold.is_empty() {
-                old.push(manifold);
+        let request = prediction.request(self.max_points);
+        match poses_within([ma, mb], [a, b], prediction.linear()) {
+            Some([pose1, pose2]) => {
+                self.refresh(&Posed::new([&pose1, &pose2], [a, b]), &request, number);
             }
-            self.manifolds = old;
+            None => {
+                self.state.clear();
+                self.manifolds.clear();
+            }
         }
         true
     }

@@ -25,7 +25,8 @@ impl IdAllocator {
         Self { next: 0 }
     }
 
-    /// The next number.
+    /// The next number. It is never `u64::MAX`, the number of [`ContactId::NULL`](crate::query::ContactId::NULL):
+    /// 2⁶⁴ pairs are more than any program makes.
     pub fn allocate(&mut self) -> u64 {
         self.next += 1;
         self.next - 1

@@ -22,6 +22,8 @@ mod pair_batch;
 mod query_type;
 mod reuse;
 mod state;
+mod stateless;
+mod substep;
 mod traits;
 mod update;
 mod view;
@@ -40,6 +42,7 @@ pub use query_type::{ContactQuery, GeometricQueryType, ProximityQuery};
 pub(crate) use query_type::{PackedQuery, PairQuery};
 pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts, Posed, proximity_of};
+pub use stateless::contact_manifolds;
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,

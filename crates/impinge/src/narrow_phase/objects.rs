@@ -3,6 +3,8 @@
 
 use core::fmt;
 
+use super::group::PairKey;
+use super::substep::PairSolids;
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::collide::far::ReachBounds;
 use crate::math::{Pose, Real, Space};
@@ -65,6 +67,10 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     changed: Vec<u32>,
     /// How many rows were lent since they were in order.
     lent: usize,
+    /// The pairs that were computed since the last update, sorted by key.
+    pub(super) substeps: Vec<PairSolids<N, D>>,
+    /// By handle index, as long as the last object with a skin needs.
+    pub(super) skins: Vec<N>,
 }
 
 impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
@@ -77,9 +83,9 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
 /// What every query of a pair reads of an object: of `f32` in 3D one cache line.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-struct ObjectSolid<N: Real, const D: usize> {
-    pose: Pose<N, D>,
-    shape: ShapeHandle<N, D>,
+pub(super) struct ObjectSolid<N: Real, const D: usize> {
+    pub(super) pose: Pose<N, D>,
+    pub(super) shape: ShapeHandle<N, D>,
 }
 
 /// One row of the table.
@@ -111,11 +117,15 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             free: Vec::new(),
             changed: Vec::new(),
             lent: 0,
+            substeps: Vec::new(),
+            skins: Vec::new(),
         }
     }
 
-    /// Forgets which rows were written: those written from now on are the changed ones.
+    /// Forgets which rows were written: those written from now on are the changed ones. All pairs are read by
+    /// the rows.
     pub(crate) fn begin_update(&mut self) {
+        self.substeps.clear();
         for index in self.changed.drain(..) {
             if let Some(row) = self.rows.get(index as usize).filter(|&&row| row != NONE) {
                 self.is_written[*row as usize] = false;
@@ -195,6 +205,44 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
+    /// Exchanges the pose in an object's row, which does not count as written; answers the one that was there.
+    pub(super) fn replace_pose(
+        &mut self,
+        index: u32,
+        (pose, isometry): (Pose<N, D>, N::Isometry),
+    ) -> (Pose<N, D>, N::Isometry) {
+        let row = self.row(index);
+        let pose = core::mem::replace(&mut self.solids[row].pose, pose);
+        (pose, core::mem::replace(&mut self.isometries[row], isometry))
+    }
+
+    /// Says how far from its surface the contacts of an object are measured.
+    pub(crate) fn set_skin(&mut self, index: u32, skin: N) {
+        let (index, len) = (index as usize, self.skins.len());
+        if skin > N::ZERO {
+            self.skins.resize(len.max(index + 1), N::ZERO);
+        }
+        if let Some(known) = self.skins.get_mut(index) {
+            *known = skin;
+        }
+    }
+
+    /// How far from its surface the contacts of an object are measured, as of the last update.
+    pub(crate) fn skin(&self, index: u32) -> N {
+        self.skins.get(index as usize).copied().unwrap_or(N::ZERO)
+    }
+
+    /// The skins of a pair.
+    pub(super) fn skins_of(&self, key: PairKey) -> [N; 2] {
+        key.map(|object| self.skin(object))
+    }
+
+    /// The distance of two solids up to which they have contacts, if it is `linear` beyond their skins.
+    pub(super) fn beyond_skins(&self, key: PairKey, linear: N) -> N {
+        let [first, second] = self.skins_of(key);
+        linear + (first + second)
+    }
+
     /// The objects whose rows were written since the last update began.
     pub(crate) fn changed(&self) -> &[u32] {
         &self.changed
@@ -262,6 +310,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         look.fit(&mut self.isometries);
         look.fit(&mut self.is_written);
         look.trim(&mut self.changed);
+        look.fit(&mut self.skins);
     }
 
     /// What is wrong with the rows, if anything.
@@ -284,6 +333,11 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     #[inline]
     pub(crate) fn pose(&self, index: u32) -> &Pose<N, D> {
         &self.solids[self.row(index)].pose
+    }
+
+    /// The shape and the pose at the last update.
+    pub(super) fn solid(&self, index: u32) -> &ObjectSolid<N, D> {
+        &self.solids[self.row(index)]
     }
 
     /// The pose at the last update, as the user gave it.

@@ -121,6 +121,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         if self.pairs.index_of(new[0], new[1]).is_some() {
             return None;
         }
+        let linear = table.beyond_skins(new, linear);
         let request = ManifoldRequest::new(linear, angular, max_points);
         let entry = new_entry(table, new, request, self.ids.allocate());
         let was_touching = self.lanes.contacts[usize::from(group)].replace(place, new, entry);

@@ -12,7 +12,7 @@ use crate::collide::{
     own_distance,
 };
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
+use crate::query::{ContactManifold, ManifoldView, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 
 /// Two solids placed in the world.
@@ -151,23 +151,25 @@ pub(crate) struct ContactState<N: Real, const D: usize> {
 /// The contacts of a pair of which one solid at least is a composite.
 pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N, D>>;
 
-impl<C> InOrder<C> {
+impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
     /// Puts what is kept, and two solids of these kinds, in the order in which they are computed; gives
     /// the index of the solid that comes first and that of the other.
     #[inline(always)]
-    fn order<N: Real, const D: usize>(
+    fn order(
         &mut self,
         poses: [&Pose<N, D>; 2],
         [kind1, kind2]: [Kind<'_, N, D>; 2],
-        flip: fn(&mut C),
     ) -> [usize; 2] {
         let swapped = is_swapped(poses[0], Geometry(kind1), poses[1], Geometry(kind2));
-        self.turn(swapped, flip);
-        [usize::from(swapped), usize::from(!swapped)]
+        let [first, second] = [usize::from(swapped), usize::from(!swapped)];
+        self.turn(swapped, |raw| raw.flip(&Pose::relative(poses[first], poses[second])));
+        [first, second]
     }
+}
 
+impl<C> InOrder<C> {
     /// The canonical order is this one now.
-    fn turn(&mut self, swapped: bool, flip: fn(&mut C)) {
+    fn turn(&mut self, swapped: bool, flip: impl FnOnce(&mut C)) {
         if swapped != self.swapped {
             flip(&mut self.contacts);
             self.swapped = swapped;
@@ -203,7 +205,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         {
             return;
         }
-        self.kept.turn(swapped, RawManifold::flip);
+        self.kept.turn(swapped, |raw| raw.flip(&pair.pose12));
         (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
     }
 
@@ -258,7 +260,7 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
     ) -> Option<(PairQuestion<'a, N, D>, &'a mut RawManifold<N, D>)> {
         let solids = self.solids.as_ref()?;
         let kinds = [solids[0].kind(), solids[1].kind()];
-        let [first, second] = self.kept.order(poses, kinds, RawManifold::flip);
+        let [first, second] = self.kept.order(poses, kinds);
         let (poses, solids) = ([poses[first], poses[second]], [&solids[first], &solids[second]]);
         Some((PairQuestion { poses, solids, request }, &mut self.kept.contacts))
     }
@@ -285,9 +287,8 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         key: PairKey,
         number: u64,
     ) -> ManifoldView<'a, N, D> {
-        let pose1 = table.pose(self.home(key));
-        let placement = Placement { pose1, pair: number, is_swapped: self.kept.swapped };
-        ManifoldView::of_convex(&self.kept.contacts, placement, PairRef::new(table, key))
+        let (placement, pair) = table.placement(key, number, self.kept.swapped);
+        ManifoldView::of_convex(&self.kept.contacts, placement, pair)
     }
 }
 
@@ -320,9 +321,8 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         number: u64,
         patch: usize,
     ) -> Option<ManifoldView<'a, N, D>> {
-        let pose1 = table.pose(self.home(key));
-        let placement = Placement { pose1, pair: number, is_swapped: self.swapped };
-        self.contacts.view(patch, placement, PairRef::new(table, key))
+        let (placement, pair) = table.placement(key, number, self.swapped);
+        self.contacts.view(patch, placement, pair)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Algorithms for one pair as objects: to use a pair alone, and to plug in algorithms of one's own.
 
 use super::IdAllocator;
+use crate::collide::ManifoldRequest;
 use crate::math::{Real, Space};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::Shape;
@@ -45,6 +46,11 @@ impl<N: Real> ContactPrediction<N> {
     #[must_use]
     pub const fn angular2(&self) -> N {
         self.angular2
+    }
+
+    /// The question about a pair whose manifolds have at most `max_points` points.
+    pub(crate) fn request(&self, max_points: usize) -> ManifoldRequest<N> {
+        ManifoldRequest::new(self.linear, self.angular1 + self.angular2, max_points)
     }
 }
 

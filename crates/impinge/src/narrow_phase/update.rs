@@ -39,6 +39,28 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         } else {
             self.update_all(table, &mut changes);
         }
+        self.report(table, changes, events);
+        self.due = due;
+        self.due.clear();
+    }
+
+    /// Brings one pair up to date with the rows of the table and reports what changed; `false` if there is no
+    /// such pair.
+    pub(crate) fn update_pair(
+        &mut self,
+        table: &ObjectTable<N, D>,
+        [first, second]: PairKey,
+        events: &mut Events,
+    ) -> bool {
+        let Some(index) = self.pairs.index_of(first, second) else { return false };
+        let mut changes = core::mem::take(&mut self.changes);
+        self.update_picked(table, &[self.locations[index]], &mut changes);
+        self.report(table, changes, events);
+        true
+    }
+
+    /// Puts changes into events, and keeps the memory.
+    fn report(&mut self, table: &ObjectTable<N, D>, mut changes: PairChanges, events: &mut Events) {
         if changes.iter().any(|(_, change)| matches!(change, Change::Contact { .. })) {
             self.touching.take();
         }
@@ -46,8 +68,6 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             push_change(table, key, Some(change), events);
         }
         self.changes = changes;
-        self.due = due;
-        self.due.clear();
     }
 
     /// Few of the pairs are to be updated: those of objects that changed and some more.

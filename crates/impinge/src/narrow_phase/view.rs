@@ -4,7 +4,6 @@ use core::fmt;
 
 use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
-use super::entry::posed;
 use super::group::PairKey;
 use super::lanes::{CompositeGroup, ContactGroup, Lane, PairLanes};
 use super::state::KeptContacts;
@@ -91,9 +90,12 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
             return None;
         }
         let (group, place) = (self.group, self.place);
-        let posed = || posed(self.table, group.key(place));
+        let posed = || self.table.posed(group.key(place));
         let entry = group.state(place);
-        let make = |old| (N::tables().public_manifold)(&entry.state, &posed(), entry.number, old);
+        let skins = self.table.skins_of(group.key(place));
+        let make = |old| {
+            (N::tables().public_manifold)(&entry.state, &posed(), entry.number, old).grown(skins)
+        };
         Some(group.view(place).manifolds(make))
     }
 
@@ -110,10 +112,14 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
     /// The manifolds, all of which hold a contact.
     fn manifolds(&self) -> &'a [ContactManifold<N, D>] {
         let (group, place) = (self.group, self.place);
-        let posed = || posed(self.table, group.key(place));
+        let posed = || self.table.posed(group.key(place));
         let entry = group.state(place);
-        let make =
-            |old| (N::tables().composite_manifolds)(&entry.state, &posed(), entry.number, old);
+        let skins = self.table.skins_of(group.key(place));
+        let make = |old| {
+            let manifolds =
+                (N::tables().composite_manifolds)(&entry.state, &posed(), entry.number, old);
+            manifolds.into_iter().map(|manifold| manifold.grown(skins)).collect()
+        };
         group.view(place).manifolds(make)
     }
 

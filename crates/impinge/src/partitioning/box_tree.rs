@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::boxes::{around, check, count};
+use super::boxes::{around, check, count, packed};
 use super::{Best, BoxTreeError, Search, Sweep};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::bvh::{Bounds, Lanes, Tree};
@@ -367,16 +367,9 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
     /// See [`Self::try_from_boxes`].
     pub(crate) fn build(boxes: Vec<Aabb<N, D>>) -> Result<Self, BoxTreeError> {
         let count = count(boxes.len())?;
-        let (lanes, mut unbounded) = (Lanes::detect(), Vec::new());
         check(&boxes)?;
-        let bounded = (0..count).zip(&boxes).filter_map(|(id, aabb)| {
-            let tight = Bounds::enclosing(aabb);
-            if !tight.is_finite() {
-                unbounded.push(id);
-            }
-            tight.is_finite().then_some((id, tight))
-        });
-        let tree = Tree::of_still(lanes, bounded);
+        let lanes = Lanes::detect();
+        let (tree, unbounded) = packed(lanes, (0..count).zip(boxes.iter().copied()));
         Ok(Self { bounds: around(&boxes), boxes, tree, unbounded, lanes })
     }
 

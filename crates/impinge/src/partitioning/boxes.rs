@@ -1,8 +1,25 @@
-//! Boxes as a user gives them: checked, counted, and one around all.
+//! Boxes as a user gives them: checked, counted, one around all, and packed into a tree.
 
 use super::BoxTreeError;
 use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::bvh::{Bounds, Lanes, Tree};
 use crate::math::Real;
+
+/// The tree of some boxes with different ids, and the ids of those that no finite `f32` box encloses, in order.
+pub(crate) fn packed<N: Real, const D: usize>(
+    lanes: Lanes,
+    boxes: impl Iterator<Item = (u32, Aabb<N, D>)>,
+) -> (Tree<D>, Vec<u32>) {
+    let mut unbounded = Vec::new();
+    let bounded = boxes.filter_map(|(id, aabb)| {
+        let tight = Bounds::enclosing(&aabb);
+        if !tight.is_finite() {
+            unbounded.push(id);
+        }
+        tight.is_finite().then_some((id, tight))
+    });
+    (Tree::of_still(lanes, bounded), unbounded)
+}
 
 /// No box is inverted or holds a NaN.
 pub(super) fn check<N: Real, const D: usize>(boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {

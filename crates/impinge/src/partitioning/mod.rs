@@ -15,6 +15,7 @@ mod search;
 
 pub use box_tree::BoxTree;
 pub(crate) use box_tree::Question;
+pub(crate) use boxes::packed;
 pub use error::BoxTreeError;
 use search::Best;
 pub(crate) use search::{Search, Sweep};

@@ -34,6 +34,17 @@ pub struct Contact<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Contact<N, D> {
+    /// The contact of the two solids grown by these lengths: its points are on the grown surfaces.
+    pub(crate) fn grown(&self, [first, second]: [N; 2]) -> Self {
+        let normal = self.normal.into_inner();
+        Self {
+            world1: self.world1 + normal * first,
+            world2: self.world2 - normal * second,
+            normal: self.normal,
+            depth: self.depth + (first + second),
+        }
+    }
+
     /// The same contact with the solids swapped.
     #[must_use]
     pub fn flipped(&self) -> Self {

@@ -161,6 +161,12 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         }
     }
 
+    /// The same of the solids grown by these lengths, which round their cores.
+    pub(super) fn grown(&self, [first, second]: [N; 2]) -> Self {
+        let (rounding1, rounding2) = (self.rounding1 + first, self.rounding2 + second);
+        Self { rounding1, rounding2, ..*self }
+    }
+
     /// The same with the solids swapped.
     pub(crate) fn flipped(&self) -> Self {
         Self {

@@ -9,7 +9,8 @@ use crate::math::{Pose, Real, Unit, Vector};
 ///
 /// A contact that moved between two updates keeps its id: one on the same features, or one that has moved by no more
 /// than 1/16 of the size of the smaller solid (half the diagonal of its box), on either solid. The id says nothing
-/// else; its order is that of creation within one pair.
+/// else; its order is that of creation within one pair. [`ContactId::NULL`], which is also the default, names no
+/// contact: for the slots of a cache that are empty.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
@@ -43,12 +44,38 @@ pub struct ContactId {
 }
 
 impl ContactId {
+    /// The id of no contact: no world and no algorithm of the library ever gives it. It is the largest.
+    ///
+    /// ```
+    /// use impinge::query::ContactId;
+    ///
+    /// // The impulses of the last step, by id; at first all slots are empty.
+    /// let mut impulses = [(ContactId::NULL, 0.0_f32); 4];
+    /// impulses[0] = (ContactId::new(7, 0), 1.5);
+    /// assert_eq!(impulses.iter().filter(|(id, _)| id.is_null()).count(), 3);
+    /// assert_eq!(ContactId::default(), ContactId::NULL);
+    /// ```
+    pub const NULL: Self = Self { pair: u64::MAX, number: u32::MAX };
+
     /// The name of a contact by an algorithm of one's own: `pair` is a number that
     /// [`IdAllocator`](crate::narrow_phase::IdAllocator) gave to the pair, `number` one that the
     /// pair gives to no other contact.
     #[must_use]
     pub const fn new(pair: u64, number: u32) -> Self {
         Self { pair, number }
+    }
+
+    /// It is [`Self::NULL`].
+    #[must_use]
+    pub const fn is_null(self) -> bool {
+        self.pair == u64::MAX && self.number == u32::MAX
+    }
+}
+
+/// [`ContactId::NULL`].
+impl Default for ContactId {
+    fn default() -> Self {
+        Self::NULL
     }
 }
 
@@ -92,6 +119,12 @@ pub struct TrackedContact<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> TrackedContact<N, D> {
+    /// The contact of the two solids grown by these lengths; see [`Contact::grown`].
+    pub(super) fn grown(&self, skins: [N; 2]) -> Self {
+        let kinematic = self.kinematic.grown(skins);
+        Self { contact: self.contact.grown(skins), kinematic, ..*self }
+    }
+
     /// The same contact with the solids swapped.
     pub(super) fn flipped(&self) -> Self {
         Self {
@@ -149,6 +182,14 @@ impl<N: Real, const D: usize> ContactManifold<N, D> {
         Self { contacts: contacts.into_iter().collect() }
     }
 
+    /// The manifold of the two solids grown by these lengths; see [`Contact::grown`].
+    pub(crate) fn grown(mut self, skins: [N; 2]) -> Self {
+        if skins != [N::ZERO; 2] {
+            self.contacts.iter_mut().for_each(|contact| *contact = contact.grown(skins));
+        }
+        self
+    }
+
     /// Holds other contacts from now on, in the same memory.
     pub(super) fn refill(&mut self, contacts: impl Iterator<Item = TrackedContact<N, D>>) {
         self.contacts.clear();
@@ -197,13 +238,28 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     pub(crate) pair: u64,
     /// The user's first solid is the second of the raw pair: all comes out flipped.
     pub(crate) is_swapped: bool,
+    /// By how much the solids of the raw pair are grown. Read by views only.
+    pub(crate) skins: [N; 2],
 }
 
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
     /// Of a pair whose solids have these poses in the user's order.
     #[inline]
     pub(crate) fn new(poses: [&'a Pose<N, D>; 2], pair: u64, is_swapped: bool) -> Self {
-        Self { pose1: poses[usize::from(is_swapped)], pair, is_swapped }
+        let (pose1, skins) = (poses[usize::from(is_swapped)], [N::ZERO; 2]);
+        Self { pose1, pair, is_swapped, skins }
+    }
+}
+
+impl<N: Real, const D: usize> Placement<'_, N, D> {
+    /// A contact of the cores, in the user's order, as one of the solids with their skins.
+    pub(super) fn grow(&self, tracked: TrackedContact<N, D>) -> TrackedContact<N, D> {
+        let [first, second] = self.skins;
+        match self.skins {
+            skins if skins == [N::ZERO; 2] => tracked,
+            _ if self.is_swapped => tracked.grown([second, first]),
+            skins => tracked.grown(skins),
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod feature;
 mod feature_tests;
 mod geometry;
 mod handle;
+mod mass;
 pub(crate) mod polytope;
 mod scale;
 mod shown;
@@ -41,6 +42,8 @@ pub use feature::{Feature, FeatureId};
 pub(crate) use geometry::Kind;
 pub use geometry::{Geometry, ShapeKind};
 pub use handle::ShapeHandle;
+pub use mass::{MassError, MassProperties};
+pub(crate) use mass::{Moments, amount, finite};
 pub(crate) use polytope::Planes;
 pub use polytope::convex_hull::ConvexHull;
 pub use polytope::convex_polygon::ConvexPolygon;
@@ -124,6 +127,13 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let _ = scale;
         Err(ScaleError::Unsupported)
+    }
+
+    /// The mass properties of the solid with a density of one, of a shape that knows them better than
+    /// [`mass_properties`](crate::query::mass_properties) can: of a convex solid of your own, which that
+    /// integrates by its support points, or a surface of your own, which it refuses. The default is `None`.
+    fn unit_mass_properties(&self) -> Option<MassProperties<N, D>> {
+        None
     }
 
     /// A sphere around the solid in its own frame.

@@ -1,15 +1,13 @@
-//! What a world keeps of an object beside the user's data, and what changed since the last update.
+//! What a world keeps of an object beside the user's data.
 
+use super::changes::ChangeList;
 use super::error::finite_pose;
 use super::{CollisionGroups, WorldError};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
 use crate::math::outward::slack_of;
 use crate::math::{Pose, Real, Space, max};
-use crate::memory::Look;
-use crate::narrow_phase::{
-    CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable, PackedQuery,
-};
+use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, PackedQuery};
 use crate::shape::{Compact, Geometry, Shape, ShapeHandle};
 
 /// The broad phase of a world.
@@ -18,10 +16,14 @@ pub(crate) type WorldBroadPhase<N, const D: usize> =
 
 /// The object is tested against itself, as the narrow phase knows.
 const SELF_PAIR: u32 = 1 << 31;
+/// The object has no pairs with others that have this bit.
+const FIXED: u32 = 1 << 30;
+/// The volume in the broad phase holds a second pose as well, see [`ChangeList::predictions`].
+const PREDICTED: u32 = 1 << 29;
 /// The bits of a place in the list of changes; all set for an object that has none.
-const PLACE: u32 = SELF_PAIR - 1;
-/// No handle index.
-const GONE: u32 = u32::MAX;
+const PLACE: u32 = PREDICTED - 1;
+/// The largest number of changes that can be listed: there are no more objects than these.
+pub(super) const MAX_CHANGES: u32 = PLACE;
 
 /// An object as the user left it: each fact is kept here and nowhere else, but for what the phases
 /// hold as of the last update. Of `f32` in 3D 96 bytes, and there are as many as objects.
@@ -35,52 +37,11 @@ pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     /// The numbers of the shape, if they are all that there is.
     solid: Compact<N, D>,
     pub(crate) proxy: ProxyHandle,
-    /// [`SELF_PAIR`] and a place in the list of changes.
+    /// [`SELF_PAIR`], [`FIXED`], [`PREDICTED`] and a place in the list of changes.
     state: u32,
     pub(crate) handle: CollisionObjectHandle,
     pub(crate) groups: CollisionGroups,
     pub(crate) query: PackedQuery<N>,
-}
-
-/// What happened to an object since the last update.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-struct BodyChanges {
-    /// Another object, shape or query type: the whole row is to be written.
-    row: bool,
-    /// The shape or query type of an object that may have pairs.
-    algorithm: bool,
-    /// The volume in the broad phase is out of date.
-    volume: bool,
-    /// The pairs are to be filtered again.
-    groups: bool,
-}
-
-/// An object that changed.
-#[derive(Clone, Debug)]
-struct BodyEntry<N: Real, const D: usize> {
-    /// The handle index; [`GONE`] if the object is.
-    index: u32,
-    changes: BodyChanges,
-    /// The exact box of the shape where the object is now, if the volume changed.
-    aabb: Aabb<N, D>,
-}
-
-/// The objects that changed since the last update, each once.
-#[derive(Debug)]
-pub(crate) struct ChangeList<N: Real, const D: usize> {
-    entries: Vec<BodyEntry<N, D>>,
-    /// Memory for their handle indices in order.
-    order: Vec<u32>,
-    /// Of the last update: those whose pairs with themselves begin or end.
-    self_changed: Vec<u32>,
-}
-
-/// What learns of changes when an update begins.
-pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
-    pub(crate) table: &'a mut ObjectTable<N, D>,
-    pub(crate) broad_phase: &'a mut WorldBroadPhase<N, D>,
-    /// Gets the objects whose pairs need other algorithms.
-    pub(crate) algorithms: &'a mut Vec<u32>,
 }
 
 impl<N: Space<D>, const D: usize> WorldBody<N, D> {
@@ -89,19 +50,54 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.handle.index()
     }
 
-    /// Where the object stands in the list of changes, if it does.
-    fn place(&self) -> Option<usize> {
-        let place = self.state & PLACE;
-        (place != PLACE).then_some(place as usize)
+    /// The record of a new object, which has no place in the list of changes.
+    pub(super) fn new(row: ObjectRow<N, D>, groups: CollisionGroups, proxy: ProxyHandle) -> Self {
+        let ObjectRow { handle, isometry, shape, query } = row;
+        let (solid, query) = (Compact::of(&shape), PackedQuery::new(query));
+        Self { shape, isometry, solid, proxy, state: PLACE, handle, groups, query }
     }
 
-    fn set_place(&mut self, place: u32) {
-        self.state = self.state & SELF_PAIR | place;
+    /// Where the object stands in the list of changes, if it does.
+    #[inline]
+    pub(super) fn place(&self) -> Option<u32> {
+        let place = self.state & PLACE;
+        (place != PLACE).then_some(place)
+    }
+
+    /// Notes the place of the object in the list of changes.
+    #[inline]
+    pub(super) fn set_place(&mut self, place: usize) -> u32 {
+        let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
+        let place = small.expect("a world holds no more objects");
+        self.state = self.state & !PLACE | place;
+        place
+    }
+
+    /// Notes that the object has no place in the list of changes.
+    pub(super) const fn leave_place(&mut self) {
+        self.state |= PLACE;
+    }
+
+    /// The narrow phase begins or ends to test the object against itself.
+    pub(super) const fn toggle_self_pair(&mut self) {
+        self.state ^= SELF_PAIR;
     }
 
     /// The narrow phase tests the object against itself.
     pub(crate) const fn has_self_pair(&self) -> bool {
         self.state & SELF_PAIR != 0
+    }
+
+    /// The object has no pairs with other fixed ones.
+    #[inline]
+    pub(crate) const fn is_fixed(&self) -> bool {
+        self.state & FIXED != 0
+    }
+
+    /// The two objects are not both fixed, and their groups allow the pair.
+    #[inline]
+    pub(crate) const fn can_interact(&self, other: &Self) -> bool {
+        self.state & other.state & FIXED == 0 && self.groups.can_interact_with_groups(&other.groups)
     }
 
     /// The object shall be tested against itself: its groups ask for it, and it has parts that could
@@ -126,9 +122,9 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.solid.ask(&self.shape, question)
     }
 
-    /// The volume for the broad phase.
-    pub(crate) fn volume(&self) -> Aabb<N, D> {
-        grown(&self.aabb(), self.query_limit())
+    /// The broad phase is to find the pairs on the way to a predicted pose, too.
+    pub(super) const fn is_predicted(&self) -> bool {
+        self.state & PREDICTED != 0
     }
 
     /// What the narrow phase reads of the object.
@@ -141,21 +137,39 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         }
     }
 
-    /// Moves the object, unless a number of the position is not finite. An object that is there already
-    /// does not count as changed.
+    /// Moves the object, unless a number of the position is not finite, and forgets the predicted pose. An
+    /// object that is there already does not count as changed.
     pub(crate) fn set_isometry(
         &mut self,
         list: &mut ChangeList<N, D>,
         isometry: N::Isometry,
     ) -> Result<(), WorldError> {
-        if isometry == self.isometry {
+        if isometry == self.isometry && !self.is_predicted() {
             self.isometry = isometry;
             return Ok(());
         }
         let pose = finite_pose(N::pose(&isometry), Some(self.handle))?;
+        self.state &= !PREDICTED;
         self.isometry = isometry;
         let aabb = aabb_at(&*self.shape, &pose);
-        list.note_volume(self, aabb);
+        list.note_box(self, aabb);
+        Ok(())
+    }
+
+    /// Moves the object and predicts the pose after that, unless a number of either is not finite.
+    pub(crate) fn set_predicted(
+        &mut self,
+        list: &mut ChangeList<N, D>,
+        isometry: N::Isometry,
+        predicted: N::Isometry,
+    ) -> Result<(), WorldError> {
+        let pose = finite_pose(N::pose(&isometry), Some(self.handle))?;
+        finite_pose(N::pose(&predicted), Some(self.handle))?;
+        self.state |= PREDICTED;
+        self.isometry = isometry;
+        list.predict(self.index(), predicted);
+        let aabb = aabb_at(&*self.shape, &pose);
+        list.note_box(self, aabb);
         Ok(())
     }
 
@@ -172,33 +186,26 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
 
     pub(crate) fn set_groups(&mut self, list: &mut ChangeList<N, D>, groups: CollisionGroups) {
         self.groups = groups;
-        list.note(self).changes.groups = true;
+        self.refilter(list);
     }
 
-    /// Hands the changes since the last update on, and forgets them.
-    pub(crate) fn flush(&mut self, list: &mut ChangeList<N, D>, readers: &mut Readers<'_, N, D>) {
-        let Some(place) = self.place() else { return };
-        let BodyEntry { changes, aabb, .. } = list.entries[place];
-        self.set_place(PLACE);
-        if self.wants_self_pair() != self.has_self_pair() {
-            self.state ^= SELF_PAIR;
-            list.self_changed.push(self.index());
+    pub(crate) fn set_skin(&mut self, list: &mut ChangeList<N, D>, skin: N) {
+        if skin != list.skin(self.index()) {
+            list.put_skin(self.index(), skin);
+            list.note_row(self);
         }
-        if changes.row {
-            readers.table.set(self.index(), || self.row());
-        } else if changes.volume {
-            readers.table.set_position(self.index(), &self.isometry);
+    }
+
+    pub(crate) fn set_fixed(&mut self, list: &mut ChangeList<N, D>, is_fixed: bool) {
+        if is_fixed != self.is_fixed() {
+            self.state ^= FIXED;
+            self.refilter(list);
         }
-        if changes.algorithm {
-            readers.algorithms.push(self.index());
-        }
-        if changes.volume {
-            let volume = grown(&aabb, self.query_limit());
-            readers.broad_phase.deferred_set_bounding_volume(self.proxy, volume);
-        }
-        if changes.groups {
-            readers.broad_phase.deferred_recompute_all_proximities_with(self.proxy);
-        }
+    }
+
+    /// Has the pairs of the object filtered again.
+    pub(crate) fn refilter(&mut self, list: &mut ChangeList<N, D>) {
+        list.note_filter(self);
     }
 }
 
@@ -223,123 +230,4 @@ pub(super) fn grown<N: Real, const D: usize>(aabb: &Aabb<N, D>, limit: N) -> Aab
         }
     }
     aabb.loosened(limit + slack_of(reach))
-}
-
-impl<N: Space<D>, const D: usize> ChangeList<N, D> {
-    pub(crate) const fn new() -> Self {
-        Self { entries: Vec::new(), order: Vec::new(), self_changed: Vec::new() }
-    }
-
-    /// The body of a new object, whose volume the broad phase learns of by `proxy`.
-    pub(crate) fn admit(
-        &mut self,
-        row: ObjectRow<N, D>,
-        groups: CollisionGroups,
-        proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
-    ) -> WorldBody<N, D> {
-        let ObjectRow { handle, isometry, shape, query } = row;
-        let aabb = aabb_at(&*shape, &N::pose(&isometry));
-        let proxy = proxy(grown(&aabb, query.query_limit()));
-        let (solid, query) = (Compact::of(&shape), PackedQuery::new(query));
-        let mut body =
-            WorldBody { shape, isometry, solid, proxy, state: PLACE, handle, groups, query };
-        let entry = self.note(&mut body);
-        entry.aabb = aabb;
-        entry.changes = BodyChanges { row: true, volume: true, ..BodyChanges::default() };
-        body
-    }
-
-    /// Forgets what an object that is gone changed.
-    pub(crate) fn forget(&mut self, body: &WorldBody<N, D>) {
-        if let Some(place) = body.place() {
-            self.entries[place].index = GONE;
-        }
-    }
-
-    /// Queries must test the object itself: the broad phase does not know where it is now.
-    pub(crate) fn is_astray(&self, body: &WorldBody<N, D>) -> bool {
-        body.place().is_some_and(|place| self.entries[place].changes.volume)
-    }
-
-    /// The handle indices and the boxes of the objects that are astray, in no particular order.
-    pub(crate) fn astray(&self) -> impl Iterator<Item = (u32, &Aabb<N, D>)> {
-        let astray =
-            self.entries.iter().filter(|entry| entry.changes.volume && entry.index != GONE);
-        astray.map(|entry| (entry.index, &entry.aabb))
-    }
-
-    /// The handle indices of the changed objects, in order. The memory is to be given back to
-    /// [`Self::clear`].
-    pub(crate) fn take_order(&mut self) -> Vec<u32> {
-        let mut order = core::mem::take(&mut self.order);
-        order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
-        order.sort_unstable();
-        order
-    }
-
-    /// Forgets all changes but those of pairs of objects with themselves.
-    pub(crate) fn clear(&mut self, mut order: Vec<u32>) {
-        order.clear();
-        self.order = order;
-        self.entries.clear();
-    }
-
-    /// The objects whose pairs with themselves begin or end, as of the last flush; forgotten hereby.
-    pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
-        core::mem::take(&mut self.self_changed)
-    }
-
-    /// How many objects changed that are still there.
-    pub(crate) fn num_present(&self) -> usize {
-        self.entries.iter().filter(|entry| entry.index != GONE).count()
-    }
-
-    /// How many objects changed.
-    pub(crate) const fn len(&self) -> usize {
-        self.entries.len()
-    }
-
-    /// Gives the memory of lists that have been short for some time back.
-    pub(crate) fn give_back(&mut self, look: Look) {
-        look.trim(&mut self.entries);
-        look.trim(&mut self.order);
-    }
-
-    fn note_volume(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) {
-        let entry = self.note(body);
-        entry.aabb = aabb;
-        entry.changes.volume = true;
-    }
-
-    fn note_row(&mut self, body: &mut WorldBody<N, D>) {
-        let aabb = body.aabb();
-        let entry = self.note(body);
-        entry.aabb = aabb;
-        entry.changes.row = true;
-        entry.changes.algorithm = true;
-        entry.changes.volume = true;
-    }
-
-    /// Lists an object as changed.
-    fn note(&mut self, body: &mut WorldBody<N, D>) -> &mut BodyEntry<N, D> {
-        let place = body.place().unwrap_or_else(|| {
-            let place = self.entries.len();
-            let small = u32::try_from(place).ok().filter(|&place| place < PLACE);
-            body.set_place(small.expect("a world holds fewer than 2^31 objects"));
-            let (index, changes) = (body.index(), BodyChanges::default());
-            self.entries.push(BodyEntry { index, changes, aabb: Aabb::unbounded() });
-            place
-        });
-        &mut self.entries[place]
-    }
-
-    /// What is wrong with the places of an object in the list, if anything.
-    pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
-        match body.place().map(|place| self.entries.get(place)) {
-            Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {
-                Err(format!("{:?} has the place of another among the changes", body.handle))
-            }
-            _ => Ok(()),
-        }
-    }
 }

@@ -5,10 +5,10 @@
 use super::error::{finite_pose, or_panic, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
+use super::removed::RemovedObjects;
 use super::step::in_order;
 use super::{
-    BroadPhasePairFilter, CollisionGroups, CollisionObject, CollisionObjects, NarrowPhase,
-    WorldBroadPhase, WorldError,
+    CollisionGroups, CollisionObject, CollisionObjects, NarrowPhase, WorldBroadPhase, WorldError,
 };
 use crate::math::Space;
 use crate::memory::Recent;
@@ -57,8 +57,12 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) filters: Filters<N, D, T>,
     /// Those of the last update.
     pub(super) events: Events,
-    /// Those that removals have caused since.
+    /// Those that removals and updates of single pairs have caused since.
     pub(super) queued: Events,
+    /// The next update keeps the events of the last one.
+    pub(super) keeps_events: bool,
+    /// The removed objects that events name.
+    pub(super) removed: RemovedObjects<N, D, T>,
     /// Scratch: the objects whose pairs need other algorithms.
     pub(super) algorithms: Vec<u32>,
     /// Scratch: the pairs that started or stopped.
@@ -100,6 +104,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             filters: Filters::new(),
             events: Events::default(),
             queued: Events::default(),
+            keeps_events: false,
+            removed: RemovedObjects::new(),
             algorithms: Vec::new(),
             interactions: Vec::new(),
             recent: Recent::default(),
@@ -147,7 +153,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         Ok(handle)
     }
 
-    /// Removes objects. Their pairs end at once; the events of that come first in the next batch.
+    /// Removes objects. Their pairs end at once; the events of that come first in the next batch. While
+    /// events name a removed object, [`Self::removed_object`] has it.
     ///
     /// # Panics
     /// If a handle is stale or occurs twice; [`Self::try_remove`] returns these.
@@ -177,8 +184,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             self.narrow_phase.handle_removal(&mut self.queued, &self.objects, first, second);
             self.give_back((first, second));
         }
+        self.removed.note(&self.events, &self.queued);
         for &handle in handles {
-            self.objects.remove(handle);
+            self.removed.keep(self.objects.remove(handle));
         }
         Ok(())
     }
@@ -322,24 +330,6 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         let (body, changes) = self.objects.fresh(handle)?;
         (N::tables().world.set_query)(body, changes, usable_query(query_type.into())?);
         Ok(())
-    }
-
-    /// Adds a filter of pairs, in place of the one of this name if there is one. All pairs are
-    /// filtered again at the next update.
-    pub fn register_broad_phase_pair_filter<F>(&mut self, name: &str, filter: F)
-    where
-        F: BroadPhasePairFilter<N, D, T> + 'static,
-    {
-        self.filters.register(name, Box::new(filter));
-        self.broad_phase.deferred_recompute_all_proximities();
-    }
-
-    /// Takes a filter away; nothing happens if there is none of this name. All pairs are filtered
-    /// again at the next update.
-    pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
-        if self.filters.unregister(name) {
-            self.broad_phase.deferred_recompute_all_proximities();
-        }
     }
 }
 

@@ -23,7 +23,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     fn pending(&self) -> Vec<String> {
         let counts = [
             (self.objects.changes.num_present(), "changed objects"),
-            (self.queued.len(), "events of removed objects"),
+            (self.queued.len(), "queued events"),
         ];
         let counted = counts.into_iter().filter(|&(count, _)| count > 0);
         let changes = [
@@ -51,6 +51,7 @@ impl<N: Space<D>, const D: usize, T: fmt::Debug> fmt::Debug for CollisionObject<
             .field("shape", &**self.shape())
             .field("collision_groups", self.collision_groups())
             .field("query_type", &self.query_type())
+            .field("is_fixed", &self.is_fixed())
             .field("data", self.data())
             .finish()
     }

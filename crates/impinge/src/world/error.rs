@@ -38,6 +38,13 @@ pub enum WorldError {
         /// The number.
         value: f64,
     },
+    /// The skin of an object is negative, NaN or infinite.
+    Skin {
+        /// The object.
+        handle: CollisionObjectHandle,
+        /// The number.
+        value: f64,
+    },
     /// The margin of a world is negative, NaN or infinite.
     Margin {
         /// The number.
@@ -67,6 +74,9 @@ impl fmt::Display for WorldError {
                     f,
                     "a number of the query type is {value}: it must be finite and not negative"
                 )
+            }
+            Self::Skin { handle, value } => {
+                write!(f, "the skin for {handle:?} is {value}: it must be finite and not negative")
             }
             Self::Margin { value } => {
                 write!(f, "the margin is {value}: it must be finite and not negative")

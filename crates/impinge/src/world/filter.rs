@@ -2,14 +2,16 @@
 
 use core::fmt;
 
-use super::CollisionObject;
+use super::error::or_panic;
+use super::{CollisionObject, CollisionWorld, WorldError};
 use crate::math::Space;
+use crate::narrow_phase::CollisionObjectHandle;
 
 /// Says which pairs shall exist at all.
 ///
 /// Asked only about pairs that the groups allow, and only when a pair is about to start; all filters
-/// of a world must agree. The answer must not change in time unless the filter is registered anew or
-/// the groups of one of the objects are set again.
+/// of a world must agree. The answer must not change in time unless the filter is registered anew, or
+/// the pairs are filtered again ([`CollisionWorld::refilter_pairs_of`]).
 ///
 /// Implement the trait of the same name in [`crate::dim2::world`] or [`crate::dim3::world`], which
 /// stands for this one in its dimension; closures of two references to objects implement these.
@@ -106,5 +108,76 @@ impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
 impl<N: Space<D>, const D: usize, T> fmt::Debug for Filters<N, D, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_list().entries(self.filters.iter().map(|(name, _)| name)).finish()
+    }
+}
+
+/// Filters, and when they are asked.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Adds a filter of pairs, in place of the one of this name if there is one. All pairs are
+    /// filtered again at the next update.
+    pub fn register_broad_phase_pair_filter<F>(&mut self, name: &str, filter: F)
+    where
+        F: BroadPhasePairFilter<N, D, T> + 'static,
+    {
+        self.filters.register(name, Box::new(filter));
+        self.broad_phase.deferred_recompute_all_proximities();
+    }
+
+    /// Takes a filter away; nothing happens if there is none of this name. All pairs are filtered
+    /// again at the next update.
+    pub fn unregister_broad_phase_pair_filter(&mut self, name: &str) {
+        if self.filters.unregister(name) {
+            self.broad_phase.deferred_recompute_all_proximities();
+        }
+    }
+
+    /// Has all pairs filtered again at the next update: groups and filters are asked about every two objects
+    /// whose boxes overlap. For rules that have changed, and for [`Self::update_with`].
+    pub fn refilter_pairs(&mut self) {
+        self.broad_phase.deferred_recompute_all_proximities();
+    }
+
+    /// Has the pairs of one object filtered again at the next update; see [`Self::refilter_pairs`].
+    ///
+    /// ```
+    /// use impinge::dim2::math::Isometry;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{
+    ///     CollisionGroups, CollisionObject, CollisionWorld, ContactQuery,
+    /// };
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f32);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let [_, ghost] = [true, false].map(|is_solid| {
+    ///     world.add(Isometry::identity(), ball.clone(), groups, ContactQuery::default(), is_solid)
+    /// });
+    /// type Object = CollisionObject<f32, bool>;
+    /// let both_solid = |a: &Object, b: &Object| *a.data() && *b.data();
+    /// world.register_broad_phase_pair_filter("solid", both_solid);
+    /// world.update();
+    /// *world.collision_object_mut(ghost).expect("alive").data_mut() = true;
+    /// world.refilter_pairs_of(ghost);
+    /// world.update();
+    /// assert_eq!(world.contact_events().len(), 1, "now it is solid");
+    /// ```
+    ///
+    /// # Panics
+    /// If the handle is stale; [`Self::try_refilter_pairs_of`] returns this.
+    #[track_caller]
+    pub fn refilter_pairs_of(&mut self, handle: CollisionObjectHandle) {
+        or_panic(self.try_refilter_pairs_of(handle));
+    }
+
+    /// Has the pairs of one object filtered again; see [`Self::refilter_pairs_of`].
+    ///
+    /// # Errors
+    /// If the handle is stale. The world is unchanged then.
+    pub fn try_refilter_pairs_of(
+        &mut self,
+        handle: CollisionObjectHandle,
+    ) -> Result<(), WorldError> {
+        let (body, changes) = self.objects.fresh(handle)?;
+        body.refilter(changes);
+        Ok(())
     }
 }

@@ -5,14 +5,17 @@
 //! broad phase the boxes, the table of the narrow phase the poses and shapes of objects that have pairs.
 
 mod bodies;
+mod changes;
 mod collision_world;
 mod debug;
 mod deform;
+mod dirty;
 mod emptying;
 mod error;
 mod filter;
 mod group_masks;
 mod groups;
+mod motion;
 mod narrow_phase;
 mod object;
 mod objects;
@@ -20,11 +23,16 @@ mod of_object;
 mod pairs;
 mod queries;
 mod reasons;
+mod removed;
+mod skin;
 mod step;
+mod substep;
 mod validate;
 
-pub(crate) use bodies::{ChangeList, Readers, WorldBody, WorldBroadPhase};
+pub(crate) use bodies::{WorldBody, WorldBroadPhase};
+pub(crate) use changes::{ChangeList, Readers};
 pub use collision_world::CollisionWorld;
+pub(crate) use dirty::{DirtyTree, DirtyVisitor};
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;
 pub use groups::{CollisionGroups, GroupError};

@@ -60,6 +60,22 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
     /// Computes all contacts and proximities, with the events of what changed.
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events);
 
+    /// Computes one pair anew between two updates: [`CollisionObjects::table`] has other poses of its two
+    /// objects during this call than at the last update. Puts what changed into `events`, and answers whether
+    /// there is such a pair.
+    ///
+    /// The default cannot do it: it answers that there is no pair.
+    fn update_pair(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> bool {
+        let _ = (events, objects, handle1, handle2);
+        false
+    }
+
     /// A pair started (its algorithm is picked; nothing happens if the pair is known) or stopped (its
     /// algorithm is freed, with the event that the pair is over if it had begun). No geometric query.
     fn handle_interaction(
@@ -199,6 +215,17 @@ pub trait NarrowPhase<N: Space<D>, const D: usize, T>: Send + Sync {
 impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase<N, D> {
     fn update(&mut self, objects: &CollisionObjects<N, D, T>, events: &mut Events) {
         self.step(objects.table(), events);
+    }
+
+    fn update_pair(
+        &mut self,
+        events: &mut Events,
+        objects: &CollisionObjects<N, D, T>,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> bool {
+        let key = [handle1.index(), handle2.index()];
+        (N::tables().world.update_pair)(self, objects.table(), key, events)
     }
 
     fn handle_interaction(

@@ -62,6 +62,13 @@ impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
         &self.body.groups
     }
 
+    /// The object has no pairs with other fixed ones; see
+    /// [`CollisionWorld::set_fixed`](super::CollisionWorld::set_fixed).
+    #[must_use]
+    pub const fn is_fixed(&self) -> bool {
+        self.body.is_fixed()
+    }
+
     /// What is asked of the object's pairs.
     #[must_use]
     pub fn query_type(&self) -> GeometricQueryType<N> {

@@ -1,6 +1,8 @@
 //! The objects of a world: the handle table with the records, and what the narrow phase reads of them.
 
-use super::bodies::{ChangeList, Readers, WorldBody, WorldBroadPhase};
+use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
+use super::changes::{ChangeList, Readers};
+use super::dirty::DirtyTree;
 use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
@@ -10,8 +12,8 @@ use crate::memory::Look;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
-/// More objects than this have no handles: as many changes can be listed.
-const MAX_OBJECTS: u32 = (1 << 31) - 1;
+/// From one dirty object in so many on, the tree of their boxes holds those of all objects.
+const MANY: usize = 4;
 
 /// The objects of a world, by handle.
 ///
@@ -110,10 +112,39 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.iter().map(|object| &object.body)
     }
 
-    /// The living objects that queries must test themselves and their exact boxes, in no particular
-    /// order.
-    pub(super) fn astray(&self) -> impl Iterator<Item = (&CollisionObject<N, D, T>, &Aabb<N, D>)> {
-        self.changes.astray().filter_map(|(index, aabb)| Some((self.at(index)?, aabb)))
+    /// The boxes that queries search beside those of the broad phase, or in their place; `None` if nothing changed.
+    pub(super) fn dirty_tree(&self, broad_phase: &WorldBroadPhase<N, D>) -> Option<&DirtyTree<D>> {
+        self.changes.dirty_tree(|| {
+            let has_all = self.changes.num_dirty() * MANY >= self.records.len();
+            let boxes = &mut *self.boxes(has_all, broad_phase);
+            (N::tables().world.new_dirty_tree)(has_all, boxes)
+        })
+    }
+
+    /// The boxes of all objects, or of the dirty ones, by the ids that a tree of them has.
+    fn boxes<'a>(
+        &'a self,
+        has_all: bool,
+        broad_phase: &'a WorldBroadPhase<N, D>,
+    ) -> Box<dyn Iterator<Item = (u32, Aabb<N, D>)> + 'a> {
+        if !has_all {
+            return Box::new(self.changes.dirty_boxes());
+        }
+        Box::new(self.records.iter().map(|CollisionObject { body, .. }| {
+            let known = || broad_phase.proxy(body.proxy).map(|(volume, _)| *volume);
+            let aabb = self.changes.dirty_box(body).or_else(known);
+            (body.index(), aabb.unwrap_or_else(|| self.changes.volume(body)))
+        }))
+    }
+
+    /// An object that the tree of dirty ones proposes.
+    #[inline]
+    pub(super) fn of_dirty(
+        &self,
+        tree: &DirtyTree<D>,
+        id: u32,
+    ) -> Option<&CollisionObject<N, D, T>> {
+        self.at(self.changes.dirty_index(tree, id))
     }
 
     /// The object whose proxy has a number, if it is where it would be expected: objects and proxies are
@@ -126,11 +157,11 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         in_order.or_else(|| self.at(u32::try_from(uid).ok()?).filter(is_its))
     }
 
-    /// The groups of both objects allow the pair.
+    /// Not both objects are fixed, and the groups of both allow the pair.
     #[inline]
     pub(super) fn can_interact(&self, index1: u32, index2: u32) -> bool {
         let both = self.body(index1).zip(self.body(index2));
-        both.is_some_and(|(one, two)| one.groups.can_interact_with_groups(&two.groups))
+        both.is_some_and(|(one, two)| one.can_interact(two))
     }
 
     /// The handle of the object at an index, which there is.
@@ -177,7 +208,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         if let Some(&index) = self.free.last() {
             return Ok(CollisionObjectHandle::new(index, self.slots[index as usize].generation));
         }
-        let index = u32::try_from(self.slots.len()).ok().filter(|&index| index < MAX_OBJECTS);
+        let index = u32::try_from(self.slots.len()).ok().filter(|&index| index < MAX_CHANGES);
         Ok(CollisionObjectHandle::new(index.ok_or(WorldError::Full)?, self.first))
     }
 
@@ -201,8 +232,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         }
     }
 
-    /// Forgets an object.
-    pub(super) fn remove(&mut self, handle: CollisionObjectHandle) {
+    /// Takes an object out.
+    pub(super) fn remove(&mut self, handle: CollisionObjectHandle) -> CollisionObject<N, D, T> {
         let next = handle.generation().next();
         let slot = &mut self.slots[handle.uid()];
         let place = core::mem::replace(&mut slot.place, NOWHERE);
@@ -216,6 +247,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         if next.is_some() {
             self.free.push(handle.index());
         }
+        object
     }
 
     /// Hands the changes since the last update to the table and the broad phase, in order of index,
@@ -232,7 +264,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let order = changes.take_order();
         for &index in &order {
             if let Some(object) = records.get_mut(slots[index as usize].place as usize) {
-                (N::tables().world.flush)(&mut object.body, changes, &mut readers);
+                (N::tables().world.flush)(changes, &mut object.body, &mut readers);
             }
         }
         changes.clear(order);
@@ -272,7 +304,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     }
 
     /// What is wrong with the bookkeeping, if anything.
-    pub(super) fn validate(&self) -> Result<(), String> {
+    pub(super) fn validate(&self, broad_phase: &WorldBroadPhase<N, D>) -> Result<(), String> {
         if self.iter().count() != self.records.len() {
             return Err(format!("{} objects do not all have slots", self.records.len()));
         }
@@ -285,9 +317,12 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             if body.index() != index {
                 return Err(format!("{:?} stands in slot {index}", body.handle));
             }
-            if !self.changes.is_astray(body) && !self.is_row_of(body) {
+            if !self.changes.is_dirty(body) && !self.is_row_of(body) {
                 return Err(format!("the row of {:?} is out of date", body.handle));
             }
+        }
+        if let Some(tree) = self.changes.made_dirty_tree() {
+            tree.validate(&mut *self.boxes(tree.has_all(), broad_phase))?;
         }
         self.table.validate()?;
         self.validate_free()
@@ -301,6 +336,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
                 && self.table.isometry(index) == &body.isometry
                 && self.table.shape(index).is_same(&body.shape)
                 && self.table.query(index) == body.query.get()
+                && self.table.skin(index) == self.changes.skin(index)
     }
 
     fn validate_free(&self) -> Result<(), String> {

@@ -10,6 +10,38 @@ use crate::query::{ContactPoint, ManifoldView, Proximity};
 /// however many the world has; with a narrow phase of one's own see
 /// [`NarrowPhase::partners_of`](super::NarrowPhase::partners_of).
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// The objects that have a pair with this one, whether they touch or not, in order of their handles; the
+    /// object itself, if it is tested against itself. Nothing for a stale handle.
+    ///
+    /// These are the pairs that the broad phase has found and that groups and filters allow: objects whose
+    /// boxes overlap. Which of them do not touch depends on the margin. Read a pair by
+    /// [`Self::contact_pair`] or [`Self::proximity_pair`].
+    ///
+    /// ```
+    /// use impinge::dim2::math::Isometry;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, ContactQuery};
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f64);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let balls = [(0.0, 0.0), (1.5, 1.5), (9.0, 0.0)].map(|(x, y)| {
+    ///     world.add(Isometry::translation(x, y), ball.clone(), groups, ContactQuery::default(), x)
+    /// });
+    /// world.update();
+    /// let near: Vec<_> = world.pairs_with(balls[0]).map(|other| *other.data()).collect();
+    /// assert_eq!(near, [1.5], "their boxes overlap");
+    /// assert_eq!(world.contacts_with(balls[0]).count(), 0, "but not the balls");
+    /// ```
+    #[doc(alias = "interactions_with")]
+    pub fn pairs_with(
+        &self,
+        handle: CollisionObjectHandle,
+    ) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
+        let is_known = self.contains(handle);
+        let partners = is_known.then(|| self.narrow_phase.partners_of(&self.objects, handle));
+        partners.into_iter().flatten().filter_map(|other| self.objects.get(other))
+    }
+
     /// The contact points of an object with all others, and the other object of each.
     ///
     /// Each contact is seen from the object: it is the first solid, whichever handle comes first, so
@@ -39,7 +71,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &self,
         handle: CollisionObjectHandle,
     ) -> impl Iterator<Item = (&CollisionObject<N, D, T>, ContactPoint<N, D>)> {
-        self.partners(handle).flat_map(move |other| {
+        self.pairs_with(handle).flat_map(move |other| {
             let pair = self.contact_pair(handle, other.handle());
             let points =
                 pair.into_iter().flat_map(ContactPair::views).flat_map(ManifoldView::contacts);
@@ -71,19 +103,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &self,
         handle: CollisionObjectHandle,
     ) -> impl Iterator<Item = (&CollisionObject<N, D, T>, Proximity)> {
-        self.partners(handle).filter_map(move |other| {
+        self.pairs_with(handle).filter_map(move |other| {
             let proximity = self.proximity_pair(handle, other.handle())?.proximity();
             (proximity != Proximity::Disjoint).then_some((other, proximity))
         })
-    }
-
-    /// The objects that have a pair with this one, in order of their handles.
-    fn partners(
-        &self,
-        handle: CollisionObjectHandle,
-    ) -> impl Iterator<Item = &CollisionObject<N, D, T>> {
-        let is_known = self.contains(handle);
-        let partners = is_known.then(|| self.narrow_phase.partners_of(&self.objects, handle));
-        partners.into_iter().flatten().filter_map(|other| self.objects.get(other))
     }
 }

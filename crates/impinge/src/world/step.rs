@@ -1,6 +1,6 @@
 //! One update of a world, and the exchange of its phases.
 
-use super::{CollisionWorld, NarrowPhase, WorldBroadPhase};
+use super::{CollisionObject, CollisionWorld, NarrowPhase, WorldBroadPhase};
 use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactEvent, Events, Interaction, ProximityEvent,
@@ -13,19 +13,70 @@ const AT_ONCE: usize = 512;
 
 type HandlePair = (CollisionObjectHandle, CollisionObjectHandle);
 
+/// A pair filter that is lent to one update.
+type LentFilter<'a, N, const D: usize, T> =
+    &'a mut dyn FnMut(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool;
+
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Finds out what the changes since the last update have led to: pairs, contacts, proximities,
     /// and the events of this update.
     ///
-    /// The events of the last update are forgotten; those that removals have queued since come first.
+    /// The events of the last update are forgotten, unless [`Self::keep_events`] was called; those that
+    /// removals and [`Self::update_pair`] have queued since come first.
     pub fn update(&mut self) {
+        self.update_filtered(None);
+    }
+
+    /// [`Self::update`] with one more pair filter, which may borrow and change what the caller has: the
+    /// joints of a solver, a table of who ignores whom.
+    ///
+    /// It is asked once about each pair that this update would start, in an order that does not depend on the
+    /// number of threads, with the object of the smaller handle first, after groups and all registered filters have
+    /// allowed them; pairs for which it returns `false` do not start. As every pair filter it must be constant in time: a pair is asked about
+    /// once, when the boxes of its objects begin to overlap, and neither a pair that stands nor one that was
+    /// refused is asked about at a later update, with this filter, another or none. To have it decide
+    /// again, call [`Self::refilter_pairs`] or [`Self::refilter_pairs_of`] before the update: pairs that it
+    /// refuses then stop, with their events, and pairs that it allows start. Registered filters, groups and
+    /// marks of fixed objects that change have their pairs asked about again, as does another broad phase.
+    /// Pairs of an object with itself are not asked about. If the filter panics, the next update asks again.
+    ///
+    /// ```
+    /// use impinge::dim2::math::Isometry;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, ContactQuery};
+    ///
+    /// let mut world = CollisionWorld::<f32, u8>::new(0.02);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let links = [0, 1, 2].map(|link| {
+    ///     let place = Isometry::translation(0.5 * f32::from(link), 0.0);
+    ///     world.add(place, ball.clone(), groups, ContactQuery::default(), link)
+    /// });
+    /// let mut joints = vec![(0, 1), (1, 2)];
+    /// world.update_with(&mut |a, b| !joints.contains(&(*a.data(), *b.data())));
+    /// assert_eq!(world.contact_pairs().count(), 1, "the first and the last");
+    ///
+    /// // A joint breaks: the pairs of what it held are asked about again.
+    /// joints.pop();
+    /// world.refilter_pairs_of(links[2]);
+    /// world.update_with(&mut |a, b| !joints.contains(&(*a.data(), *b.data())));
+    /// assert_eq!(world.contact_pairs().count(), 2);
+    /// ```
+    #[expect(clippy::type_complexity, reason = "what a closure of the user's looks like")]
+    pub fn update_with(
+        &mut self,
+        filter: &mut dyn FnMut(&CollisionObject<N, D, T>, &CollisionObject<N, D, T>) -> bool,
+    ) {
+        self.update_filtered(Some(filter));
+    }
+
+    fn update_filtered(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
         self.recent.note(self.objects.changes.len());
-        self.events.begin_batch(&mut self.queued);
+        self.begin_events();
         if self.next_broad_phase.is_some() || self.next_narrow_phase.is_some() {
-            self.update_with_other_phases();
+            self.update_with_other_phases(filter);
         } else {
             self.write_changes();
-            self.update_broad_phase();
+            self.update_broad_phase(filter);
             self.narrow_phase.update(&self.objects, &mut self.events);
         }
         self.filters.note_update();
@@ -37,6 +88,45 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             look.trim(&mut self.interactions);
             look.trim(&mut self.algorithms);
         }
+    }
+
+    /// Starts the batch of events of an update, behind that of the last one if it is to be kept, and forgets
+    /// the removed objects that no event names any more.
+    fn begin_events(&mut self) {
+        if !core::mem::take(&mut self.keeps_events) {
+            self.events.clear();
+        }
+        self.events.begin_batch(&mut self.queued);
+        self.removed.keep_named(&self.events);
+    }
+
+    /// Has the next update keep the events of the last one, and add its own behind them: a program that
+    /// updates twice in a step reads the events of both together.
+    ///
+    /// Each update's events are a batch of their own in canonical order, so of one pair a `Started` in the
+    /// first batch can be followed by a `Stopped` in the second. Holds for one update; to collect more,
+    /// call it before each of them but the first.
+    ///
+    /// ```
+    /// use impinge::dim2::events::ContactEvent;
+    /// use impinge::dim2::math::Isometry;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, ContactQuery};
+    ///
+    /// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let [a, b] = [0.0, 1.5].map(|x| {
+    ///     let place = Isometry::translation(x, 0.0);
+    ///     world.add(place, ball.clone(), groups, ContactQuery::default(), ())
+    /// });
+    /// world.update();
+    /// world.set_position(b, Isometry::translation(9.0, 0.0));
+    /// world.keep_events();
+    /// world.update();
+    /// assert_eq!(world.contact_events(), [ContactEvent::Started(a, b), ContactEvent::Stopped(a, b)]);
+    /// ```
+    pub const fn keep_events(&mut self) {
+        self.keeps_events = true;
     }
 
     /// Brings what the phases read of the objects up to date.
@@ -54,18 +144,20 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Lets the broad phase find what started and stopped, in `interactions`, and tells the narrow phase.
-    fn update_broad_phase(&mut self) {
+    fn update_broad_phase(&mut self, mut lent: Option<LentFilter<'_, N, D, T>>) {
         let Self { objects, filters, broad_phase, interactions, .. } = self;
         let mut filter = |handle1: &CollisionObjectHandle, handle2: &CollisionObjectHandle| {
             if !objects.can_interact(handle1.index(), handle2.index()) {
                 return false;
             }
-            if filters.is_empty() {
+            if filters.is_empty() && lent.is_none() {
                 return true;
             }
             let (first, second) = in_order(*handle1, *handle2);
             let both = objects.get(first).zip(objects.get(second));
-            both.is_some_and(|(co1, co2)| filters.allow(co1, co2))
+            both.is_some_and(|(co1, co2)| {
+                filters.allow(co1, co2) && lent.as_mut().is_none_or(|lent| lent(co1, co2))
+            })
         };
         interactions.clear();
         broad_phase.update(&mut filter, &mut |&handle1, &handle2, has_started| {
@@ -153,11 +245,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// started: a narrow phase that stays knows most of these already, and is notified which of its
     /// pairs are not among them; a new one starts from nothing, and what it finds is compared with
     /// what was before.
-    fn update_with_other_phases(&mut self) {
+    fn update_with_other_phases(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
             let before = self.renew_proxies();
             self.write_changes();
-            let now = self.started_pairs();
+            let now = self.started_pairs(filter);
             self.stop_all_but(&now, before);
             return self.narrow_phase.update(&self.objects, &mut self.events);
         };
@@ -173,7 +265,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             // Known already, if it only now began.
             self.tell((handle, handle), true);
         }
-        self.started_pairs();
+        self.started_pairs(filter);
         pairs.into_iter().for_each(|pair| self.give_back(pair));
         self.narrow_phase.update(&self.objects, &mut Events::default());
         push_differences(&before, &self.statuses(), &mut self.events);
@@ -193,7 +285,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
         for handle in handles {
             let body = self.objects.body(handle.index()).expect("it was listed as there");
-            let volume = body.volume();
+            let volume = self.objects.changes.volume(body);
             let proxy = self.broad_phase.create_proxy(volume, handle);
             self.objects.set_proxy(handle, proxy);
         }
@@ -201,8 +293,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     }
 
     /// Updates the broad phase and answers which pairs started, sorted.
-    fn started_pairs(&mut self) -> Vec<HandlePair> {
-        self.update_broad_phase();
+    fn started_pairs(&mut self, filter: Option<LentFilter<'_, N, D, T>>) -> Vec<HandlePair> {
+        self.update_broad_phase(filter);
         let started = self.interactions.iter().filter(|(_, has_started)| *has_started);
         let mut pairs: Vec<_> = started.map(|&(pair, _)| pair).collect();
         pairs.sort_unstable();

@@ -13,4 +13,5 @@ mod checker;
 mod composites;
 mod contacts;
 mod queries;
+mod stacks;
 mod worlds;

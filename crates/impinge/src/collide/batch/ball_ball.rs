@@ -31,6 +31,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallBall {
         let (radius1, radius2) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));
         let distance = apart - radius1 - radius2;
         let point1 = times(&normal, radius1);
+        radius1.smaller(radius2).store(&mut found.size);
         found.put(simd, inputs, (distance, is_usual), [&normal, &point1]);
     }
 

@@ -40,6 +40,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (reach, is_box) = length_of(simd, &half);
         let noise = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
         let touched = pose12.inverse_point(&pose12.point(&clamped));
+        radius.smaller(reach).store(&mut found.size);
         let is_thick = found.put_part(simd, [&touched, &half], noise);
         let is_usual = is_outside & is_box & is_thick;
         found.put(simd, inputs, (away - radius, is_usual), [&normal, &point1]);

@@ -42,6 +42,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         let point1 = times(&normal, radius);
         let (reach, is_moderate) = farther(simd, &ends);
         let size = radius + (reach + rounding) + pose12.apart();
+        radius.smaller(lit::<S, N, V>(simd, 0.5) * length + rounding).store(&mut found.size);
         let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
         let (slack, is_edge) = (noise * length, length.simd_le(noise));
         let is_first = near.from_first.simd_le(slack) & !is_edge;

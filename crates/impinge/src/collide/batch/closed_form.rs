@@ -3,11 +3,12 @@
 
 use core::marker::PhantomData;
 
-use super::gather::{Inputs, RelativePoses};
+use super::gather::Inputs;
 use super::masks::turned;
 use super::vectors::{bits, is_finite};
-use super::{Batch, LANES, LaneResult, PairQuestion};
-use crate::collide::manifold::{Candidate, PointChoice, choose, ids};
+use super::{Batch, LANES, PairQuestion};
+use crate::collide::manifold::ids::PairPose;
+use crate::collide::manifold::{Candidate, PointChoice, choose};
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::simd::Simd;
 use crate::math::{Point, Real, Space, Vector, Wide};
@@ -24,9 +25,6 @@ pub(super) trait Form<N: Real, const D: usize> {
         inputs: &Inputs<N, D>,
         found: &mut EightContacts<N, D>,
     );
-
-    /// Neither solid is a ball.
-    const KEEPS_POSE: bool = false;
 
     /// The features of the two solids that a pair's byte of [`EightContacts::parts`] stands for.
     fn features(parts: u8) -> [FeatureId; 2];
@@ -74,19 +72,8 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
         lane: usize,
         _: usize,
         raw: &mut RawManifold<N, D>,
-    ) -> LaneResult {
-        found.settle::<F>(lane, raw)
-    }
-
-    fn settle_matched(
-        found: &Self::Found,
-        lane: usize,
-        _: usize,
-        pair: &Pair<'_, N, D>,
-        raw: &mut RawManifold<N, D>,
-    ) {
-        let count = 1 + usize::from(found.is_two >> lane & 1);
-        choose(&mut found.candidates::<F>(lane)[..count], &found.choice(lane, pair), raw);
+    ) -> bool {
+        found.settle::<F>(lane & (LANES - 1), raw)
     }
 
     fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>) {
@@ -96,9 +83,10 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
 
 /// The contacts of eight pairs.
 pub(super) struct EightContacts<N: Real, const D: usize> {
-    pub(super) pose: RelativePoses<N, D>,
     pub(super) normal: [[N; LANES]; D],
     pub(super) gap: [N; LANES],
+    /// The size of each pair, for what is in proportion to it.
+    pub(super) size: [N; LANES],
     /// The first and the second contact: the points on the first solid, and the distances, of which that of a
     /// lone contact is the gap.
     pub(super) points1: [[[N; LANES]; D]; 2],
@@ -119,9 +107,9 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
     const fn new() -> Self {
         let row = [N::ZERO; LANES];
         Self {
-            pose: RelativePoses::new(),
             normal: [row; D],
             gap: row,
+            size: row,
             points1: [[row; D]; 2],
             distances: [row; 2],
             tolerance: row,
@@ -153,68 +141,46 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
         }
     }
 
-    /// Replaces the manifold of one pair if its points have the features of the old ones.
+    /// Replaces the manifold of one pair; answers whether that was possible.
     #[inline(always)]
-    fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> LaneResult {
-        let lane = lane & (LANES - 1);
+    fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
             [self.is_found, self.is_apart, self.is_two].map(|lanes| lanes >> lane & 1 == 1);
         if is_apart {
             raw.points.clear();
-        } else if !is_found {
-            return LaneResult::Declined;
-        } else if is_two {
-            let candidates = self.candidates::<F>(lane);
-            if !ids::renew(&candidates, self.gap[lane], raw) {
-                return LaneResult::Unmatched;
-            }
-        } else if raw.points.is_empty() {
-            let id = raw.ids.next();
-            raw.points.push(self.candidates::<F>(lane)[0].named(id));
-        } else {
-            let features = F::features(self.parts[lane]);
-            match raw.points.as_mut_slice() {
-                [old] if [old.feature1, old.feature2] == features => {
-                    old.point1 = Point::from(vector(&self.points1[0], lane));
-                    old.distance = self.gap[lane];
-                }
-                _ => return LaneResult::Unmatched,
-            }
         }
-        if is_found {
-            raw.normal = vector(&self.normal, lane);
-            self.keep_pose::<F>(lane, raw);
+        if !is_found {
+            return is_apart;
         }
-        LaneResult::Done
+        match raw.points.as_mut_slice() {
+            [old] if !is_two && [old.feature1, old.feature2] == F::features(self.parts[lane]) => {
+                old.point1 = Point::from(vector(&self.points1[0], lane));
+                old.distance = self.gap[lane];
+                raw.normal = vector(&self.normal, lane);
+            }
+            _ => self.choose::<F>(lane, 1 + usize::from(is_two), raw),
+        }
+        true
     }
 
-    #[inline(always)]
-    fn keep_pose<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) {
-        if F::KEEPS_POSE {
-            self.pose.copy_to(lane, &mut raw.pose12);
-        } else {
-            raw.forget_pose();
-        }
-    }
-
-    /// The first and the second contact; where there is one, the first.
-    fn candidates<F: Form<N, D>>(&self, lane: usize) -> [Candidate<N, D>; 2] {
-        let lane = lane & (LANES - 1);
-        let is_two = self.is_two >> lane & 1 == 1;
-        [0, 1].map(|which| Candidate {
+    /// Replaces the points of one pair by so many others.
+    #[inline(never)]
+    fn choose<F: Form<N, D>>(&self, lane: usize, count: usize, raw: &mut RawManifold<N, D>) {
+        let mut candidates = [0, 1].map(|which| Candidate {
             point1: Point::from(vector(&self.points1[which], lane)),
-            distance: if is_two { self.distances[which][lane] } else { self.gap[lane] },
+            distance: if count > 1 { self.distances[which][lane] } else { self.gap[lane] },
             flat: Vector::<N, 2>::zeros(),
             features: F::features(self.parts[lane] >> (4 * which)),
             kept: None,
-        })
-    }
-
-    /// What the choice of points is held against; of a lone contact it is of no meaning.
-    fn choice<'p>(&self, lane: usize, pair: &'p Pair<'p, N, D>) -> PointChoice<'p, N, D> {
-        let lane = lane & (LANES - 1);
-        let (normal, distance) = (vector(&self.normal, lane), self.gap[lane]);
-        PointChoice { pair, normal, distance, tolerance: self.tolerance[lane], limit: 2 }
+        });
+        let choice = PointChoice {
+            pose: PairPose { pose12: None, normal: &vector(&self.normal, lane) },
+            size: &|| self.size[lane],
+            distance: self.gap[lane],
+            tolerance: self.tolerance[lane],
+            limit: 2,
+        };
+        choose(&mut candidates[..count], &choice, raw);
     }
 }
 

@@ -4,7 +4,7 @@ use super::vectors::{by_axis, minus, seen_from};
 use super::{Batch, KeptPairs, LANES, PairQuestion};
 use crate::math::lanes::{LanePose, load};
 use crate::math::simd::Simd;
-use crate::math::{Matrix, Pose, Real, Vector, Wide};
+use crate::math::{Matrix, Real, Vector, Wide};
 
 /// A vector in each lane, by rows.
 type LaneRows<N, const D: usize> = [[N; LANES]; D];
@@ -152,45 +152,6 @@ impl<N: Real, const D: usize> Inputs<N, D> {
             |column| seen_from(&axes, &turned[column]),
         );
         LanePose { rotation, translation: seen_from(&axes, &self.away(simd)) }
-    }
-}
-
-/// The pose of the second solid in the frame of the first, of eight pairs.
-pub(super) struct RelativePoses<N: Real, const D: usize> {
-    rotation: [LaneRows<N, D>; D],
-    translation: LaneRows<N, D>,
-}
-
-impl<N: Real, const D: usize> RelativePoses<N, D> {
-    pub(super) const fn new() -> Self {
-        let rows = [[N::ZERO; LANES]; D];
-        Self { rotation: [rows; D], translation: rows }
-    }
-
-    #[inline(always)]
-    pub(super) fn store<S: Simd, V: Wide<S, Scalar = N>>(
-        &mut self,
-        rotation: &[[V; D]; D],
-        translation: &[V; D],
-    ) {
-        for axis in 0..D {
-            translation[axis].store(&mut self.translation[axis]);
-            for row in 0..D {
-                rotation[axis][row].store(&mut self.rotation[axis][row]);
-            }
-        }
-    }
-
-    /// Copies the pose of one pair.
-    #[inline(always)]
-    pub(super) fn copy_to(&self, lane: usize, pose: &mut Pose<N, D>) {
-        let lane = lane & (LANES - 1);
-        for axis in 0..D {
-            pose.translation[axis] = self.translation[axis][lane];
-            for row in 0..D {
-                pose.rotation[(row, axis)] = self.rotation[axis][row][lane];
-            }
-        }
     }
 }
 

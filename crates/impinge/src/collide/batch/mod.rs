@@ -74,16 +74,6 @@ pub(crate) trait KeptPairs<N: Real, const D: usize> {
     fn end(&mut self, index: usize);
 }
 
-/// What became of a pair in [`Batch::settle`].
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum LaneResult {
-    Done,
-    /// The algorithm does not serve the pair.
-    Declined,
-    /// Nothing has changed: some old points have to be matched by place, for which the solids are needed.
-    Unmatched,
-}
-
 /// An algorithm for pairs of two kinds, eight at a time.
 trait Batch<N: Real, const D: usize> {
     /// What is known of eight pairs before their manifolds are replaced.
@@ -102,23 +92,13 @@ trait Batch<N: Real, const D: usize> {
         found: &mut Self::Found,
     );
 
-    /// Replaces the manifold of one pair by at most `max_points` points, unless the pair is declined or the ids of
-    /// its points do not follow from the features alone.
+    /// Replaces the manifold of one pair by at most `max_points` points; answers whether the pair is not declined.
     fn settle(
         found: &Self::Found,
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, D>,
-    ) -> LaneResult;
-
-    /// Replaces the manifold of a pair for which [`Self::settle`] said [`LaneResult::Unmatched`].
-    fn settle_matched(
-        found: &Self::Found,
-        lane: usize,
-        max_points: usize,
-        pair: &Pair<'_, N, D>,
-        raw: &mut RawManifold<N, D>,
-    );
+    ) -> bool;
 
     /// The manifold of a pair that is declined.
     fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>);
@@ -225,10 +205,8 @@ fn build<B: Batch<N, D>, N: Space<D>, const D: usize>(
     let poses = [&Pose::identity(), &pair.pose12];
     inputs.put::<B>(0, &PairQuestion { poses, solids: solids.each_ref(), request });
     find_at::<B, N, D>(Level::new(), &inputs, &mut found);
-    match B::settle(&found, 0, request.max_points, raw) {
-        LaneResult::Done => {}
-        LaneResult::Declined => B::fall_back(pair, request, raw),
-        LaneResult::Unmatched => B::settle_matched(&found, 0, request.max_points, pair, raw),
+    if !B::settle(&found, 0, request.max_points, raw) {
+        B::fall_back(pair, request, raw);
     }
     true
 }
@@ -247,16 +225,9 @@ fn update_at<B: Batch<N, D>, P: KeptPairs<N, D>, N: Real, const D: usize>(
         find_at::<B, N, D>(level, now, &mut found);
         for lane in 0..now.count {
             let index = now.first + lane;
-            let max_points = now.max_points[lane & (LANES - 1)];
-            let settled = B::settle(&found, lane, max_points, pairs.raw(index));
-            if settled != LaneResult::Done {
+            if !B::settle(&found, lane, now.max_points[lane & (LANES - 1)], pairs.raw(index)) {
                 let (question, raw) = pairs.parts(index);
-                match settled {
-                    LaneResult::Unmatched => {
-                        B::settle_matched(&found, lane, max_points, &question.pair(), raw);
-                    }
-                    _ => B::fall_back(&question.pair(), question.request, raw),
-                }
+                B::fall_back(&question.pair(), question.request, raw);
             }
             pairs.end(index);
         }

@@ -1,7 +1,7 @@
 //! Segments in lanes: how they are gathered, and the names of their parts.
 
 use super::gather::Inputs;
-use super::vectors::length_of;
+use super::vectors::{length_of, lit, minus, norm};
 use super::{PairQuestion, Solid};
 use crate::math::simd::Simd;
 use crate::math::{Real, Vector, Wide};
@@ -45,4 +45,13 @@ pub(super) fn farther<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     let ((length1, is_usual1), (length2, is_usual2)) =
         (length_of(simd, first), length_of(simd, last));
     (length1.larger(length2), is_usual1 & is_usual2)
+}
+
+/// Half of the distance between two points.
+#[inline(always)]
+pub(super) fn half_length<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+    simd: S,
+    [first, last]: &[[V; D]; 2],
+) -> V {
+    lit::<S, N, V>(simd, 0.5) * norm(&minus(last, first))
 }

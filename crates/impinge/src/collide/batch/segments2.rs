@@ -4,7 +4,7 @@
 use super::PairQuestion;
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
-use super::nearest::{END_OR_SIDE, farther};
+use super::nearest::{END_OR_SIDE, farther, half_length};
 use super::vectors::{
     bits, by_axis, dot, either, either_mask, lit, minus, norm, plus, rounding_of, times,
 };
@@ -19,8 +19,6 @@ use crate::shape::FeatureId;
 pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
-    const KEEPS_POSE: bool = true;
-
     #[inline(always)]
     fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
         inputs.put_cores(lane, pair) && pair.request.max_points > 1
@@ -33,7 +31,6 @@ impl<N: Real> Form<N, 2> for Segments2 {
         found: &mut EightContacts<N, 2>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
-        found.pose.store(&pose12.rotation, &pose12.translation);
         let ends1 = [inputs.end::<S, V>(simd, 0, 0), inputs.end::<S, V>(simd, 0, 1)];
         let local2 = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
@@ -42,6 +39,8 @@ impl<N: Real> Form<N, 2> for Segments2 {
         let ((reach1, is_usual1), (reach2, is_usual2)) =
             (farther(simd, &ends1), farther(simd, &local2));
         let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
+        let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
+        sizes[0].smaller(sizes[1]).store(&mut found.size);
         let normal = apart.normal;
         let line = ContactLine {
             normal,

@@ -3,7 +3,7 @@
 use super::PairQuestion;
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
-use super::nearest::{END_OR_SIDE, farther};
+use super::nearest::{END_OR_SIDE, farther, half_length};
 use super::vectors::{bits, cross, dot, either, lit, minus, norm, plus, rounding_of, times, unit};
 use crate::collide::separation::nearest_on_segment;
 use crate::math::simd::{Simd, SimdMask};
@@ -17,8 +17,6 @@ pub(super) struct Segments3;
 type SegmentEnds<V> = [[V; 3]; 2];
 
 impl<N: Real> Form<N, 3> for Segments3 {
-    const KEEPS_POSE: bool = true;
-
     #[inline(always)]
     fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
         inputs.put_cores(lane, pair)
@@ -31,7 +29,6 @@ impl<N: Real> Form<N, 3> for Segments3 {
         found: &mut EightContacts<N, 3>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
-        found.pose.store(&pose12.rotation, &pose12.translation);
         let ends1 = [inputs.end::<S, V>(simd, 0, 0), inputs.end::<S, V>(simd, 0, 1)];
         let local2 = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
@@ -45,6 +42,8 @@ impl<N: Real> Form<N, 3> for Segments3 {
         let ((reach1, is_usual1), (reach2, is_usual2)) =
             (farther(simd, &ends1), farther(simd, &local2));
         let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
+        let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
+        sizes[0].smaller(sizes[1]).store(&mut found.size);
         let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
         let core1 = minus(&rounded[0], &times(&normal, radii[0]));
         let core2 = plus(&rounded[1], &times(&normal, radii[1]));

@@ -18,7 +18,7 @@ use smallvec::SmallVec;
 
 use super::frame::{Candidates, ContactFrame, Which, part_beside};
 use super::ring::{LANES, RingCorner, SupportRing};
-use super::{Pair, PointChoice, RawManifold, add_witness, choose};
+use super::{Pair, RawManifold, add_witness, choose_in_frame};
 use crate::math::lanes::{bits, load, with_lanes};
 use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
@@ -37,12 +37,12 @@ pub(super) fn build<N: Real>(
     if clip.has_area_or_length() {
         clip.candidates(&mut candidates);
     }
-    let nearest = PointChoice::new(pair, frame, limit);
-    if !candidates.iter().any(|candidate| candidate.distance <= nearest.level()) {
+    let level = frame.witness.distance + frame.tolerance;
+    if !candidates.iter().any(|candidate| candidate.distance <= level) {
         let parts = [clip.part_at_witness(0), clip.part_at_witness(1)];
         add_witness(&frame.witness, parts, &mut candidates);
     }
-    choose(&mut candidates, &nearest, out);
+    choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
 /// The part of one of two solids that the nearest point lies on, of those that face the other.

@@ -6,7 +6,7 @@
 
 use super::frame::{Candidate, Candidates, ContactFrame, MIN_COSINE, Which, lifted};
 use super::supporting::contact_feature;
-use super::{Pair, PointChoice, RawManifold, choose};
+use super::{Pair, RawManifold, choose_in_frame};
 use crate::math::lanes::{dot, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide};
@@ -27,11 +27,10 @@ pub(super) fn build<N: Real, const D: usize>(
 ) {
     let mut candidates = Candidates::new();
     let alone = Above { frame }.corners(pair.first, &mut candidates);
-    let nearest = PointChoice::new(pair, frame, limit);
     if candidates.is_empty() {
         candidates.push(Candidate::alone(&frame.witness, [alone, BOUNDARY]));
     }
-    choose(&mut candidates, &nearest, out);
+    choose_in_frame(pair, frame, &mut candidates, limit, out);
 }
 
 /// The half-space as the solid sees it.

@@ -8,7 +8,8 @@
 //! 3. points on the same pair of features at any distance: the crossing of two edges may move fast.
 //!
 //! The distance is the smaller of two: how far the point has moved on the first solid, in the frame of that solid,
-//! and on the second in its own frame. So a corner that slides over a floor has not moved, nor has a point of the
+//! and on the second in its own frame; zero on a vertex of either. Lanes keep no old pose, so they compare places on the
+//! first solid alone. So a corner that slides over a floor has not moved, nor has a point of the
 //! floor that a solid slides over.
 //!
 //! ```text
@@ -19,14 +20,14 @@
 //! ```
 //!
 //! Each id goes to one point. Ties go to the older id, then to the candidate that comes first: the order does not
-//! depend on the order of the two solids, and scaling by a power of two changes no choice. Where the same features
-//! meet as before, each pair of them once, no place has to be compared ([`renew`], and the codes of lanes).
+//! depend on the order of the two solids, and scaling by a power of two changes no choice. Where each pair of features
+//! names one point, as of two boxes, the same features are the same point and no place has to be compared ([`renew`],
+//! and the codes of lanes).
 
 use smallvec::SmallVec;
 
-use super::super::{Pair, RawManifold, RawPoint};
+use super::super::{RawManifold, RawPoint};
 use super::frame::Candidate;
-use crate::collide::size::smaller_size;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::FeatureId;
@@ -47,21 +48,25 @@ pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
 /// How two solids lie: what it takes to find where a contact is on each of them.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct PairPose<'a, N: Real, const D: usize> {
-    /// Of the second solid in the frame of the first.
-    pub(in crate::collide) pose12: &'a Pose<N, D>,
+    /// Of the second solid in the frame of the first; `None` if places on the second are not compared.
+    pub(in crate::collide) pose12: Option<&'a Pose<N, D>>,
     /// Unit, from the first to the second, in the frame of the first.
     pub(in crate::collide) normal: &'a Vector<N, D>,
 }
 
 impl<N: Real, const D: usize> PairPose<'_, N, D> {
     /// The anchors of a contact, given its point on the first solid in the frame of that solid.
+    #[inline]
     pub(in crate::collide) fn anchors(
         &self,
         point1: &Point<N, D>,
         distance: N,
         names: ([u32; 2], [FeatureId; 2]),
     ) -> Anchors<N, D> {
-        let point2 = self.pose12.inverse_point(&(point1 + self.normal * distance));
+        let point2 = self.pose12.map_or_else(
+            || Point::from(Vector::<N, D>::repeat(N::INFINITY)),
+            |pose12| pose12.inverse_point(&(point1 + self.normal * distance)),
+        );
         Anchors { names, places: [*point1, point2] }
     }
 }
@@ -83,19 +88,7 @@ impl<N: Real, const D: usize> Anchors<N, D> {
 }
 
 /// The anchors of some points.
-pub(in crate::collide) type AnchorList<N, const D: usize> = SmallVec<[Anchors<N, D>; 16]>;
-
-/// The three classes, above the other bits of a key.
-const SAME: u64 = 0;
-const NEAR: u64 = 1;
-const FAR: u64 = 2;
-const CLASS_AT: u32 = 62;
-
-/// Old and new points that may be the same, by their indices.
-type IndexPairs = SmallVec<[[u32; 2]; 32]>;
-
-/// Whole numbers to sort by, each with an index.
-type SortKeys = SmallVec<[(u64, u32); 32]>;
+pub(in crate::collide) type AnchorList<N, const D: usize> = SmallVec<[Anchors<N, D>; 8]>;
 
 /// The id that a new point inherits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,66 +98,131 @@ pub(in crate::collide) struct Inherited {
     pub(in crate::collide) is_old: bool,
 }
 
-/// Returns for each new point the old one that it continues, whose ids are given. `size` is that of the pair
-/// ([`smaller_size`]).
+/// The three classes, above the other bits of a key.
+const SAME: u64 = 0;
+const NEAR: u64 = 1;
+const FAR: u64 = 2;
+const CLASS_AT: u32 = 62;
+
+/// No pair has this key.
+const NEVER: u64 = u64::MAX;
+
+/// Up to so many old and new points all pairs are compared; of more, those that can be near are found first.
+const FEW: usize = 8;
+
+/// Visits the index of each old point that goes on and that of the new point that it is now, and whether that is
+/// where the old one was. `size` is that of the pair ([`smaller_size`](crate::collide::size::smaller_size)).
 ///
 /// Cost: O(n log n) for n points that lie apart.
-pub(in crate::collide) fn matched<N: Real, const D: usize>(
+pub(in crate::collide) fn each_match<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
-    ids: impl Fn(usize) -> u32,
     new: &[Anchors<N, D>],
     size: N,
-) -> SmallVec<[Option<Inherited>; 16]> {
-    let mut kept: SmallVec<[Option<Inherited>; 16]> = SmallVec::from_elem(None, new.len());
-    let mut is_taken: SmallVec<[bool; 16]> = SmallVec::from_elem(false, old.len());
-    let (mut pairs, mut keys, mut number) = (IndexPairs::new(), SortKeys::new(), 0);
-    find_pairs(old, new, N::lit(SHARE) * size, |key, pair| {
-        keys.push((key, number));
-        pairs.push(pair);
-        number += 1;
-    });
-    sort_keyed(&mut keys);
-    for &(key, at) in &keys {
-        let [old, new] = pairs[at as usize].map(|index| index as usize);
-        if kept[new].is_none() && !is_taken[old] {
-            let is_old = key >> CLASS_AT < FAR;
-            (kept[new], is_taken[old]) = (Some(Inherited { id: ids(old), is_old }), true);
-        }
+    visit: &mut dyn FnMut(usize, usize, bool),
+) {
+    let length = N::lit(SHARE) * size;
+    if old.len() <= FEW && new.len() <= FEW {
+        match_few(old, new, length, visit);
+    } else {
+        match_many(old, new, length, visit);
     }
-    kept
 }
 
-/// Visits all pairs of an old and a new point that may be the same, with a key that is lower for better pairs.
-///
-/// New points are looked up in three sorted lists: by names, and on either solid by the first coordinate, in which
-/// no match is farther than `length`.
-fn find_pairs<N: Real, const D: usize>(
+/// [`each_match`] by a table of all keys, of which the lowest is taken again and again.
+fn match_few<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
     length: N,
-    mut visit: impl FnMut(u64, [u32; 2]),
+    visit: &mut dyn FnMut(usize, usize, bool),
 ) {
-    let by_names = sorted(new, |anchors| anchors.names_key());
-    let by_place = [0, 1].map(|solid| sorted(new, |anchors| order_of(anchors.places[solid][0])));
-    for (anchors, number) in old.iter().zip(0..) {
-        let names = anchors.names_key();
-        for (other, at) in between(&by_names, [names; 2]).map(|at| (&new[at as usize], at)) {
-            if other.names == anchors.names {
-                let moved = moved(anchors, other, length);
-                // Written so that NaN is far.
-                let class = if moved <= N::ONE { SAME } else { FAR };
-                visit(key(class, moved), [number, at]);
-            }
+    let (mut keys, scale) = ([[NEVER; FEW]; FEW], N::ONE / length);
+    for (row, old) in keys.iter_mut().zip(old) {
+        for (key, new) in row.iter_mut().zip(new) {
+            *key = key_of(old, new, scale);
         }
-        for (solid, order) in by_place.iter().enumerate() {
-            let x = anchors.places[solid][0];
-            let ends = [x - length, x + length].map(order_of);
-            for (other, at) in between(order, ends).map(|at| (&new[at as usize], at)) {
-                let moved = moved(anchors, other, length);
-                if moved <= N::ONE && other.names != anchors.names {
-                    visit(key(NEAR, moved), [number, at]);
+    }
+    for _ in 0..old.len().min(new.len()) {
+        let (mut least, mut best) = (NEVER, [0; 2]);
+        for (at, row) in keys.iter().enumerate().take(old.len()) {
+            for (other, &key) in row.iter().enumerate().take(new.len()) {
+                if key < least {
+                    (least, best) = (key, [at, other]);
                 }
             }
+        }
+        if least == NEVER {
+            return;
+        }
+        let [at, other] = best;
+        keys[at] = [NEVER; FEW];
+        keys.iter_mut().for_each(|row| row[other] = NEVER);
+        visit(at, other, is_near(least));
+    }
+}
+
+/// [`each_match`] by the sorted keys of the pairs that are possible.
+fn match_many<N: Real, const D: usize>(
+    old: &[Anchors<N, D>],
+    new: &[Anchors<N, D>],
+    length: N,
+    visit: &mut dyn FnMut(usize, usize, bool),
+) {
+    let (mut pairs, mut keys, mut number) = (Vec::new(), Vec::new(), 0);
+    each_possible(old, new, length, &mut |at, other| {
+        let key = key_of(&old[at], &new[other], N::ONE / length);
+        if key != NEVER {
+            keys.push((key, number));
+            pairs.push([at, other]);
+            number += 1;
+        }
+    });
+    sort_keyed(&mut keys);
+    let mut is_taken = [vec![false; old.len()], vec![false; new.len()]];
+    for (key, pair) in keys {
+        let [at, other] = pairs[pair as usize];
+        if !(is_taken[0][at] || is_taken[1][other]) {
+            (is_taken[0][at], is_taken[1][other]) = (true, true);
+            visit(at, other, is_near(key));
+        }
+    }
+}
+
+/// The key is one of the first two classes.
+const fn is_near(key: u64) -> bool {
+    key >> CLASS_AT < FAR
+}
+
+/// The key of a pair; [`NEVER`] if the two are not the same contact. `scale` is one over the length that counts as near.
+#[inline]
+fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
+    let moved = moved(old, new, scale);
+    // Written so that NaN is far.
+    let class = match (old.names == new.names, moved <= N::ONE) {
+        (true, true) => SAME,
+        (false, true) => NEAR,
+        (true, false) => FAR,
+        (false, false) => return NEVER,
+    };
+    key(class, moved)
+}
+
+/// Visits the pairs of many points that [`key_of`] may accept: of the same names, and, on either solid, within `length`
+/// along the first axis.
+fn each_possible<N: Real, const D: usize>(
+    old: &[Anchors<N, D>],
+    new: &[Anchors<N, D>],
+    length: N,
+    visit: &mut dyn FnMut(usize, usize),
+) {
+    let by_names = sorted(new, Anchors::names_key);
+    let by_place = [0, 1].map(|solid| sorted(new, |point| order_of(point.places[solid][0])));
+    for (at, point) in old.iter().enumerate() {
+        let names = point.names_key();
+        between(&by_names, [names; 2]).for_each(|other| visit(at, other));
+        for (solid, order) in by_place.iter().enumerate() {
+            let x = point.places[solid][0];
+            between(order, [x - length, x + length].map(order_of))
+                .for_each(|other| visit(at, other));
         }
     }
 }
@@ -174,58 +232,99 @@ fn key<N: Real>(class: u64, moved: N) -> u64 {
     class << CLASS_AT | moved.as_f64().to_bits() >> 2
 }
 
-/// Returns the keys and indices of some anchors in the order of the keys.
+/// Returns the keys and indices of some points in the order of the keys.
 fn sorted<N: Real, const D: usize>(
-    anchors: &[Anchors<N, D>],
+    points: &[Anchors<N, D>],
     key: impl Fn(&Anchors<N, D>) -> u64,
-) -> SortKeys {
-    let mut keys: SortKeys = anchors.iter().map(key).zip(0..).collect();
+) -> Vec<(u64, u32)> {
+    let mut keys: Vec<_> = points.iter().map(key).zip(0..).collect();
     sort_keyed(&mut keys);
     keys
 }
 
 /// Iterates over the indices whose keys lie between two, both included.
-fn between(keys: &SortKeys, [low, high]: [u64; 2]) -> impl Iterator<Item = u32> {
+fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = usize> {
     let from = keys.partition_point(|&(key, _)| key < low);
-    keys[from..].iter().take_while(move |&&(key, _)| key <= high).map(|&(_, at)| at)
+    keys[from..].iter().take_while(move |&&(key, _)| key <= high).map(|&(_, at)| at as usize)
 }
 
-/// The square of the way that a point has moved on the solid where it is shorter, in units of `length`.
-fn moved<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, length: N) -> N {
-    let on = |solid: usize| ((new.places[solid] - old.places[solid]) / length).norm_squared();
+/// The square of the way that a point has moved on the solid where it is shorter, times the square of `scale`. On a
+/// vertex it has not moved.
+#[inline]
+fn moved<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> N {
+    let is_on_vertex = |solid: usize| {
+        let name = |point: &Anchors<N, D>| (point.names.0[solid], point.names.1[solid]);
+        matches!(name(old).1, FeatureId::Vertex(_)) && name(old) == name(new)
+    };
+    if is_on_vertex(0) || is_on_vertex(1) {
+        return N::ZERO;
+    }
+    let on = |solid: usize| ((new.places[solid] - old.places[solid]) * scale).norm_squared();
     let [on1, on2] = [on(0), on(1)];
     // Written so that a place that is not known does not count.
     if on2 < on1 { on2 } else { on1 }
 }
 
-/// Gives candidates the ids of the old points that they continue; `normal` is the new one.
-pub(in crate::collide) fn inherit<N: Real, const D: usize>(
+/// A pair of features names one point: a vertex is among them. Edges may be round rims, which many points lie on.
+pub(in crate::collide) fn is_one_point(features: [FeatureId; 2]) -> bool {
+    features.iter().any(|id| matches!(id, FeatureId::Vertex(_)))
+}
+
+/// Gives candidates the ids of the old points that they continue, where a pair of features names one old and one new
+/// point.
+pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
-    pair: &Pair<'_, N, D>,
-    normal: &Vector<N, D>,
     candidates: &mut [Candidate<N, D>],
 ) {
-    if old.points.is_empty() {
-        return;
+    for point in &old.points {
+        let features = [point.feature1, point.feature2];
+        let is_heir =
+            |new: &&mut Candidate<N, D>| is_one_point(features) && new.features == features;
+        let mut heirs = candidates.iter_mut().filter(is_heir);
+        if let (Some(heir), None) = (heirs.next(), heirs.next())
+            && heir.kept.is_none()
+        {
+            heir.kept = Some(Inherited { id: point.id, is_old: true });
+        }
     }
-    let pose = PairPose { pose12: &pair.pose12, normal };
-    let anchors =
-        |new: &Candidate<N, D>| pose.anchors(&new.point1, new.distance, ([0; 2], new.features));
-    let new: AnchorList<N, D> = candidates.iter().map(anchors).collect();
-    let (ids, size) = (|at: usize| old.points[at].id, smaller_size([pair.first, pair.second]));
-    for (candidate, kept) in candidates.iter_mut().zip(matched(&old.anchors(), ids, &new, size)) {
-        candidate.kept = kept;
+}
+
+/// Gives those of some candidates that have none the ids that none of them has, by [`each_match`]; `pose` is the new
+/// one, `size` that of the pair.
+pub(in crate::collide) fn inherit_by_place<N: Real, const D: usize>(
+    old: &RawManifold<N, D>,
+    pose: &PairPose<'_, N, D>,
+    size: impl Fn() -> N,
+    candidates: &mut [Candidate<N, D>],
+    some: &[usize],
+) {
+    let (mut news, mut places) = (AnchorList::new(), SmallVec::<[usize; 8]>::new());
+    let (mut olds, mut ids) = (AnchorList::new(), SmallVec::<[u32; 8]>::new());
+    let has =
+        |id: u32| some.iter().any(|&at| candidates[at].kept.is_some_and(|kept| kept.id == id));
+    for point in old.points.iter().filter(|point| !has(point.id)) {
+        olds.push(old.anchors(point));
+        ids.push(point.id);
+    }
+    for &at in some.iter().filter(|&&at| !olds.is_empty() && candidates[at].kept.is_none()) {
+        let new = &candidates[at];
+        news.push(pose.anchors(&new.point1, new.distance, ([0; 2], new.features)));
+        places.push(at);
+    }
+    if !news.is_empty() {
+        each_match(&olds, &news, size(), &mut |at, new, is_old| {
+            candidates[places[new]].kept = Some(Inherited { id: ids[at], is_old });
+        });
     }
 }
 
 impl<N: Real, const D: usize> RawManifold<N, D> {
-    /// The anchors of the points.
-    pub(in crate::collide) fn anchors(&self) -> AnchorList<N, D> {
-        let pose = PairPose { pose12: &self.pose12, normal: &self.normal };
-        let anchors = |old: &RawPoint<N, D>| {
-            pose.anchors(&old.point1, old.distance, ([0; 2], [old.feature1, old.feature2]))
-        };
-        self.points.iter().map(anchors).collect()
+    /// The anchors of one of the points.
+    #[inline]
+    pub(in crate::collide) fn anchors(&self, point: &RawPoint<N, D>) -> Anchors<N, D> {
+        let pose = PairPose { pose12: self.pose12.as_ref(), normal: &self.normal };
+        let features = [point.feature1, point.feature2];
+        pose.anchors(&point.point1, point.distance, ([0; 2], features))
     }
 }
 

@@ -27,6 +27,7 @@ pub(crate) use self::along::{OnFace, on_face2, on_face3};
 pub(super) use self::chain::SegmentPair;
 pub(in crate::collide) use self::frame::Candidate;
 use self::frame::{Candidates, ContactFrame};
+use self::ids::PairPose;
 pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
@@ -131,9 +132,15 @@ fn settle_witness<N: Space<D>, const D: usize>(
     out: &mut RawManifold<N, D>,
 ) {
     let parts = (N::tables().witness_features)(pair, separation);
-    let (normal, distance) = (separation.normal, separation.distance);
-    let nearest = PointChoice { pair, normal, distance, tolerance: N::ZERO, limit: 1 };
-    choose(&mut [Candidate::alone(separation, parts)], &nearest, out);
+    let choice = PointChoice {
+        pose: PairPose { pose12: None, normal: &separation.normal },
+        size: &|| smaller_size([pair.first, pair.second]),
+        distance: separation.distance,
+        tolerance: N::ZERO,
+        limit: 1,
+    };
+    choose(&mut [Candidate::alone(separation, parts)], &choice, out);
+    out.pose12 = None;
 }
 
 /// Two directions that complete a normal of space to a right-handed basis.
@@ -201,45 +208,16 @@ pub(in crate::collide) fn contacts_of_separation2<N: Real>(
 /// the surfaces.
 const SLACK: f64 = 1.0 / 512.0;
 
-/// The nearest points of a pair, and how many points its manifold may have.
+/// What the points of a manifold are chosen by.
 pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
-    pub(in crate::collide) pair: &'a Pair<'a, N, D>,
-    /// Unit, from the first solid to the second.
-    pub(in crate::collide) normal: Vector<N, D>,
+    /// The solids as they lie now, the normal from the first to the second.
+    pub(in crate::collide) pose: PairPose<'a, N, D>,
+    /// The size of the pair, which is asked for where the points are not the old ones.
+    pub(in crate::collide) size: &'a dyn Fn() -> N,
     pub(in crate::collide) distance: N,
     /// Lengths below this are rounding errors.
     pub(in crate::collide) tolerance: N,
     pub(in crate::collide) limit: usize,
-}
-
-impl<'a, N: Real, const D: usize> PointChoice<'a, N, D> {
-    fn new(pair: &'a Pair<'a, N, D>, frame: &ContactFrame<N, D>, limit: usize) -> Self {
-        let (normal, distance) = (frame.normal(), frame.witness.distance);
-        Self { pair, normal, distance, tolerance: frame.tolerance, limit }
-    }
-
-    /// Keeps how the solids lie.
-    fn keep_pose(&self, out: &mut RawManifold<N, D>) {
-        out.normal = self.normal;
-        match self.pair.first {
-            Kind::Ball(_) => out.forget_pose(),
-            _ => out.pose12 = self.pair.pose12,
-        }
-    }
-
-    /// Points up to this distance are as deep as the pair, but for rounding.
-    fn level(&self) -> N {
-        self.distance + self.tolerance
-    }
-
-    /// Old points up to this distance stand for the deepest one.
-    fn slack(&self) -> N {
-        slack_level(
-            self.distance,
-            smaller_size([self.pair.first, self.pair.second]),
-            self.tolerance,
-        )
-    }
 }
 
 /// Old points up to this distance stand for the deepest one, given the distance and the size of the pair.
@@ -247,41 +225,79 @@ pub(in crate::collide) fn slack_level<N: Real>(distance: N, size: N, tolerance: 
     distance + max(size * N::lit(SLACK), tolerance)
 }
 
-/// Replaces the points of a manifold by at most `limit` of the candidates, and at least one. One of the deepest
-/// takes the distance of the pair, which it has but for rounding or the slack of an old point.
-pub(in crate::collide) fn choose<N: Real, const D: usize>(
+/// Replaces the manifold of a pair with nearest points in a frame by at most `limit` of the candidates.
+fn choose_in_frame<N: Real, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    frame: &ContactFrame<N, D>,
     candidates: &mut [Candidate<N, D>],
-    nearest: &PointChoice<'_, N, D>,
+    limit: usize,
     out: &mut RawManifold<N, D>,
 ) {
-    let is_renewed =
-        candidates.len() <= nearest.limit && ids::renew(candidates, nearest.distance, out);
-    if !is_renewed {
-        ids::inherit(out, nearest.pair, &nearest.normal, candidates);
-        let chosen = chosen(candidates, nearest);
-        let deepest = deepest_of(chosen.len(), nearest.level(), |at| {
+    let (pose12, normal) = (&pair.pose12, &frame.normal());
+    let choice = PointChoice {
+        pose: PairPose { pose12: Some(pose12).filter(|_| keeps_pose(pair)), normal },
+        size: &|| smaller_size([pair.first, pair.second]),
+        distance: frame.witness.distance,
+        tolerance: frame.tolerance,
+        limit,
+    };
+    choose(candidates, &choice, out);
+    out.pose12 = Some(*pose12).filter(|_| keeps_pose(pair));
+}
+
+/// Places on the second solid are compared: not where lanes may serve the pair, which keep no pose.
+fn keeps_pose<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
+    let has_lanes = |kind: &Kind<'_, N, D>| {
+        matches!(kind, Kind::Ball(_) | Kind::Cuboid(_) | Kind::Segment(_) | Kind::Capsule(_))
+    };
+    !(has_lanes(&pair.first) && has_lanes(&pair.second))
+}
+
+/// Replaces the points of a manifold and its normal by at most `limit` of the candidates, and at least one. One of the
+/// deepest takes the distance of the pair, which it has but for rounding or the slack of an old point.
+pub(in crate::collide) fn choose<N: Real, const D: usize>(
+    candidates: &mut [Candidate<N, D>],
+    choice: &PointChoice<'_, N, D>,
+    out: &mut RawManifold<N, D>,
+) {
+    let PointChoice { distance, tolerance, .. } = *choice;
+    let limit = choice.limit.max(1);
+    if !(candidates.len() <= limit && ids::renew(candidates, distance, out)) {
+        ids::inherit_by_features(out, candidates);
+        let all: reduce::Indices = (0..candidates.len()).collect();
+        ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &all);
+        let has_slack = candidates.len() > limit && !out.points.is_empty();
+        let size = if has_slack { (choice.size)() } else { N::ZERO };
+        let levels = [distance + tolerance, slack_level(distance, size, tolerance)];
+        let chosen = chosen(candidates, levels, tolerance, limit);
+        if chosen.len() < all.len() {
+            // The ids of candidates that are not chosen go to chosen ones near them.
+            ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &chosen);
+        }
+        let deepest = deepest_of(chosen.len(), levels[0], |at| {
             let candidate = &candidates[chosen[at]];
             (candidate.is_old(), candidate.distance)
         });
-        candidates[chosen[deepest]].distance = nearest.distance;
+        candidates[chosen[deepest]].distance = distance;
         ids::settle(candidates, &chosen, out);
     }
-    nearest.keep_pose(out);
+    out.normal = *choice.pose.normal;
 }
 
-/// The indices of at most `limit` candidates, one of the deepest among them.
+/// The indices of at most `limit` candidates, one of the deepest among them: up to the first level, or an old one up to
+/// the second.
 #[inline]
 fn chosen<N: Real, const D: usize>(
     candidates: &[Candidate<N, D>],
-    nearest: &PointChoice<'_, N, D>,
+    levels: [N; 2],
+    tolerance: N,
+    limit: usize,
 ) -> reduce::Indices {
-    let limit = nearest.limit.max(1);
     if candidates.len() <= limit {
         return (0..candidates.len()).collect();
     }
     let seen = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
-    let levels = [nearest.level(), nearest.slack()];
-    reduce::chosen(&mut reduce::projected(seen, levels), limit, nearest.tolerance)
+    reduce::chosen(&mut reduce::projected(seen, levels), limit, tolerance)
 }
 
 /// Adds the nearest points, in place of the candidate with the same features if there is one: of round rims and of

@@ -51,7 +51,8 @@ pub(in crate::collide) type Projections<N> = SmallVec<[Projected<N>; FEW]>;
 pub(in crate::collide) type Indices = SmallVec<[usize; 8]>;
 
 /// The candidates, given where each is seen, its distance, and whether the previous manifold had it. As deep as
-/// the manifold are those at most at `level`, or the one with the smallest distance; old ones up to `slack`.
+/// the manifold are those at most at `level`, or the one with the smallest distance, and if none of these is old, the
+/// old ones up to `slack`.
 #[inline]
 pub(in crate::collide) fn projected<N: Real>(
     candidates: impl Iterator<Item = (Vector<N, 2>, N, bool)> + Clone,
@@ -59,6 +60,9 @@ pub(in crate::collide) fn projected<N: Real>(
 ) -> Projections<N> {
     let lowest = candidates.clone().fold(N::INFINITY, |low, (_, distance, _)| min(distance, low));
     let level = max(level, lowest);
+    // An old point that is the deepest needs none to stand for it.
+    let has_old = candidates.clone().any(|(_, distance, is_kept)| is_kept && distance <= level);
+    let slack = if has_old { level } else { slack };
     let mut points = Projections::new();
     for (index, (at, distance, is_kept)) in candidates.enumerate() {
         let is_deepest = distance <= level || is_kept && distance <= slack;

@@ -17,7 +17,7 @@
 //! ([`ContactFrame::admit`]), and the witness where none of them is as near.
 
 use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
-use super::{Pair, PointChoice, RawManifold, add_witness, choose};
+use super::{Pair, RawManifold, add_witness, choose_in_frame};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
 
@@ -36,12 +36,12 @@ pub(super) fn build<N: Real>(
     if first.is_side && second.is_side {
         Shared { frame, first: &first, second: &second }.candidates(&mut candidates);
     }
-    let nearest = PointChoice::new(pair, frame, limit);
-    if !candidates.iter().any(|candidate| candidate.distance <= nearest.level()) {
+    let level = frame.witness.distance + frame.tolerance;
+    if !candidates.iter().any(|candidate| candidate.distance <= level) {
         let parts = [first.at_witness(frame), second.at_witness(frame)];
         add_witness(&frame.witness, parts, &mut candidates);
     }
-    choose(&mut candidates, &nearest, out);
+    choose_in_frame(pair, frame, &mut candidates, limit, out);
     true
 }
 

@@ -4,6 +4,7 @@
 
 use smallvec::SmallVec;
 
+use super::SLACK;
 use super::ring::LANES;
 use crate::collide::separation::bare;
 use crate::math::{Point, Real, Vector, max};
@@ -121,7 +122,8 @@ fn fill_round<N: Real>(part: Option<RoundPart<N>>, face: &mut FaceRing<N>) -> bo
 ///
 /// A round cap has its corners at fixed places on the solid, those of its own normal, so that a solid that trembles
 /// on its cap touches with the same points however it leans. Where the lowest point of the rim lies between two of
-/// them, it is the corner more.
+/// them, it is the corner more. A cap that leans so far that no old corner may stand for the lowest point (`SLACK`) has
+/// its corners about that point: it rolls on its rim.
 pub(super) fn contact_feature<N: Real, const D: usize>(
     map: &dyn SupportMap<N, D>,
     direction: &Vector<N, D>,
@@ -133,7 +135,12 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
-    let is_between = height(&lowest) - top > N::lit(4.0) * N::EPSILON * map.reach();
+    let (lower, reach) = (height(&lowest) - top, map.reach());
+    if lower > N::lit(SLACK) * reach {
+        map.core_feature(direction, out);
+        return None;
+    }
+    let is_between = lower > N::lit(4.0) * N::EPSILON * reach;
     is_between.then(|| {
         turn_behind(&lowest, out);
         lowest

@@ -143,14 +143,15 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
     pub(crate) fn flip(&mut self) {
         self.reference = None;
         self.forget_shapes();
+        let pose21 = self.pose12.inverse();
         for Patch { normal, points } in &mut self.patches {
             for PatchPoint { raw, parts } in points {
-                raw.flip(&self.pose12, normal);
+                raw.flip(&pose21, normal);
                 parts.reverse();
             }
-            *normal = -self.pose12.inverse_vector(normal);
+            *normal = -pose21.vector(normal);
         }
-        self.pose12 = self.pose12.inverse();
+        self.pose12 = pose21;
     }
 }
 

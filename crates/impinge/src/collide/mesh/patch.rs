@@ -13,7 +13,9 @@ use smallvec::SmallVec;
 
 use super::patch_groups::Groups;
 use super::patch_points::{Choosing, Members};
-use crate::collide::manifold::ids::{AnchorList, Anchors, Inherited, PairPose, matched};
+use crate::collide::manifold::ids::{
+    AnchorList, Anchors, Inherited, PairPose, each_match, is_one_point,
+};
 use crate::collide::manifold::reduce::ordering;
 use crate::collide::size::smaller_size;
 use crate::collide::{ManifoldRequest, Pair, PairIds, RawPoint};
@@ -134,62 +136,68 @@ fn blank<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
-    /// The ids that points have from old ones, by the rule of [`ids`](crate::collide::manifold::ids).
+    /// The ids that points have from old ones, by the rule of [`ids`](crate::collide::manifold::ids): first where parts
+    /// and features name one point, then by place.
     fn kept(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>]) -> KeptIds {
-        self.kept_by_names(old).unwrap_or_else(|| self.kept_by_places(old_pose12, old))
-    }
-
-    /// As [`Self::kept`], if parts and features say all: no old point is left but where no new one is.
-    fn kept_by_names(&self, old: &[Patch<N, D>]) -> Option<KeptIds> {
         let mut kept = KeptIds::from_elem(None, self.points.len());
-        let (mut at, mut left, mut found) = (0, 0, 0);
-        for PatchPoint { raw, parts } in old.iter().flat_map(|patch| &patch.points) {
-            let heir = self.piece_of(*parts, at).and_then(|piece| {
-                at = piece;
-                let mut range = self.pieces[piece].points.clone();
-                let is_heir = |&at: &usize| {
-                    let new = &self.points[at];
-                    new.feature1 == raw.feature1 && new.feature2 == raw.feature2
-                };
-                let heir = range.find(is_heir);
-                // Several points share their features on round rims.
-                heir.filter(|&heir| kept[heir].is_none() && !range.any(|at| is_heir(&at)))
-            });
-            match heir {
-                Some(heir) => {
-                    kept[heir] = Some(Inherited { id: raw.id, is_old: true });
-                    found += 1;
-                }
-                None => left += 1,
-            }
-        }
-        let count = || self.pieces.iter().map(|piece| piece.points.len()).sum::<usize>();
-        (left == 0 || found == count()).then_some(kept)
-    }
-
-    /// As [`Self::kept`] of any points.
-    fn kept_by_places(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>]) -> KeptIds {
-        let mut olds = AnchorList::new();
-        let mut ids = SmallVec::<[u32; 16]>::new();
+        let (mut at, mut olds, mut ids) = (0, AnchorList::new(), SmallVec::<[u32; 8]>::new());
         for Patch { normal, points } in old {
-            let pose = PairPose { pose12: old_pose12, normal };
             for PatchPoint { raw, parts } in points {
-                olds.push(anchors(&pose, raw, *parts));
-                ids.push(raw.id);
+                let piece = self.piece_of(*parts, at);
+                at = piece.unwrap_or(at);
+                match piece.and_then(|piece| self.only_heir(raw, &self.pieces[piece], &kept)) {
+                    Some(heir) => kept[heir] = Some(Inherited { id: raw.id, is_old: true }),
+                    None => {
+                        olds.push(anchors(
+                            &PairPose { pose12: Some(old_pose12), normal },
+                            raw,
+                            *parts,
+                        ));
+                        ids.push(raw.id);
+                    }
+                }
             }
         }
-        let mut news = AnchorList::new();
-        for Piece { normal, parts, points } in self.pieces {
-            let pose = PairPose { pose12: &self.pair.pose12, normal };
-            news.extend(self.points[points.clone()].iter().map(|raw| anchors(&pose, raw, *parts)));
-        }
-        let heirs = matched(&olds, |at| ids[at], &news, self.size());
-        let mut kept = KeptIds::from_elem(None, self.points.len());
-        let places = self.pieces.iter().flat_map(|piece| piece.points.clone());
-        for (place, heir) in places.zip(heirs) {
-            kept[place] = heir;
+        if !olds.is_empty() {
+            self.keep_by_places(&olds, &ids, &mut kept);
         }
         kept
+    }
+
+    /// The point of a piece with the features of an old one, if these name one point and no id was given to it.
+    fn only_heir(
+        &self,
+        old: &RawPoint<N, D>,
+        piece: &Piece<N, D>,
+        kept: &KeptIds,
+    ) -> Option<usize> {
+        let features = [old.feature1, old.feature2];
+        if !is_one_point(features) {
+            return None;
+        }
+        let is_heir = |at: &usize| {
+            let new = &self.points[*at];
+            [new.feature1, new.feature2] == features
+        };
+        let mut heirs = piece.points.clone().filter(is_heir);
+        let heir = heirs.next().filter(|&heir| kept[heir].is_none());
+        if heirs.next().is_some() { None } else { heir }
+    }
+
+    /// Gives the points that have none the ids of old points.
+    #[inline(never)]
+    fn keep_by_places(&self, olds: &[Anchors<N, D>], ids: &[u32], kept: &mut KeptIds) {
+        let (mut news, mut places) = (AnchorList::new(), SmallVec::<[usize; 32]>::new());
+        for Piece { normal, parts, points } in self.pieces {
+            let pose = PairPose { pose12: Some(&self.pair.pose12), normal };
+            for at in points.clone().filter(|&at| kept[at].is_none()) {
+                news.push(anchors(&pose, &self.points[at], *parts));
+                places.push(at);
+            }
+        }
+        each_match(olds, &news, self.size(), &mut |old, new, is_old| {
+            kept[places[new]] = Some(Inherited { id: ids[old], is_old });
+        });
     }
 
     /// The size of the pair, for lengths in proportion to it.

@@ -5,7 +5,7 @@
 //! much. The direction is fixed in the world, or, where one of the bodies is a half-space that turns,
 //! in that body.
 
-use super::motion::{ConstantVelocities, RigidMotion};
+use super::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
 use crate::collide::parts::{PartPair, PartSweep};
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};

@@ -120,8 +120,10 @@ pub(crate) fn advance_from<N: Space<D>, const D: usize>(
     let limit = path.limit(from, tolerance);
     let found = separation(&Pair { pose12, ..*start }, limit).filter(|_| path.end >= N::ZERO)?;
     let gap = found.distance - path.target;
-    if !is_apart && gap <= tolerance && !path.counts_at_start(&found.normal, gap, tolerance) {
-        return None;
+    if !is_apart && gap <= tolerance {
+        let status = ImpactStatus::at_start(gap, tolerance);
+        let counts = path.counts_at_start(&found.normal, gap, tolerance);
+        return counts.then_some(Arrival { along: from, separation: found, status });
     }
     if gap > tolerance
         && let Some(arrival) = meeting_of_balls(start, path, tolerance)

@@ -3,7 +3,7 @@
 //! [`linear`] serves solids that do not turn: the front here brings the pair into its canonical order
 //! and takes the answer back to the world; the kernel there sees one pair of solids and a straight
 //! path. [`nonlinear`] serves bodies that turn: it knows no more of a pair than its separation, and of
-//! a motion than where it is and how fast it can be ([`motion`], [`bounds`]).
+//! a motion than where it is and how fast it can be ([`motion`], [`velocities`], [`bounds`]).
 //!
 //! An impact is never late: a step goes as far as the solids certainly stay apart. Every loop has a cap, and the
 //! status says when it was reached.
@@ -12,13 +12,15 @@ mod bounds;
 mod linear;
 mod motion;
 mod nonlinear;
+mod velocities;
 
 use linear::advance;
 use linear::is_hit_at_start;
 pub(crate) use linear::{Arrival, Path, advance_from};
-pub use motion::{ConstantVelocities, RigidMotion};
+pub use motion::RigidMotion;
 pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
+pub use velocities::ConstantVelocities;
 
 use super::composite::{PartArrival, first_arrival};
 use crate::collide::far::Apart;
@@ -144,26 +146,51 @@ impl<N: Real> Default for ImpactOptions<N> {
     }
 }
 
-/// How sure an impact is.
+/// How an impact came about, and how sure it is.
+///
+/// "At the start" is at time zero, and is said of the two parts that the impact is about. Solids whose start
+/// in contact does not count (see [`impact()`]) and that touch again later have the status of that later touch.
 ///
 /// ```
 /// use impinge::dim2::math::{Isometry, Vector};
 /// use impinge::dim2::query::{ImpactOptions, ImpactStatus, Moving, impact};
 /// use impinge::dim2::shape::Ball;
 ///
-/// let (ball, start) = (Ball::new(1.0_f64), Isometry::translation(-6.0, 0.0));
-/// let (one, two) = (Moving::still(&Isometry::identity(), &ball), Moving::new(&start, &Vector::x(), &ball));
-/// let hit = impact(&one, &two, &ImpactOptions::new()).expect("head on");
-/// assert_eq!(hit.status, ImpactStatus::Reached);
+/// let ball = Ball::new(1.0_f64);
+/// let status = |x: f64| {
+///     let (one, start) = (Moving::still(&Isometry::identity(), &ball), Isometry::translation(x, 0.0));
+///     impact(&one, &Moving::new(&start, &Vector::x(), &ball), &ImpactOptions::new()).map(|hit| hit.status)
+/// };
+/// assert_eq!(status(-6.0), Some(ImpactStatus::Reached), "apart at first");
+/// assert_eq!(status(-2.0), Some(ImpactStatus::TouchingAtStart));
+/// assert_eq!(status(-1.5), Some(ImpactStatus::PenetratingAtStart));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ImpactStatus {
-    /// The solids touch at that time, up to the tolerance.
+    /// The solids were apart and touch at that time, up to the tolerance.
     Reached,
+    /// The time is zero: the solids touch at the start, or are at the target distance, up to rounding.
+    TouchingAtStart,
+    /// The time is zero: the solids overlap at the start, or are nearer than the target distance. Their nearest
+    /// points then differ by the depth.
+    PenetratingAtStart,
     /// All steps were spent on the way: the solids certainly do not touch before that time, and what
     /// follows is not known.
     StepsSpent,
+}
+
+impl ImpactStatus {
+    /// The solids touched or overlapped at time zero, or were within the target distance.
+    #[must_use]
+    pub const fn is_at_start(self) -> bool {
+        matches!(self, Self::TouchingAtStart | Self::PenetratingAtStart)
+    }
+
+    /// The status of an impact at the start with this gap, of which up to the tolerance counts as none.
+    fn at_start<N: Real>(gap: N, tolerance: N) -> Self {
+        if gap < -tolerance { Self::PenetratingAtStart } else { Self::TouchingAtStart }
+    }
 }
 
 /// When two moving solids first touch, and where.
@@ -202,7 +229,7 @@ pub struct Impact<N: Real, const D: usize> {
     pub feature1: FeatureId,
     /// The feature of that part of the second shape that touches.
     pub feature2: FeatureId,
-    /// Whether the solids touch then for certain.
+    /// Whether the solids touch then for certain, and whether they did so at the start.
     pub status: ImpactStatus,
 }
 
@@ -247,7 +274,7 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// | just touch, or are at the target distance, up to rounding | impact at zero | `None` | `None` |
 ///
 /// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero: ncollide and,
-/// by default, parry answer so.
+/// by default, parry answer so. [`Impact::status`] says which row an impact at zero is from.
 ///
 /// Convex solids that do not approach each other never will, so `None` is the end of it. A box that
 /// slides along the floor it stands on does not hit the floor; one that has sunk into it does, until it

@@ -211,7 +211,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         let mut mode = Mode::Apart;
         if configuration.gap <= configuration.tolerance {
             if self.counts_at_start(&configuration) {
-                return Some(self.impact(&configuration, ImpactStatus::Reached));
+                let status = ImpactStatus::at_start(configuration.gap, configuration.tolerance);
+                return Some(self.impact(&configuration, status));
             }
             mode = Mode::Contact(configuration.gap);
         }

@@ -129,6 +129,11 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         Ok(Self::try_new(children)?)
     }
 
+    /// The number of the first part of a child.
+    pub(crate) fn first_part(&self, child: u32) -> u32 {
+        self.firsts[child as usize]
+    }
+
     /// The child that a part belongs to, and which of the child's parts it is.
     ///
     /// # Panics
@@ -282,6 +287,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
         if let Some(composite) = self.composite(child) {
             composite.extend_path(own, path);
         }
+    }
+
+    fn built_in(&self) -> Option<&dyn Shape<N, D>> {
+        Some(self)
     }
 }
 

@@ -112,6 +112,12 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     fn extend_path(&self, part: u32, path: &mut PartPath) {
         path.push(part);
     }
+
+    /// The composite as a shape of the library, of which it is told what it encloses; `None` for one of the user's.
+    #[doc(hidden)]
+    fn built_in(&self) -> Option<&dyn Shape<N, D>> {
+        None
+    }
 }
 
 /// One of the solids that a composite is made of.

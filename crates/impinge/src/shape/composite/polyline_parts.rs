@@ -52,6 +52,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
     fn each_corner(&self, part: u32, visit: &mut dyn FnMut(u64)) {
         self.segments[part as usize].iter().for_each(|&end| visit(self.joints.of(end).into()));
     }
+
+    fn built_in(&self) -> Option<&dyn Shape<N, D>> {
+        Some(self)
+    }
 }
 
 /// The own normals of a segment are all that are perpendicular to it: two in 2D, a circle

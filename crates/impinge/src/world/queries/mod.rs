@@ -1,8 +1,7 @@
 //! Questions about everything in a world: rays, points, boxes, solids at rest and in motion.
 //!
-//! The broad phase answers as of the last update. Objects that it does not know where they are now
-//! are few and tested one by one, so every change is seen at once; what it proposes is tested again
-//! exactly, by the queries for one solid and two.
+//! The broad phase answers as of the last update, and a tree of dirty objects for those whose boxes changed since,
+//! so every change is seen at once; what they propose is tested again exactly, by the queries for one solid and two.
 
 mod cast;
 mod filter;
@@ -18,11 +17,10 @@ use core::fmt;
 pub use filter::QueryFilter;
 use smallvec::SmallVec;
 
-use super::bodies::grown;
+use self::search::WorldProbe;
 use super::{CollisionObject, CollisionWorld};
-use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::bounding_volume::Aabb;
 use crate::math::Space;
-use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::ClosestPoints;
 
 /// So many objects are found without memory from the allocator.
@@ -72,33 +70,16 @@ impl<N: Space<D>, const D: usize, T> fmt::Debug for NearObject<'_, N, D, T> {
 
 /// What all queries share.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// The objects that the broad phase found and has not lost track of, and those that it has and
-    /// that `may` meet the question; allowed by the filter, in order, each once.
-    ///
-    /// The test of the question itself comes next.
-    fn candidates<'a>(
+    /// The objects whose boxes the probe meets with a key of at most `limit`, and few others, allowed by the filter,
+    /// in order, each once: for the test of the question itself.
+    fn met<'a>(
         &'a self,
-        found: Vec<&CollisionObjectHandle>,
-        may: &dyn Fn(&Aabb<N, D>) -> bool,
-        filter: &QueryFilter<'_, N, D, T>,
-    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
-        let settled = found.into_iter().filter_map(|&handle| self.settled(handle));
-        let astray = self.astray().filter(|(_, volume)| may(volume)).map(|(object, _)| object);
-        let allowed = settled.chain(astray).filter(|object| self.allows(object, filter));
-        let mut objects: Vec<_> = allowed.collect();
-        objects.sort_unstable_by_key(|object| object.body.handle);
-        objects.into_iter()
-    }
-
-    /// The objects whose volumes meet `aabb`, and few others, allowed by the filter, in order, each once:
-    /// for the test of the question itself, as [`Self::candidates`].
-    fn meeting<'a>(
-        &'a self,
-        aabb: &Aabb<N, D>,
+        probe: &WorldProbe<N, D>,
+        limit: N,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let mut objects: SmallVec<[&'a CollisionObject<N, D, T>; FEW]> = SmallVec::new();
-        self.any_meeting(aabb, |object| {
+        self.any_met(probe, limit, |object| {
             objects.push(object);
             false
         });
@@ -107,41 +88,32 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         objects.into_iter()
     }
 
-    /// One of the objects whose volumes meet `aabb`, or of few others, passes a test; none is asked after it, and
-    /// each once at most.
-    fn any_meeting<'a>(
+    /// One of the objects whose boxes the probe meets with a key of at most `limit`, or of few others, passes a
+    /// test; none is asked after it, and each once at most.
+    fn any_met<'a>(
         &'a self,
-        aabb: &Aabb<N, D>,
+        probe: &WorldProbe<N, D>,
+        limit: N,
         mut passes: impl FnMut(&'a CollisionObject<N, D, T>) -> bool,
     ) -> bool {
-        let mut astray = self.astray().filter(|(_, volume)| volume.intersects(aabb));
-        if astray.any(|(object, _)| passes(object)) {
-            return true;
-        }
-        if !aabb.holds_finite_point() {
-            // No search goes to infinity, where none but unbounded volumes are met.
-            let mut found = Vec::new();
-            self.broad_phase.interferences_with_bounding_volume(aabb, &mut found);
-            return found.into_iter().filter_map(|&handle| self.settled(handle)).any(passes);
+        if matches!(probe, WorldProbe::Near(aabb) if !aabb.holds_finite_point()) {
+            // No search goes to infinity, where none but unbounded boxes are met.
+            return self.objects.iter().any(passes);
         }
         let mut is_found = false;
-        self.broad_phase.visit_nearest_roughly(aabb, N::ZERO, &mut |proposals| {
-            let mut settled = proposals.iter().filter_map(|one| self.settled_proposal(one));
-            is_found = is_found || settled.any(&mut passes);
-            if is_found { -N::ONE } else { N::ZERO }
+        self.propose(probe, limit, |object, limit| {
+            is_found = passes(object);
+            if is_found { -N::ONE } else { limit }
         });
         is_found
     }
 
-    /// The object of a handle of the broad phase, if it lives and is where it was at the last update.
-    fn settled(&self, handle: CollisionObjectHandle) -> Option<&CollisionObject<N, D, T>> {
-        let object = self.objects.get(handle)?;
-        (!self.objects.changes.is_astray(&object.body)).then_some(object)
-    }
-
-    /// The living objects of which the broad phase does not know where they are, and their volumes.
-    fn astray(&self) -> impl Iterator<Item = (&CollisionObject<N, D, T>, Aabb<N, D>)> {
-        let astray = self.objects.astray();
-        astray.map(|(object, aabb)| (object, grown(aabb, object.body.query_limit())))
+    /// The objects whose boxes meet `aabb`, as [`Self::met`].
+    fn meeting<'a>(
+        &'a self,
+        aabb: &Aabb<N, D>,
+        filter: &QueryFilter<'_, N, D, T>,
+    ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
+        self.met(&WorldProbe::Near(*aabb), N::ZERO, filter)
     }
 }

@@ -22,10 +22,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         groups: &CollisionGroups,
     ) -> impl Iterator<Item = (&'a CollisionObject<N, D, T>, RayIntersection<N, D>)> + use<'a, N, D, T>
     {
-        let (ray, mut found) = (*ray, Vec::new());
-        self.broad_phase.interferences_with_ray(&ray, &mut found);
-        let probe = WorldProbe::Ray(ray);
-        self.candidates(found, &|volume| probe.meets(volume), &groups.into())
+        let ray = *ray;
+        self.met(&WorldProbe::Ray(ray), N::INFINITY, &groups.into())
             .filter_map(move |object| Some((object, cast(&object.body, &ray, N::INFINITY, true)?)))
     }
 

@@ -1,5 +1,7 @@
 //! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
 
+use core::cell::Cell;
+
 use super::QueryFilter;
 use super::ranking::{BestOne, Rank, RankRange, Ranked, Ranking};
 use crate::bounding_volume::{Aabb, Ray};
@@ -7,8 +9,9 @@ use crate::broad_phase::Proposal;
 use crate::bvh::GROUP;
 use crate::math::{Real, Space, Vector};
 use crate::narrow_phase::CollisionObjectHandle;
+use crate::partitioning::Sweep;
 use crate::world::bodies::WorldBody;
-use crate::world::{CollisionObject, CollisionWorld, WorldBroadPhase};
+use crate::world::{CollisionObject, CollisionWorld, DirtyTree, DirtyVisitor, WorldBroadPhase};
 
 /// What the boxes are asked; the key of a box is a time or a distance.
 #[derive(Clone, Copy, Debug)]
@@ -22,18 +25,15 @@ pub(super) enum WorldProbe<N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
-    /// The key of one box, which is never above that of a solid in it; `None` if the solid has none.
-    fn key(&self, aabb: &Aabb<N, D>) -> Option<N> {
+    /// The boxes of dirty objects, those of least keys about first.
+    fn visit_dirty(&self, tree: &DirtyTree<D>, limit: N, visit: &mut DirtyVisitor<'_, N>) {
+        let tables = &N::tables().world;
+        let along = |sweep, visit| (tables.dirty_by_time)(tree, &sweep, limit, visit);
         match self {
-            Self::Ray(ray) => aabb.ray_interval(ray).map(|(enter, _)| enter),
-            Self::Near(own) => Some(aabb.distance_to_aabb(own)),
-            Self::Cast(own, velocity) => aabb.sweep_interval(own, velocity).map(|(enter, _)| enter),
+            Self::Ray(ray) => along(Sweep::along(ray), visit),
+            Self::Near(own) => (tables.dirty_by_distance)(tree, own, limit, visit),
+            Self::Cast(own, velocity) => along(Sweep { aabb: *own, velocity: *velocity }, visit),
         }
-    }
-
-    /// A solid in the box may have a key.
-    pub(super) fn meets(&self, aabb: &Aabb<N, D>) -> bool {
-        self.key(aabb).is_some()
     }
 
     /// The boxes of the broad phase, those of least keys about first.
@@ -55,6 +55,9 @@ impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
 
 /// Gets some objects that the broad phase proposes, and returns the largest key that still counts.
 type ProposalVisitor<'a, N> = dyn FnMut(&[Proposal<'_, N, CollisionObjectHandle>]) -> N + 'a;
+
+/// A few objects, and bounds below their keys.
+type ProposedGroup<'a, N, const D: usize, T> = [Option<(&'a CollisionObject<N, D, T>, N)>; GROUP];
 
 /// An object and what was found about it.
 type FoundObject<'a, N, const D: usize, T, A> = (&'a CollisionObject<N, D, T>, A);
@@ -101,10 +104,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
         measure: &Measure<'_, N, D, A>,
     ) {
-        let mut limit = ranking.limit_of_boxes();
-        let mut consider = |object: &'a CollisionObject<N, D, T>, key: N, limit: N| {
-            if key <= limit
-                && self.allows(object, filter)
+        self.propose(probe, ranking.limit_of_boxes(), |object, limit| {
+            if self.allows(object, filter)
                 && let Some((key, answer)) = measure(&object.body, ranking.limit())
             {
                 let handle = object.body.handle;
@@ -112,48 +113,55 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
                 return ranking.limit_of_boxes();
             }
             limit
-        };
-        for (object, volume) in self.astray() {
-            if let Some(key) = probe.key(&volume) {
-                limit = consider(object, key, limit);
-            }
-        }
-        probe.visit(&*self.broad_phase, limit, &mut |proposals| {
-            for group in proposals.chunks(GROUP) {
-                let objects = self.gathered(group);
-                for (object, one) in objects.into_iter().zip(group) {
-                    limit = object.map_or(limit, |object| consider(object, one.key(), limit));
-                }
-            }
-            limit
         });
     }
 
-    /// The objects of a few proposals: they lie apart from each other, and memory is slow one by one.
-    #[inline]
-    fn gathered(
-        &self,
-        group: &[Proposal<'_, N, CollisionObjectHandle>],
-    ) -> [Option<&CollisionObject<N, D, T>>; GROUP] {
-        let mut objects = [None; GROUP];
-        for (object, one) in objects.iter_mut().zip(group) {
-            *object = self.settled_proposal(one);
+    /// Calls `visit` with each object whose box may have a key of at most `limit`, and with some others, near ones
+    /// about first, each once. `visit` gets and returns the largest key that still counts; a negative one ends the
+    /// search.
+    ///
+    /// Dirty objects are proposed by a tree of their own, whatever the broad phase proposes.
+    pub(super) fn propose<'a>(
+        &'a self,
+        probe: &WorldProbe<N, D>,
+        limit: N,
+        mut visit: impl FnMut(&'a CollisionObject<N, D, T>, N) -> N,
+    ) {
+        let limit = Cell::new(limit);
+        let mut visit_all = |group: ProposedGroup<'a, N, D, T>| {
+            for (object, key) in group.into_iter().flatten() {
+                if key <= limit.get() {
+                    limit.set(visit(object, limit.get()));
+                }
+            }
+            limit.get()
+        };
+        if let Some(tree) = self.objects.dirty_tree(&*self.broad_phase) {
+            let of_dirty = |&(id, key): &(u32, N)| Some((self.objects.of_dirty(tree, id)?, key));
+            probe.visit_dirty(tree, limit.get(), &mut |found| visit_all(gathered(found, of_dirty)));
+            if tree.has_all() {
+                return;
+            }
         }
-        objects
+        let of_clean = |one: &Proposal<'_, N, _>| Some((self.clean_proposal(one)?, one.key()));
+        probe.visit(&*self.broad_phase, limit.get(), &mut |proposals| {
+            let groups = proposals.chunks(GROUP);
+            groups.fold(limit.get(), |_, group| visit_all(gathered(group, of_clean)))
+        });
     }
 
-    /// The object of a proposal, if it is where it was at the last update.
+    /// The object of a proposal of the broad phase, if it lives and is not dirty.
     ///
     /// As a rule the number of its proxy tells where it is, which saves the way through the broad phase's
     /// record. A proxy with the number of that of a living object is that object's.
     #[inline]
-    pub(super) fn settled_proposal(
+    fn clean_proposal(
         &self,
         proposal: &Proposal<'_, N, CollisionObjectHandle>,
     ) -> Option<&CollisionObject<N, D, T>> {
         let expected = proposal.uid().and_then(|uid| self.objects.of_proxy(uid));
-        let Some(object) = expected else { return self.settled(*proposal.data()) };
-        (!self.objects.changes.is_astray(&object.body)).then_some(object)
+        let object = expected.or_else(|| self.objects.get(*proposal.data()))?;
+        (!self.objects.changes.is_dirty(&object.body)).then_some(object)
     }
 
     /// The filter allows a living object.
@@ -172,4 +180,15 @@ fn answer<'a, N: Space<D>, const D: usize, T, A>(
 ) -> QueryAnswer<'a, N, D, T, A> {
     let (object, answer) = ranked.answer;
     (object, ranked.key, answer)
+}
+
+/// The objects of a few proposals, before any is looked at: they lie apart from each other, and memory is slow one by
+/// one.
+#[inline]
+fn gathered<P, A: Copy>(group: &[P], find: impl Fn(&P) -> Option<A>) -> [Option<A>; GROUP] {
+    let mut found = [None; GROUP];
+    for (found, one) in found.iter_mut().zip(group) {
+        *found = find(one);
+    }
+    found
 }

@@ -107,7 +107,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> bool {
         let placed = Placed::of_isometry(position, shape.geometry());
         around(position, shape).is_some_and(|aabb| {
-            self.any_meeting(&aabb, |object| {
+            self.any_met(&WorldProbe::Near(aabb), N::ZERO, |object| {
                 self.allows(object, filter) && touches(&placed, &object.body)
             })
         })

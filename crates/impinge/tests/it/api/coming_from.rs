@@ -14,9 +14,10 @@ use impinge::dim3::narrow_phase::{
 use impinge::dim3::partitioning::BoxTree;
 use impinge::dim3::procedural;
 use impinge::dim3::query::{
-    ConstantVelocities, Contact, ContactManifold, ImpactOptions, ImpactStatus, Moving, PointQuery,
-    Proximity, Ray, RayCast, RigidMotion, TrackedContact, closest_points, contact, distance,
-    impact, nonlinear_time_of_impact, proximity, time_of_impact,
+    ConstantVelocities, Contact, ContactId, ContactManifold, ContactPrediction, ImpactOptions,
+    ImpactStatus, MassProperties, Moving, PointQuery, Proximity, Ray, RayCast, RigidMotion,
+    TrackedContact, closest_points, contact, contact_manifolds, distance, impact, mass_properties,
+    mass_properties_with, nonlinear_time_of_impact, proximity, time_of_impact,
 };
 use impinge::dim3::shape::{
     Ball, Capsule, CompositeShape, Compound, Cone, ConvexHull, Cuboid, Cylinder, Diagonal,
@@ -85,6 +86,15 @@ fn the_world() {
     world.update();
     assert_eq!(world.contact_events().len(), 1, "it has stopped");
     assert_eq!(world.collision_object(right).map(|object| object.handle().uid()), Some(1), "named");
+    world.set_fixed(sensor, true);
+    world.set_skin(right, 0.5);
+    world.set_position_with_prediction(right, at(9.0), at(20.0));
+    assert_eq!(world.predicted_position(right), Some(&at(20.0)), "through the sensor");
+    world.keep_events();
+    world.update_with(&mut |_, _| true);
+    assert_eq!(world.contact_events().len(), 1, "kept");
+    assert!(world.pairs_with(right).map(CollisionObject::handle).eq([sensor]), "on the way");
+    assert!(world.update_pair(sensor, right), "a pair");
     world.remove(&[left]);
     world.retain(|object| *object.data() != "sensor");
     assert_eq!(world.len(), 1, "one is left");
@@ -197,7 +207,7 @@ fn questions() {
     let (one, two) = (Moving::still(&here, &ball), Moving::new(&there, &away, &ball));
     assert_eq!(impact(&one, &two, &options), None, "they part");
     let hit = impact(&one, &two, &counting).expect("they overlap");
-    assert_eq!((hit.toi, hit.status), (0.0, ImpactStatus::Reached), "at the start");
+    assert_eq!((hit.toi, hit.status), (0.0, ImpactStatus::PenetratingAtStart), "at the start");
     let flies = ConstantVelocities::<f64>::new(at(9.0), -Vector::x(), Vector::zeros());
     let motions: [&dyn RigidMotion<f64, 3>; 2] = [&ConstantVelocities::<f64>::still(here), &flies];
     let [one, two] = motions;
@@ -215,6 +225,40 @@ fn questions() {
     assert_eq!(shape.distance_to_point(&here, &outside, true), 2.0, "above it");
     assert!(!shape.contains_point(&here, &outside), "above it");
     assert_eq!(shape.project_point_with_location(&here, &outside, true).1.part, 0, "one part");
+}
+
+#[test]
+fn questions_of_engines() {
+    let (ball, here, there) = (Ball::new(1.0), at(0.0), at(1.5));
+    let near = ContactPrediction::new(0.0, 0.0, 0.0);
+    let manifolds = contact_manifolds(&here, &ball, &there, &ball, &near, None);
+    let id = manifolds[0].contacts()[0].id;
+    assert_ne!(id, ContactId::NULL, "a contact");
+    let status = |x: f64| {
+        let (one, two) = (Moving::still(&here, &ball), at(x));
+        impact(&one, &Moving::new(&two, &-Vector::x(), &ball), &ImpactOptions::new())
+            .map(|hit| hit.status)
+    };
+    assert_eq!(status(3.0), Some(ImpactStatus::Reached), "apart at first");
+    assert_eq!(status(2.0), Some(ImpactStatus::TouchingAtStart), "it touches");
+    assert_eq!(status(1.5), Some(ImpactStatus::PenetratingAtStart), "it overlaps");
+    assert_ne!(status(9.0), Some(ImpactStatus::StepsSpent), "a few steps will do");
+    let (center, spin) = (Point::new(1.0, 0.0, 0.0), Vector::y());
+    let turns = ConstantVelocities::<f64>::new(here, Vector::x(), spin)
+        .with_start_time(2.0)
+        .with_local_center(center)
+        .append_transformation(&at(1.0))
+        .prepend_transformation(&at(-1.0));
+    assert_eq!((turns.start(), turns.start_time()), (&here, 2.0), "there and back");
+    assert_eq!((turns.linear_velocity(), turns.angular_velocity()), (&Vector::x(), spin), "given");
+    let body: MassProperties<f64> = mass_properties(&ball, 3.0).expect("a ball");
+    let same: MassProperties<f64> = mass_properties_with(&ball, &mut |_| 3.0).expect("a ball");
+    assert_eq!((body.inverse_mass(), body.inertia()), (1.0 / same.mass(), same.inertia()), "same");
+    let moved = body.transformed(&there);
+    assert_eq!(moved.center_of_mass().x, 1.5, "placed");
+    assert_eq!(moved.principal_moments()[0], body.inertia()[(0, 0)], "turned or not");
+    let inverse = moved.inverse_inertia_at(&there) * body.inertia();
+    assert!((inverse[(1, 1)] - 1.0).abs() < 1e-15, "the inverse");
 }
 
 #[test]

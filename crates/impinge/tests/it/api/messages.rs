@@ -183,7 +183,7 @@ fn worlds_print_what_users_know() {
     world.register_broad_phase_pair_filter("all", |_: &Object, _: &Object| true);
     world.set_broad_phase(Box::new(DBVTBroadPhase::new(0.1)));
     world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
-    let pending = ["events of removed objects: 1", "other filters", "broad phase", "narrow phase"];
+    let pending = ["queued events: 1", "other filters", "broad phase", "narrow phase"];
     prints(&world, &pending);
     assert!(!format!("{world:?}").contains("changed objects"), "it is gone");
     world.update();

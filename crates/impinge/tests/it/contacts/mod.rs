@@ -8,4 +8,5 @@ mod contract;
 mod curved_depths;
 mod pair_batches;
 mod smooth_solids;
+mod stateless;
 mod ties;

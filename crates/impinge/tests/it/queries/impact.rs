@@ -149,8 +149,11 @@ fn starts_in_contact_count_by_their_velocities() {
         assert_eq!(cast(V2::zeros()), resting, "at rest {what}");
         let always = options.with_contact_at_start(true);
         for v in [-V2::y(), V2::y(), V2::new(5.0, 1e-3), V2::x(), V2::zeros()] {
-            let hit = onto_with(still, (at(3.0, height), v, shape), &always).map(|i| i.toi);
-            assert_eq!(hit, Some(0.0), "{v} {what}, if every contact counts");
+            let hit = onto_with(still, (at(3.0, height), v, shape), &always);
+            let hit = hit.map(|hit| (hit.toi, hit.status));
+            let status =
+                if deep { ImpactStatus::PenetratingAtStart } else { ImpactStatus::TouchingAtStart };
+            assert_eq!(hit, Some((0.0, status)), "{v} {what}, if every contact counts");
             let above = (at(3.0, height + 1e-3), V2::y(), shape);
             assert!(deep || onto_with(still, above, &always).is_none(), "none {what}");
         }
@@ -175,6 +178,7 @@ fn half_spaces() {
     let aside = Plane::new(Unit::new_unchecked(V2::x()));
     let without_bound = onto(&up, at(3.0, 6.0), V2::y(), &aside).expect("they overlap");
     assert_eq!(without_bound.toi, 0.0, "and always will");
+    assert_eq!(without_bound.status, ImpactStatus::PenetratingAtStart, "without bound");
 }
 
 #[test]
@@ -266,6 +270,7 @@ fn overlapping_starts<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
             assert_eq!(hit.toi, N::ZERO, "{kind1:?} {kind2:?}");
             assert_eq!((hit.world1, hit.world2), (found.world1, found.world2), "the contact's");
             assert_eq!(hit.normal, found.normal, "{kind1:?} {kind2:?}");
+            assert_eq!(hit.status, ImpactStatus::PenetratingAtStart, "{kind1:?} {kind2:?}");
             assert_eq!(cast(normal), None, "separating {kind1:?} {kind2:?}");
             assert_eq!(cast(Vector::<N, D>::zeros()), Some(hit), "at rest {kind1:?} {kind2:?}");
             let always = ImpactOptions::new().with_contact_at_start(true);

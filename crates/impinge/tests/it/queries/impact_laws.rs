@@ -110,10 +110,21 @@ where
         let end = found.map_or(self.options.max_time, |found| found.toi);
         assert!(end >= N::ZERO && end <= self.options.max_time, "{end} {what}");
         let start = gap(N::ZERO);
+        let is_at_start = found.is_some_and(|found| found.status.is_at_start());
+        assert!(!is_at_start || end == N::ZERO, "{found:?} {what}");
         if start <= noise {
-            // Starts in contact are a matter of policy.
+            // Whether starts in contact count is a matter of policy, what they are is not.
+            let is_named = found.is_none_or(|found| found.toi > N::ZERO || is_at_start);
+            assert!(is_named, "{found:?} starts at {start} {what}");
+            let status = found.map(|found| found.status);
+            let is_deep = is_at_start && start < -noise;
+            assert!(
+                !is_deep || status == Some(ImpactStatus::PenetratingAtStart),
+                "{status:?} {what}"
+            );
             return false;
         }
+        assert!(!is_at_start, "{found:?} starts at {start} {what}");
         for look in 0..LOOKS {
             let share = N::lit(f64::from(look) / f64::from(LOOKS));
             // All over the way, and ever closer to its end.
@@ -143,7 +154,11 @@ where
         let found = impact(&one, &two, &self.options);
         let swapped = impact(&two, &one, &self.options).map(|found| found.flipped());
         assert_eq!(found, swapped, "{}", self.what);
-        assert!(found.is_none_or(|found| found.status == ImpactStatus::Reached), "{}", self.what);
+        assert!(
+            found.is_none_or(|found| found.status != ImpactStatus::StepsSpent),
+            "{}",
+            self.what
+        );
         self.check(found.as_ref(), &|time| self.straight(time), self.noise())
     }
 
@@ -216,8 +231,8 @@ where
             straight += u32::from(scene.linear());
             for (count, told) in [known, opaque].into_iter().enumerate() {
                 match scene.turning(&setting, told) {
-                    Some(ImpactStatus::Reached) => turning[count] += 1,
                     Some(ImpactStatus::StepsSpent) => spent[count] += 1,
+                    Some(_) => turning[count] += 1,
                     None => {}
                 }
             }

@@ -6,6 +6,7 @@ mod hull;
 mod impact;
 mod impact_laws;
 mod impact_turning;
+mod mass;
 mod pair_table;
 mod point_by_hand;
 mod point_shapes;

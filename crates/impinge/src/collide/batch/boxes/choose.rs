@@ -2,7 +2,7 @@
 
 use super::LANES;
 use super::admit::Slots;
-use crate::collide::manifold::ids::{AnchorList, Inherited, PairPose, matched};
+use crate::collide::manifold::ids::{AnchorList, PairPose, each_match};
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::slack_level;
 use crate::collide::{RawManifold, RawPoint};
@@ -24,6 +24,7 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize> {
     pub(super) tolerance: N,
     /// Of the pair, for what is in proportion to it.
     pub(super) size: N,
+    pub(super) normal: &'a [[N; LANES]; D],
 }
 
 /// How the slots of one pair are named.
@@ -51,10 +52,10 @@ const fn slot_of(code: u32) -> usize {
 /// The ids of the old points, for the slots that continue them.
 struct KeptSlots {
     slots: u32,
-    /// Those at the place of the old point.
-    old: u32,
     /// All of the old points are candidates again, and in the same slots.
     is_still: bool,
+    /// The old points that are not, by bits.
+    left: u32,
     ids: [u32; SLOTS],
 }
 
@@ -66,8 +67,8 @@ impl KeptSlots {
         naming: &impl Naming,
         valid: u32,
     ) -> Self {
-        let mut kept = Self { slots: 0, old: 0, is_still: true, ids: [0; SLOTS] };
-        for point in old {
+        let mut kept = Self { slots: 0, is_still: true, left: 0, ids: [0; SLOTS] };
+        for (at, point) in old.iter().enumerate() {
             let own = slot_of(point.code);
             let is_same = point.code == naming.code(own) && valid >> own & 1 == 1;
             kept.is_still &= is_same;
@@ -75,10 +76,21 @@ impl KeptSlots {
             if let Some(slot) = slot {
                 kept.slots |= 1 << slot;
                 kept.ids[slot] = point.id;
+            } else {
+                kept.left |= 1 << (at & 31);
             }
         }
-        kept.old = kept.slots;
         kept
+    }
+
+    /// Leaves the ids of some slots, and the old points whose ids these have not.
+    fn retain<N: Real, const D: usize>(&mut self, slots: u32, old: &[RawPoint<N, D>]) {
+        self.slots &= slots;
+        self.left = 0;
+        for (at, point) in old.iter().enumerate() {
+            let is_kept = ones(self.slots).any(|slot| self.ids[slot] == point.id);
+            self.left |= u32::from(!is_kept) << (at & 31);
+        }
     }
 
     #[inline(always)]
@@ -113,67 +125,63 @@ impl Iterator for Ones {
 }
 
 impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
-    /// Replaces the points of a manifold by at most `limit` of the candidates; answers whether it did. It does not
-    /// where old points and candidates are left that have no features in common.
+    /// Replaces the points of a manifold, and its normal, by at most `limit` of the candidates.
     #[inline(always)]
-    pub(super) fn settle(
-        &self,
-        naming: &impl Naming,
-        limit: usize,
-        raw: &mut RawManifold<N, D>,
-    ) -> bool {
-        let kept = KeptSlots::of(&raw.points, naming, self.valid);
-        let is_matched =
-            kept.slots == self.valid || kept.slots.count_ones() as usize == raw.points.len();
-        if is_matched {
-            self.put(&kept, naming, limit, raw);
+    pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
+        let mut kept = KeptSlots::of(&raw.points, naming, self.valid);
+        if kept.left != 0 && kept.slots != self.valid {
+            self.match_places(naming, raw, self.valid, &mut kept);
         }
-        is_matched
-    }
-
-    /// As [`Self::settle`], by features and places: `pose` is how the pair lies now.
-    pub(super) fn settle_matched(
-        &self,
-        naming: &impl Naming,
-        limit: usize,
-        pose: &PairPose<'_, N, D>,
-        raw: &mut RawManifold<N, D>,
-    ) {
-        let anchors = |slot| {
-            let (point1, features) = (self.point1(slot), naming.features(slot));
-            pose.anchors(&point1, self.distance(slot), ([0; 2], features))
-        };
-        let new: AnchorList<N, D> = ones(self.valid).map(anchors).collect();
-        let mut kept = KeptSlots { slots: 0, old: 0, is_still: false, ids: [0; SLOTS] };
-        let ids = |at: usize| raw.points[at].id;
-        let heirs = matched(&raw.anchors(), ids, &new, self.size);
-        for (slot, Inherited { id, is_old }) in
-            ones(self.valid).zip(heirs).filter_map(|(slot, kept)| Some((slot, kept?)))
-        {
-            kept.slots |= 1 << slot;
-            kept.old |= u32::from(is_old) << slot;
-            kept.ids[slot] = id;
-        }
-        self.put(&kept, naming, limit, raw);
-    }
-
-    /// Replaces the points of a manifold by at most `limit` of the candidates.
-    #[inline(always)]
-    fn put(
-        &self,
-        kept: &KeptSlots,
-        naming: &impl Naming,
-        limit: usize,
-        raw: &mut RawManifold<N, D>,
-    ) {
         let is_full = self.valid.count_ones() as usize <= limit;
-        let slots = if is_full { self.valid } else { self.chosen(limit, kept.old) };
-        let deepest = self.deepest(slots, kept.old);
+        let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
+        if !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
+            // The ids of candidates that are not chosen go to chosen ones near them.
+            kept.retain(slots, &raw.points);
+            self.match_places(naming, raw, slots, &mut kept);
+        }
+        let deepest = self.deepest(slots, kept.slots);
         if kept.is_still && kept.slots == slots {
             self.put_all(deepest, raw);
         } else {
-            self.replace(slots, deepest, kept, naming, raw);
+            self.replace(slots, deepest, &kept, naming, raw);
         }
+        raw.normal = self.normal();
+    }
+
+    /// Gives those of some slots that have no ids those of the old points that are left, by place.
+    #[inline(never)]
+    fn match_places(
+        &self,
+        naming: &impl Naming,
+        raw: &RawManifold<N, D>,
+        some: u32,
+        kept: &mut KeptSlots,
+    ) {
+        let pose = PairPose { pose12: None, normal: &self.normal() };
+        let (mut olds, mut news) = (AnchorList::new(), AnchorList::new());
+        for at in ones(kept.left) {
+            olds.push(raw.anchors(&raw.points[at]));
+        }
+        let slots = some & !kept.slots;
+        for slot in ones(slots) {
+            let names = ([0; 2], naming.features(slot));
+            news.push(pose.anchors(&self.point1(slot), self.distance(slot), names));
+        }
+        each_match(&olds, &news, self.size, &mut |old, new, _| {
+            let nth = |bits: u32, count| ones(bits).nth(count).expect("as many as points");
+            let (at, slot) = (nth(kept.left, old), nth(slots, new));
+            kept.slots |= 1 << slot;
+            kept.ids[slot] = raw.points[at].id;
+        });
+    }
+
+    #[inline(always)]
+    fn normal(&self) -> Vector<N, D> {
+        let lane = self.lane & (LANES - 1);
+        Vector::<N, D>::from_fn(
+            #[inline(always)]
+            |axis, _| self.normal[axis][lane],
+        )
     }
 
     /// Nothing has changed but places.
@@ -270,7 +278,10 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
             let lowest = ones(self.valid).filter(|&slot| self.distance(slot) <= least);
             level = lowest.fold(0, |slots, slot| slots | 1 << slot);
         }
-        let slack = slack_level(self.gap, self.size, self.tolerance);
+        // An old point that is the deepest needs none to stand for it.
+        let has_old = level & kept != 0;
+        let slack =
+            if has_old { -N::INFINITY } else { slack_level(self.gap, self.size, self.tolerance) };
         let mut points = Projections::new();
         for slot in ones(self.valid) {
             let [is_level, is_kept] = [level, kept].map(|slots| slots >> slot & 1 == 1);

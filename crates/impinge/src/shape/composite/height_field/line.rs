@@ -258,6 +258,10 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         visit(part.into());
         visit(u64::from(part) + 1);
     }
+
+    fn built_in(&self) -> Option<&dyn Shape<N, 2>> {
+        Some(self)
+    }
 }
 
 impl<N: Real> Shape<N, 2> for HeightField<N, 2> {

@@ -438,6 +438,10 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
             visit((row * self.grid.columns + column) as u64);
         }
     }
+
+    fn built_in(&self) -> Option<&dyn Shape<N, 3>> {
+        Some(self)
+    }
 }
 
 impl<N: Real> Shape<N, 3> for HeightField<N, 3> {

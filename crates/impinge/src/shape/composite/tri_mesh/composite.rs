@@ -49,6 +49,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
         let corners = &self.triangles[part as usize];
         corners.iter().for_each(|&vertex| visit(self.topology.joints.of(vertex).into()));
     }
+
+    fn built_in(&self) -> Option<&dyn Shape<N, D>> {
+        Some(self)
+    }
 }
 
 impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {

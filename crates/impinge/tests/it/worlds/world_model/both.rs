@@ -10,7 +10,7 @@ use impinge::query::{Proximity, Ray};
 use impinge::world::{CollisionObject, CollisionWorld, WorldError};
 use impinge_reference::geometry::Pose;
 use impinge_reference::random::Random;
-use impinge_reference::world::{Handle, NaiveWorld};
+use impinge_reference::world::{Events, Handle, NaiveWorld};
 
 use super::draw::{self, Grid};
 use super::twins::{self, OnGrid, Twins};
@@ -30,6 +30,19 @@ pub(crate) struct Tally {
     pub(crate) touching: usize,
     pub(crate) queries: usize,
     pub(crate) hits: usize,
+    /// Pairs of fixed objects that overlap.
+    pub(crate) fixed: usize,
+    /// Events that were kept over an update.
+    pub(crate) kept: usize,
+    /// Pairs computed between updates, and those of them that came to touch or parted thereby.
+    pub(crate) substeps: usize,
+    pub(crate) changed: usize,
+    /// Pairs that a lent filter was asked about.
+    pub(crate) asked: usize,
+    /// Removed objects that events name.
+    pub(crate) named: usize,
+    /// Contacts of solids whose skins alone overlap.
+    pub(crate) in_skins: usize,
 }
 
 /// The status of each pair as the events tell it.
@@ -40,13 +53,23 @@ struct Told {
 }
 
 pub(crate) struct Both<N: Grid<D>, const D: usize> {
-    random: Random,
-    world: CollisionWorld<N, D, u64>,
-    naive: NaiveWorld<D, OnGrid<D>>,
-    twins: Twins,
-    alive: Vec<CollisionObjectHandle>,
-    stale: Vec<CollisionObjectHandle>,
+    pub(super) random: Random,
+    pub(super) world: CollisionWorld<N, D, u64>,
+    pub(super) naive: NaiveWorld<D, OnGrid<D>>,
+    pub(super) twins: Twins,
+    pub(super) alive: Vec<CollisionObjectHandle>,
+    pub(super) stale: Vec<CollisionObjectHandle>,
     told: Told,
+    /// The data of all objects that ever were.
+    pub(super) data: BTreeMap<CollisionObjectHandle, u64>,
+    /// Removed objects whose data were taken.
+    pub(super) taken: Vec<CollisionObjectHandle>,
+    /// The number of the filter that is lent to each update, if one is; see [`Grid::register`].
+    pub(super) lent: Option<usize>,
+    /// The next update keeps the events of the last one.
+    pub(super) keeps_events: bool,
+    /// The events of the last update, with those that it kept.
+    last: Events,
     pub(crate) tally: Tally,
 }
 
@@ -62,13 +85,18 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
             alive: Vec::new(),
             stale: Vec::new(),
             told: Told::default(),
+            data: BTreeMap::new(),
+            taken: Vec::new(),
+            lent: None,
+            keeps_events: false,
+            last: Events::default(),
             tally: Tally::default(),
         }
     }
 
     /// Does one thing to both, at random.
     pub(crate) fn operate(&mut self) {
-        match self.random.below(100) {
+        match self.random.below(124) {
             0..10 => self.add(),
             10..17 => self.remove(),
             17..38 => self.shift(),
@@ -81,12 +109,13 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
             66..67 => self.exchange_phases(),
             67..71 => self.try_nonsense(),
             71..83 => self.ask(),
-            _ => self.update(),
+            83..100 => self.update(),
+            _ => self.operate_as_engine(),
         }
     }
 
     /// A living object, if there is one.
-    fn someone(&mut self) -> Option<(CollisionObjectHandle, Handle)> {
+    pub(super) fn someone(&mut self) -> Option<(CollisionObjectHandle, Handle)> {
         let handle = (!self.alive.is_empty()).then(|| *self.random.pick(&self.alive))?;
         Some((handle, self.twins[&handle]))
     }
@@ -108,6 +137,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert!(known.is_none(), "a handle is never given twice");
         let object = self.world.collision_object(handle).expect("it was added");
         assert_eq!((object.position(), *object.data()), (&position, data), "as given");
+        self.data.insert(handle, data);
         self.alive.push(handle);
     }
 
@@ -123,9 +153,14 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         self.naive.remove(&naive).expect("they are alive");
         assert!(handles.iter().all(|&handle| !self.world.contains(handle)), "gone at once");
         self.stale.extend(handles);
+        self.check_data();
     }
 
-    fn place(&mut self, handle: CollisionObjectHandle, (position, pose): (N::Isometry, Pose<D>)) {
+    pub(super) fn place(
+        &mut self,
+        handle: CollisionObjectHandle,
+        (position, pose): (N::Isometry, Pose<D>),
+    ) {
         self.world.set_position(handle, position);
         self.naive.set_position(self.twins[&handle], pose).expect("alive");
     }
@@ -223,9 +258,14 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
     }
 
     fn update(&mut self) {
-        self.world.update();
-        let events = self.naive.update();
-        self.world.validate().expect("the parts of the world agree");
+        self.update_world();
+        let new = self.naive.update();
+        let mut events = std::mem::take(&mut self.last);
+        if !std::mem::take(&mut self.keeps_events) {
+            events = Events::default();
+        }
+        let kept = (events.contacts.len(), events.proximities.len());
+        events.append(&new);
         let contacts = twins::contact_events(&self.twins, self.world.contact_events());
         let proximities = twins::proximity_events(&self.twins, self.world.proximity_events());
         let different = contacts != events.contacts || proximities != events.proximities;
@@ -236,10 +276,16 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         assert_eq!(touching, self.naive.touching_pairs(), "pairs with contacts");
         let close = twins::close(&self.twins, &self.world);
         assert_eq!(close, self.naive.close_pairs(), "pairs that are not disjoint");
-        self.listen();
+        self.listen(kept);
+        self.last = events;
+        self.check_pairs_of_objects();
+        self.count_rare_pairs();
+        self.check_data();
+        self.check_removed();
         self.tally.updates += 1;
-        self.tally.transitions += proximities.len();
-        self.tally.removal_events += events.removed_contacts + events.removed_proximities;
+        self.tally.transitions += new.proximities.len();
+        self.tally.removal_events += new.removed_contacts + new.removed_proximities;
+        self.tally.kept += kept.0 + kept.1;
         self.tally.touching += touching.len();
         self.tally.near += self.world.contact_pairs().count();
     }
@@ -267,9 +313,10 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
         text
     }
 
-    /// Follows the events: each start has one stop, each status is the one that was told before.
-    fn listen(&mut self) {
-        for event in self.world.contact_events() {
+    /// Follows the events behind those that were kept: each start has one stop, each status is the one that
+    /// was told before.
+    fn listen(&mut self, kept: (usize, usize)) {
+        for event in &self.world.contact_events()[kept.0..] {
             let consistent = match *event {
                 ContactEvent::Started(a, b) => self.told.touching.insert((a, b), ()).is_none(),
                 ContactEvent::Stopped(a, b) => self.told.touching.remove(&(a, b)).is_some(),
@@ -277,7 +324,7 @@ impl<N: Grid<D>, const D: usize> Both<N, D> {
             assert!(consistent, "{event:?} out of turn");
             self.tally.started += usize::from(matches!(event, ContactEvent::Started(..)));
         }
-        for event in self.world.proximity_events() {
+        for event in &self.world.proximity_events()[kept.1..] {
             let pair = (event.collider1, event.collider2);
             let before = self.told.proximity.insert(pair, event.new_status);
             assert_eq!(before.unwrap_or(Proximity::Disjoint), event.prev_status, "{event:?}");

@@ -4,8 +4,9 @@ use std::cell::Cell;
 
 use impinge::bounding_volume::{Aabb, BoundingVolume};
 use impinge::math::{Point, Space};
+use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::query::{ClosestPoints, ImpactOptions, Ray, RayBatch};
-use impinge::shape::ShapeHandle;
+use impinge::shape::{Ball, Plane, ShapeHandle};
 use impinge::world::CollisionGroups;
 use impinge_reference::random::Random;
 
@@ -126,6 +127,42 @@ impl<N: Stage<D>, const D: usize> Scene<N, D> {
             }
         }
         self.add(8);
+    }
+
+    /// One change that no update has seen, or an update.
+    fn change_one(&mut self) {
+        let handles: Vec<_> = self.world.collision_objects().map(Object::handle).collect();
+        let handle = *self.random.pick(&handles[1..]);
+        match self.random.below(40) {
+            0..3 => self.add(1),
+            3..6 => self.world.remove(&[handle]),
+            6..10 => self.world.set_shape(handle, random_shape(&mut self.random)),
+            10 => self.world.set_shape(handle, ground()),
+            11..13 => self.world.set_collision_groups(handle, random_groups(&mut self.random)),
+            13 => self.world.update(),
+            14..20 => {
+                let pose = self.pose();
+                self.world.set_position(handle, pose);
+            }
+            20 => self.shift_all(&handles[1..]),
+            _ => self.shift_all(&[handle]),
+        }
+        let planes = |object: &&Object<N, D>| object.shape().is_shape::<Plane<N, D>>();
+        let plane = self.world.collision_objects().skip(1).find(planes).map(Object::handle);
+        if let Some(plane) = plane.filter(|_| self.random.chance(0.2)) {
+            self.world.set_shape(plane, random_shape(&mut self.random));
+        }
+    }
+
+    /// Moves objects a little.
+    fn shift_all(&mut self, handles: &[CollisionObjectHandle]) {
+        for &handle in handles {
+            let object = self.world.collision_object(handle).expect("it is there");
+            let middle = N::pose(object.position()).translation;
+            let shift = self.random.vector::<D>(0.3);
+            let place = core::array::from_fn(|axis| middle[axis].as_f64() + shift[axis]);
+            self.world.set_position(handle, N::pose_at(place, self.random.range(-3.0, 3.0)));
+        }
     }
 
     fn choice<'a>(&mut self) -> Choice<'a, N, D> {
@@ -325,6 +362,65 @@ fn everywhere<N: Stage<D>, const D: usize>() {
     play::<N, D>(3, 1e6, true);
 }
 
+/// A question after each change, whether the last update knows few or many of the boxes.
+fn changes_one_by_one<N: Stage<D>, const D: usize>() {
+    let mut scene = Scene::<N, D>::new(5, 0.0, true);
+    for change in 0..500 {
+        scene.change_one();
+        match change % 5 {
+            0 => scene.ray(),
+            1 => scene.point(),
+            2 => scene.solid(),
+            3 => scene.boxes(),
+            _ => scene.cast(),
+        }
+    }
+    let Answers { rays, points, holders, near, overlaps, boxes, casts } = scene.answers;
+    let least = [rays, points, holders, near, overlaps, boxes, casts].into_iter().min();
+    assert!(least >= Some(20), "every question found something: {:?}", scene.answers);
+    scene.world.update();
+    assert_eq!(scene.world.validate(), Ok(()), "the pairs after it");
+}
+
+/// Objects that moved since the last update are tested no more often than others: as many as lie near.
+fn moved_objects_are_found_by_their_boxes<N: Stage<D>, const D: usize>() {
+    let tested = [0, 100, 450, 1500].map(|moved| {
+        let mut world = World::<N, D>::new(N::lit(0.1));
+        let (mut random, ball) = (Random::new(6), ShapeHandle::new(Ball::new(N::HALF)));
+        let side = 2000_f64.powf(1.0 / D as f64);
+        let mut place = || N::pose_at(random.vector::<D>(side), 0.0);
+        for number in 0..2000 {
+            world.add(place(), ball.clone(), CollisionGroups::new(), contacts(), number);
+        }
+        world.update();
+        let handles: Vec<_> = world.collision_objects().map(Object::handle).collect();
+        let asked = Cell::new(0);
+        let count = |_: &Object<N, D>| {
+            asked.set(asked.get() + 1);
+            true
+        };
+        let filter = Filter::new().predicate(&count);
+        for (question, &handle) in handles.iter().step_by(7).take(100).enumerate() {
+            // Moves come before the first question and between questions.
+            let some = handles.len() / 100 * question..handles.len() / 100 * (question + 1);
+            for &other in handles[some].iter().take(moved / 100) {
+                world.set_position(other, place());
+            }
+            let here = *world.collision_object(handle).expect("it is there").position();
+            let (own, options) = (Ball::new(N::HALF), ImpactOptions::new());
+            let velocity = vector([1.0; D]);
+            let _ = world.cast_shape(&here, &velocity, &own, &options, &filter);
+            let _ = world.nearest_objects(&here, &own, 3, N::INFINITY, &filter);
+            let _ = world.objects_overlapping(&here, &own, &filter).count();
+            let ray = Ray::new(Point::from(N::pose(&here).translation), velocity);
+            let _ = world.first_ray_hit(&ray, N::INFINITY, true, &filter);
+        }
+        asked.get()
+    });
+    let most = tested.iter().max().expect("four");
+    assert!(2 * most < 3 * tested[0], "objects tested, with 0, 100, 450, 1500 moved: {tested:?}");
+}
+
 /// A predicate is asked once about an object, and about few.
 fn predicates<N: Stage<D>, const D: usize>() {
     let mut scene = Scene::<N, D>::new(4, 0.0, true);
@@ -345,4 +441,4 @@ fn predicates<N: Stage<D>, const D: usize>() {
     assert!(all.len() > total / 4 && all.len() < total / 2, "{} of {total}", all.len());
 }
 
-in_tests!(everywhere, predicates);
+in_tests!(everywhere, changes_one_by_one, moved_objects_are_found_by_their_boxes, predicates);

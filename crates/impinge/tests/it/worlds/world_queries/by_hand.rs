@@ -6,6 +6,7 @@ use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::query::{ClosestPoints, ImpactOptions, Ray};
 use impinge::shape::{Ball, Cuboid, ShapeHandle};
 use impinge::world::CollisionGroups;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 
 use super::stage::{Filter, Object, Stage, World, add, contacts, ground, on_x, point, vector};
 
@@ -128,6 +129,30 @@ fn changes_are_seen_at_once<N: Stage<D>, const D: usize>() {
     let here = N::pose_at(on_x(20.0), 0.0);
     let found = world.closest_object(&here, &Ball::new(N::ONE), N::ZERO, &all);
     assert_eq!(found.map(|near| near.object.handle()), Some(handles[0]), "where it went");
+}
+
+/// The first questions after a change come from many threads at once, of which some wait for each other.
+fn many_threads_ask_after_a_change<N: Stage<D>, const D: usize>()
+where
+    N::Isometry: Sync,
+{
+    let places: Vec<f64> = (0..5000).map(|x| 3.0 * f64::from(x)).collect();
+    let (mut world, handles) = row::<N, D>(&places);
+    world.update();
+    for (&handle, x) in handles.iter().zip(&places) {
+        world.set_position(handle, N::pose_at(on_x(x + 1.0), 0.0));
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(4).build().expect("four threads");
+    let (world, ray) = (&world, |x: f64| Ray::new(point(on_x(x)), vector(on_x(1.0))));
+    let found: Vec<_> = pool.install(|| {
+        let asked = places.par_iter().map(|&x| {
+            let hit = world.first_ray_hit(&ray(x + 2.5), N::ONE, true, &Filter::new());
+            hit.map(|(object, hit)| (object.handle(), hit.toi))
+        });
+        asked.collect()
+    });
+    let expected = handles.iter().skip(1).map(|&handle| Some((handle, N::HALF)));
+    assert!(found.iter().copied().eq(expected.chain([None])), "each meets the next one");
 }
 
 /// A world of half-spaces: boxes without an end on one side or on all.
@@ -278,6 +303,7 @@ in_tests!(
     neighbors_in_order,
     casts_in_order,
     changes_are_seen_at_once,
+    many_threads_ask_after_a_change,
     planes,
     zero_sizes,
     nothing_to_find,

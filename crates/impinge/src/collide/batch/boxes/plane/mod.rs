@@ -10,14 +10,12 @@ use super::admit::{Admission, Limits, Slots};
 use super::choose::SlotChoice;
 use super::masks::turned;
 use super::{Inputs, LANES, smaller_size};
-use crate::collide::batch::gather::RelativePoses;
-use crate::collide::batch::{Batch, LaneResult, PairQuestion};
+use crate::collide::batch::{Batch, PairQuestion};
 use crate::collide::manifold::contacts_of_separation2;
-use crate::collide::manifold::ids::PairPose;
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
-use crate::math::{Real, Vector, Wide};
+use crate::math::{Real, Wide};
 
 /// The ends of the upper side, the one with the smaller place first, and of the lower one.
 const SLOTS: usize = 4;
@@ -28,7 +26,6 @@ pub(in super::super) struct EightSides<N: Real> {
     gap: [N; LANES],
     tolerance: [N; LANES],
     size: [N; LANES],
-    pose: RelativePoses<N, 2>,
     normal: [[N; LANES]; 2],
     /// The lanes: the axis across the lower side is the second, the side is on the positive side of
     /// it; the same of the upper side; the lower side is the second box's; the upper side's first
@@ -51,7 +48,6 @@ impl<N: Real> EightSides<N> {
             gap: row,
             tolerance: row,
             size: row,
-            pose: RelativePoses::new(),
             normal: [row; 2],
             sides: [0; 8],
             at_ends: [0; 2 * SLOTS],
@@ -88,18 +84,8 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 2>,
-    ) -> LaneResult {
+    ) -> bool {
         found.settle(lane & (LANES - 1), max_points, raw)
-    }
-
-    fn settle_matched(
-        found: &EightSides<N>,
-        lane: usize,
-        max_points: usize,
-        pair: &Pair<'_, N, 2>,
-        raw: &mut RawManifold<N, 2>,
-    ) {
-        found.settle_matched(lane & (LANES - 1), max_points, pair, raw);
     }
 
     fn fall_back(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 2>) {
@@ -137,7 +123,6 @@ impl<N: Real> EightSides<N> {
         ];
         axis.gap.store(&mut self.gap);
         smaller_size(&boxes).store(&mut self.size);
-        self.pose.store(&boxes.rotation, &boxes.translation);
         sides.tolerance.store(&mut self.tolerance);
         axis.normal[0].store(&mut self.normal[0]);
         axis.normal[1].store(&mut self.normal[1]);
@@ -160,64 +145,25 @@ impl<N: Real> EightSides<N> {
     }
 
     #[inline(always)]
-    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> LaneResult {
-        let names = self.names(lane);
-        if names.sides & 64 != 0 {
+    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
+        let names = SideNames { sides: self.sides[lane], at_ends: self.at_ends[lane] };
+        let (is_apart, is_built) = (names.sides & 64 != 0, names.sides & 128 != 0);
+        if is_apart {
             raw.points.clear();
-            return LaneResult::Done;
+        } else if is_built {
+            let slots = u32::from(self.filled[lane]);
+            let choice = SlotChoice {
+                slots: &self.slots,
+                lane,
+                valid: slots & 15,
+                level: slots >> SLOTS,
+                gap: self.gap[lane],
+                tolerance: self.tolerance[lane],
+                size: self.size[lane],
+                normal: &self.normal,
+            };
+            choice.settle(&names, max_points.clamp(1, 2), raw);
         }
-        if names.sides & 128 == 0 {
-            return LaneResult::Declined;
-        }
-        if !self.choice(lane).settle(&names, max_points.clamp(1, 2), raw) {
-            return LaneResult::Unmatched;
-        }
-        self.keep_pose(lane, raw);
-        LaneResult::Done
-    }
-
-    fn settle_matched(
-        &self,
-        lane: usize,
-        max_points: usize,
-        pair: &Pair<'_, N, 2>,
-        raw: &mut RawManifold<N, 2>,
-    ) {
-        let (limit, normal) = (max_points.clamp(1, 2), &self.normal(lane));
-        let pose = PairPose { pose12: &pair.pose12, normal };
-        self.choice(lane).settle_matched(&self.names(lane), limit, &pose, raw);
-        self.keep_pose(lane, raw);
-    }
-
-    #[inline(always)]
-    fn names(&self, lane: usize) -> SideNames {
-        SideNames { sides: self.sides[lane], at_ends: self.at_ends[lane] }
-    }
-
-    /// The candidates of one pair.
-    #[inline(always)]
-    fn choice(&self, lane: usize) -> SlotChoice<'_, N, 2, SLOTS> {
-        let slots = u32::from(self.filled[lane]);
-        SlotChoice {
-            slots: &self.slots,
-            lane,
-            valid: slots & 15,
-            level: slots >> SLOTS,
-            gap: self.gap[lane],
-            tolerance: self.tolerance[lane],
-            size: self.size[lane],
-        }
-    }
-
-    #[inline(always)]
-    fn normal(&self, lane: usize) -> Vector<N, 2> {
-        Vector::<N, 2>::new(self.normal[0][lane], self.normal[1][lane])
-    }
-
-    /// Keeps how the boxes lie.
-    #[inline(always)]
-    fn keep_pose(&self, lane: usize, raw: &mut RawManifold<N, 2>) {
-        raw.normal = self.normal(lane);
-        self.pose.copy_to(lane, &mut raw.pose12);
+        is_apart | is_built
     }
 }

@@ -13,14 +13,12 @@ use super::admit::{Limits, Slots};
 use super::choose::{SLOTS, SlotChoice};
 use super::masks::turned;
 use super::{Boxes, Inputs, LANES, smaller_size};
-use crate::collide::batch::gather::RelativePoses;
-use crate::collide::batch::{Batch, LaneResult, PairQuestion};
+use crate::collide::batch::{Batch, PairQuestion};
 use crate::collide::manifold::contacts_of_separation3;
-use crate::collide::manifold::ids::PairPose;
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
-use crate::math::{Real, Vector, Wide};
+use crate::math::{Real, Wide};
 
 /// What is known of eight pairs before points are chosen.
 pub(in super::super) struct EightFaces<N: Real> {
@@ -29,7 +27,6 @@ pub(in super::super) struct EightFaces<N: Real> {
     gap: [N; LANES],
     tolerance: [N; LANES],
     size: [N; LANES],
-    pose: RelativePoses<N, 3>,
     normal: [[N; LANES]; 3],
     /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
     /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
@@ -52,7 +49,6 @@ impl<N: Real> EightFaces<N> {
             gap: row,
             tolerance: row,
             size: row,
-            pose: RelativePoses::new(),
             normal: [row; 3],
             sides: [0; 8],
             is_apart: 0,
@@ -90,18 +86,8 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 3>,
-    ) -> LaneResult {
+    ) -> bool {
         found.settle(lane & (LANES - 1), max_points, raw)
-    }
-
-    fn settle_matched(
-        found: &EightFaces<N>,
-        lane: usize,
-        max_points: usize,
-        pair: &Pair<'_, N, 3>,
-        raw: &mut RawManifold<N, 3>,
-    ) {
-        found.settle_matched(lane & (LANES - 1), max_points, pair, raw);
     }
 
     fn fall_back(pair: &Pair<'_, N, 3>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 3>) {
@@ -140,7 +126,6 @@ impl<N: Real> EightFaces<N> {
         ];
         axis.gap.store(&mut self.gap);
         smaller_size(&boxes).store(&mut self.size);
-        self.pose.store(&boxes.rotation, &boxes.translation);
         faces.tolerance.store(&mut self.tolerance);
         for (row, along) in self.normal.iter_mut().zip(axis.normal) {
             along.store(row);
@@ -154,46 +139,17 @@ impl<N: Real> EightFaces<N> {
     }
 
     #[inline(always)]
-    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> LaneResult {
+    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {
             raw.points.clear();
-            return LaneResult::Done;
+            return true;
         }
-        if self.is_built >> lane & 1 == 0 {
-            return LaneResult::Declined;
+        let is_built = self.is_built >> lane & 1 == 1;
+        if is_built {
+            let (choice, names) = self.choice(lane);
+            choice.settle(&names, max_points.max(1), raw);
         }
-        let (choice, names) = self.choice(lane);
-        if !choice.settle(&names, max_points.max(1), raw) {
-            return LaneResult::Unmatched;
-        }
-        self.keep_pose(lane, raw);
-        LaneResult::Done
-    }
-
-    fn settle_matched(
-        &self,
-        lane: usize,
-        max_points: usize,
-        pair: &Pair<'_, N, 3>,
-        raw: &mut RawManifold<N, 3>,
-    ) {
-        let (choice, names) = self.choice(lane);
-        let (pose12, normal) = (&pair.pose12, &self.normal(lane));
-        choice.settle_matched(&names, max_points.max(1), &PairPose { pose12, normal }, raw);
-        self.keep_pose(lane, raw);
-    }
-
-    #[inline(always)]
-    fn normal(&self, lane: usize) -> Vector<N, 3> {
-        let [x, y, z] = &self.normal;
-        Vector::<N, 3>::new(x[lane], y[lane], z[lane])
-    }
-
-    /// Keeps how the boxes lie.
-    #[inline(always)]
-    fn keep_pose(&self, lane: usize, raw: &mut RawManifold<N, 3>) {
-        raw.normal = self.normal(lane);
-        self.pose.copy_to(lane, &mut raw.pose12);
+        is_built
     }
 
     /// Fills the slots; answers where they hold the separation. `is_partial` where some face leans too far.
@@ -232,6 +188,7 @@ impl<N: Real> EightFaces<N> {
             gap: self.gap[lane],
             tolerance: self.tolerance[lane],
             size: self.size[lane],
+            normal: &self.normal,
         };
         (choice, BoxPairNames::new(&sides, bits, parts))
     }

@@ -1,0 +1,61 @@
+//! The manifolds of two placed shapes, without a world and without memory.
+
+use super::generator::{PairManifoldGenerator, conforming_points};
+use super::state::Posed;
+use super::traits::ContactPrediction;
+use crate::collide::{AtIsometry, Placed};
+use crate::math::{AbstractRotation, Isometry, Space};
+use crate::query::ContactManifold;
+use crate::shape::Shape;
+
+/// The contact manifolds of `g1` placed at `m1` with `g2` placed at `m2`: those that a new world has after its
+/// first update, with the same bits.
+///
+/// Two convex shapes have one manifold, composites one for each flat patch that they touch in; none is empty.
+/// The list is empty if the shapes are farther apart than [`ContactPrediction::linear`], if a pose is not
+/// finite, and for half-spaces that overlap without bound. In a world the prediction of a pair is the sum of
+/// the predictions of both objects.
+///
+/// A manifold has at most `max_points` points, and at least one; by default (`None`) two in 2D and four in 3D.
+/// Points, normals and depths are in the world frame; normals point from the first shape to the second.
+/// Swapping the shapes flips each manifold and changes nothing else.
+///
+/// Nothing is kept between calls. A [`ContactId`](crate::query::ContactId) here names a contact within one
+/// answer; ids that last over motion are those of a world or of a
+/// [`PairManifoldGenerator`]. Many pairs at once are quicker in
+/// [`PairBatch::manifolds`](crate::batch::PairBatch::manifolds).
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Vector};
+/// use impinge::dim3::query::{ContactPrediction, contact_manifolds};
+/// use impinge::dim3::shape::Cuboid;
+///
+/// let (floor, parcel) = (Cuboid::new(Vector::new(9.0_f64, 1.0, 9.0)), Cuboid::new(Vector::repeat(0.5)));
+/// let (here, there) = (Isometry::identity(), Isometry::translation(2.0, 1.5625, 0.0));
+/// let near = ContactPrediction::new(0.125, 0.0, 0.0);
+/// let manifolds = contact_manifolds(&here, &floor, &there, &parcel, &near, None);
+/// assert_eq!((manifolds.len(), manifolds[0].len()), (1, 4), "the corners of a face");
+/// let deepest = manifolds[0].deepest_contact().expect("four").contact;
+/// assert_eq!((deepest.depth, deepest.normal.y), (-0.0625, 1.0), "above the floor");
+///
+/// let none = ContactPrediction::new(0.0, 0.0, 0.0);
+/// assert!(contact_manifolds(&here, &floor, &there, &parcel, &none, None).is_empty());
+/// ```
+pub fn contact_manifolds<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+    m1: &Isometry<N, R, D>,
+    g1: &dyn Shape<N, D>,
+    m2: &Isometry<N, R, D>,
+    g2: &dyn Shape<N, D>,
+    prediction: &ContactPrediction<N>,
+    max_points: Option<usize>,
+) -> Vec<ContactManifold<N, D>> {
+    let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
+    let Some([placed1, placed2]) = Placed::within(&one, &other, prediction.linear()) else {
+        return Vec::new();
+    };
+    if !(placed1.pose.is_finite() && placed2.pose.is_finite()) {
+        return Vec::new();
+    }
+    let generator = PairManifoldGenerator::new(max_points.unwrap_or(conforming_points::<D>()));
+    generator.once(&Posed::new([&placed1.pose, &placed2.pose], [g1, g2]), prediction)
+}

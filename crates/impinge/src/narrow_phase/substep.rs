@@ -1,0 +1,128 @@
+//! Pairs that were computed anew between two updates.
+//!
+//! The rows of the table keep the poses of the last update, by which all other pairs are read. A pair that was
+//! computed since is read by poses of its own, which the table keeps until the next update begins. While
+//! there is no such pair, and no object with a skin, a reader pays for the look at two empty lists.
+
+use super::ObjectTable;
+use super::entry::posed;
+use super::group::PairKey;
+use super::objects::ObjectSolid;
+use super::state::Posed;
+use crate::math::{Pose, Real, Space};
+use crate::query::{PairRef, PlacedSolids, Placement};
+use crate::shape::Geometry;
+
+/// A pair, and its objects where they were when it was computed.
+#[derive(Clone, Debug)]
+pub(super) struct PairSolids<N: Real, const D: usize> {
+    key: PairKey,
+    solids: [ObjectSolid<N, D>; 2],
+}
+
+impl<N: Real, const D: usize> PlacedSolids<N, D> for PairSolids<N, D> {
+    fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>) {
+        let solid = &self.solids[usize::from(object != self.key[0])];
+        (&solid.pose, solid.shape.geometry())
+    }
+}
+
+/// The poses of the last update, while other ones stand in the rows of a pair.
+#[derive(Debug)]
+pub(crate) struct Substep<N: Space<D>, const D: usize> {
+    key: PairKey,
+    /// In the order in which they were replaced.
+    replaced: [(Pose<N, D>, N::Isometry); 2],
+}
+
+impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
+    /// Puts other poses into the rows of a pair's objects, to be taken out again by [`Self::end_substep`];
+    /// `None` if an object has no row, and so no pair.
+    pub(crate) fn begin_substep(
+        &mut self,
+        key: PairKey,
+        isometries: [N::Isometry; 2],
+    ) -> Option<Substep<N, D>> {
+        if !key.iter().all(|&object| self.has_row(object)) {
+            return None;
+        }
+        let [first, second] = [0, 1].map(|side| {
+            let pose = self.shape(key[side]).geometry().pose_at(&isometries[side]);
+            self.replace_pose(key[side], (pose, isometries[side]))
+        });
+        Some(Substep { key, replaced: [first, second] })
+    }
+
+    /// Puts the poses of the last update back. If the pair was computed with the other ones (`is_computed`),
+    /// it is read by these until the next update.
+    pub(crate) fn end_substep(&mut self, substep: &Substep<N, D>, is_computed: bool) {
+        let Substep { key, replaced: [first, second] } = *substep;
+        if is_computed {
+            let solids = key.map(|object| self.solid(object).clone());
+            let pair = PairSolids { key, solids };
+            match self.substeps.binary_search_by_key(&key, |pair| pair.key) {
+                Ok(place) => self.substeps[place] = pair,
+                Err(place) => self.substeps.insert(place, pair),
+            }
+        }
+        // Backwards: of a pair of an object with itself the second row is the first.
+        self.replace_pose(key[1], second);
+        self.replace_pose(key[0], first);
+    }
+
+    /// The pair as it is to be read: where its objects were when it was computed.
+    pub(super) fn posed(&self, key: PairKey) -> Posed<'_, N, D> {
+        match self.solids_between(key) {
+            None => posed(self, key),
+            Some(PairSolids { solids: [first, second], .. }) => Posed {
+                is_self: key[0] == key[1],
+                ..Posed::new(
+                    [&first.pose, &second.pose],
+                    [first.shape.as_ref(), second.shape.as_ref()],
+                )
+            },
+        }
+    }
+
+    /// What places the contacts of a pair in the world; they are kept in the frame of the second object if
+    /// `is_swapped`, else of the first.
+    #[inline]
+    pub(super) fn placement(
+        &self,
+        key: PairKey,
+        number: u64,
+        is_swapped: bool,
+    ) -> (Placement<'_, N, D>, PairRef<'_, N, D>) {
+        let home = key[usize::from(is_swapped)];
+        if self.substeps.is_empty() && self.skins.is_empty() {
+            let (pose1, skins) = (self.pose(home), [N::ZERO; 2]);
+            let placement = Placement { pose1, pair: number, is_swapped, skins };
+            return (placement, PairRef::new(self, key));
+        }
+        self.particular_placement(key, number, is_swapped)
+    }
+
+    /// [`Self::placement`] where some objects have skins, or some pairs were computed since the last update.
+    #[inline(never)]
+    fn particular_placement(
+        &self,
+        key: PairKey,
+        number: u64,
+        is_swapped: bool,
+    ) -> (Placement<'_, N, D>, PairRef<'_, N, D>) {
+        let solids: &dyn PlacedSolids<N, D> = match self.solids_between(key) {
+            Some(pair) => pair,
+            None => self,
+        };
+        let [home, other] = [usize::from(is_swapped), usize::from(!is_swapped)];
+        let (pose1, _) = solids.placed(key[home]);
+        let skins = [self.skin(key[home]), self.skin(key[other])];
+        (Placement { pose1, pair: number, is_swapped, skins }, PairRef::new(solids, key))
+    }
+
+    /// The objects of a pair that was computed since the last update.
+    fn solids_between(&self, key: PairKey) -> Option<&PairSolids<N, D>> {
+        let place = self.substeps.binary_search_by_key(&key, |pair| pair.key).ok()?;
+        Some(&self.substeps[place])
+    }
+}

@@ -1,0 +1,107 @@
+//! What meshes and lines enclose, and filled meshes of the plane.
+
+use super::integrals::{Integrals, LocalUnits};
+use super::outline::crossed;
+use super::polyhedron::add_cones;
+use crate::bounding_volume::Aabb;
+use crate::math::{Point, Real, Vector};
+use crate::shape::{EdgeNeighbor, MassError, Moments, Polyline, Shape, TriMesh};
+
+/// A volume below so many epsilon of what it is the sum of is none.
+const NONE: f64 = 1024.0 * f64::EPSILON;
+
+/// A sum of cones, positive where they are seen from inside.
+struct Cones<const D: usize> {
+    sum: Integrals<D>,
+    /// The sum of the measures of all cones.
+    total: f64,
+}
+
+impl<const D: usize> Cones<D> {
+    fn none() -> Self {
+        Self { sum: Integrals::none(), total: 0.0 }
+    }
+
+    /// Adds to the sum, and the measure of what was added to the total.
+    fn add(&mut self, add: impl FnOnce(&mut Integrals<D>)) {
+        let before = self.sum.mass;
+        add(&mut self.sum);
+        self.total += (self.sum.mass - before).abs();
+    }
+
+    /// The body, whichever way round its surface is.
+    fn moments(&self) -> Moments<D> {
+        if self.sum.mass.abs() <= NONE * self.total {
+            return Integrals::none().moments();
+        }
+        if self.sum.mass < 0.0 { self.sum.negated().moments() } else { self.sum.moments() }
+    }
+}
+
+/// The area of a composite of the library's in the plane that is no compound.
+pub(super) fn enclosed2<N: Real>(shape: &dyn Shape<N, 2>) -> Result<Moments<2>, MassError> {
+    let mut cones = Cones::none();
+    let units = if let Some(mesh) = shape.as_shape::<TriMesh<N, 2>>() {
+        let units = units(mesh.tree().bounds());
+        for index in (0_u32..).take(mesh.num_triangles()) {
+            let [a, b, c] =
+                mesh.triangle(index).corners().each_ref().map(|corner| units.point(corner));
+            let mut triangle = Integrals::none();
+            for (from, to) in [(&a, &b), (&b, &c), (&c, &a)] {
+                triangle.add_cone(crossed(from, to) * 0.5, &[from, to]);
+            }
+            let filled = if triangle.mass < 0.0 { triangle.negated() } else { triangle };
+            cones.add(|sum| sum.add_about(&Vector::<f64, 2>::zeros(), &filled));
+        }
+        units
+    } else if let Some(line) = shape.as_shape::<Polyline<N, 2>>().filter(|line| line.is_outline()) {
+        let units = units(line.tree().bounds());
+        for segment in (0_u32..).take(line.num_segments()).map(|index| line.segment(index)) {
+            let [a, b] = [segment.a(), segment.b()].map(|end| units.point(end));
+            cones.add(|sum| sum.add_cone(crossed(&a, &b) * 0.5, &[&a, &b]));
+        }
+        units
+    } else {
+        return Err(MassError::NotClosed { part: 0 });
+    };
+    Ok(units.grown(&cones.moments()))
+}
+
+/// The volume that a composite of the library's encloses that is no compound.
+pub(super) fn enclosed3<N: Real>(shape: &dyn Shape<N, 3>) -> Result<Moments<3>, MassError> {
+    let Some(mesh) = shape.as_shape::<TriMesh<N, 3>>() else {
+        return Err(MassError::NotClosed { part: 0 });
+    };
+    if !mesh.is_volume() {
+        return Err(MassError::NotClosed { part: opening(mesh) });
+    }
+    let (units, mut cones) = (units(mesh.tree().bounds()), Cones::none());
+    for index in (0_u32..).take(mesh.num_triangles()) {
+        let corners = mesh.triangle(index).corners().each_ref().map(|corner| units.point(corner));
+        cones.add(|sum| add_cones(&corners, sum));
+    }
+    Ok(units.grown(&cones.moments()))
+}
+
+/// The units of what has these bounds.
+fn units<N: Real, const D: usize>(bounds: Option<&Aabb<N, D>>) -> LocalUnits<D> {
+    let origin = Point::<N, D>::origin();
+    let [low, high] = bounds.map_or([&origin; 2], |bounds| [bounds.mins(), bounds.maxs()]);
+    LocalUnits::around([low, high], N::ZERO)
+}
+
+/// The first triangle with a side that has no neighbour, several, or one that runs the same way; 0 for none.
+fn opening<N: Real>(mesh: &TriMesh<N, 3>) -> u32 {
+    let is_open = |triangle: u32| {
+        let corners = *mesh.triangle(triangle).corners();
+        (0..3_u32).any(|side| {
+            let [from, to] = [side as usize, (side as usize + 1) % 3].map(|corner| corners[corner]);
+            let fits = matches!(
+                mesh.neighbor(triangle, side),
+                EdgeNeighbor::Triangle { is_flipped: false, .. }
+            );
+            from != to && !fits
+        })
+    };
+    (0_u32..).take(mesh.num_triangles()).find(|&triangle| is_open(triangle)).unwrap_or(0)
+}

@@ -1,0 +1,169 @@
+//! Flat polygons in 3D, and the points within a radius of a triangle.
+
+use super::integrals::{Integrals, LocalUnits};
+use super::outline::{Wedge, sides};
+use crate::math::{Matrix, Point, Real, Vector};
+use crate::shape::Moments;
+
+type V3 = Vector<f64, 3>;
+type M3 = Matrix<f64, 3>;
+
+/// A flat polygon: the integrals over its area.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plate {
+    pub(super) area: f64,
+    pub(super) center: V3,
+    /// About the centre.
+    second: M3,
+    /// Out of the side from which the corners run counter-clockwise; `None` without area.
+    pub(super) normal: Option<V3>,
+}
+
+impl Plate {
+    /// The polygon with these corners, of which none is needed.
+    pub(super) fn new(corners: &[V3]) -> Self {
+        let start = corners.first().copied().unwrap_or_else(V3::zeros);
+        let (mut area_vector, mut first, mut second) = (V3::zeros(), V3::zeros(), M3::zeros());
+        for pair in corners.windows(2).skip(1) {
+            let [a, b] = [pair[0] - start, pair[1] - start];
+            let across = a.cross(&b) * 0.5;
+            area_vector += across;
+            let (area, sum) = (across.norm(), a + b);
+            first += sum * (area / 3.0);
+            let products = a * a.transpose() + b * b.transpose() + sum * sum.transpose();
+            second += products * (area / 12.0);
+        }
+        let area = area_vector.norm();
+        if area <= 0.0 {
+            return Self { area: 0.0, center: start, second: M3::zeros(), normal: None };
+        }
+        let center = first / area;
+        second -= center * center.transpose() * area;
+        Self { area, center: start + center, second, normal: Some(area_vector / area) }
+    }
+
+    /// Adds the prism on the front of the plate, or a part of it.
+    ///
+    /// The prism is `height` high; `share` of its mass is there, with its centre at `level` above the plate.
+    pub(super) fn add_prism(
+        &self,
+        [height, share, level]: [f64; 3],
+        normal: &V3,
+        sum: &mut Integrals<3>,
+    ) {
+        let across = normal * normal.transpose() * (self.area * height * height / 12.0);
+        let mass = self.area * height * share;
+        sum.add(
+            mass,
+            &(self.center + normal * level),
+            &((self.second + across) * (height * share)),
+        );
+    }
+}
+
+/// A piece of a cylinder along an edge: of its radius, between two normals of a given angle to each other.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EdgeWedge {
+    pub(super) ends: [V3; 2],
+    /// The bisector of the two normals.
+    pub(super) middle: V3,
+    pub(super) angle: f64,
+}
+
+impl EdgeWedge {
+    pub(super) fn add(&self, radius: f64, sum: &mut Integrals<3>) {
+        let [a, b] = &self.ends;
+        let (edge, wedge) = (b - a, Wedge::new(radius, self.angle));
+        let length = edge.norm();
+        if length <= 0.0 {
+            return;
+        }
+        let along = edge / length;
+        let across = along.cross(&self.middle);
+        let second = self.middle * self.middle.transpose() * wedge.along
+            + across * across.transpose() * wedge.across
+            + edge * edge.transpose() * (wedge.area / 12.0);
+        let first = self.middle * (wedge.first * length);
+        let piece = Integrals { mass: wedge.area * length, first, second: second * length };
+        sum.add_about(&((a + b) * 0.5), &piece);
+    }
+}
+
+/// The points within `radius` of a flat triangle, which may be without area or extent.
+pub(super) fn round_triangle<N: Real>(corners: &[Point<N, 3>; 3], radius: N) -> Moments<3> {
+    let units = LocalUnits::around(corners, radius);
+    let mut ring = corners.each_ref().map(|corner| units.point(corner)).to_vec();
+    ring.dedup();
+    if ring.len() > 1 && ring.first() == ring.last() {
+        ring.pop();
+    }
+    let plate = Plate::new(&ring);
+    let normal = plate.normal.unwrap_or_else(|| across_all(&ring));
+    let (radius, mut sum) = (units.length(radius), Integrals::none());
+    plate.add_prism([2.0 * radius, 1.0, 0.0], &normal, &mut sum);
+    add_rim(&ring, &normal, radius, &mut sum);
+    units.grown(&sum.moments())
+}
+
+/// A unit vector across points on a line.
+fn across_all(ring: &[V3]) -> V3 {
+    let mut longest = V3::zeros();
+    for (a, b) in sides(ring) {
+        let side = b - a;
+        longest = if side.norm_squared() > longest.norm_squared() { side } else { longest };
+    }
+    across(&longest)
+}
+
+/// A unit vector across a vector of any length.
+fn across(v: &V3) -> V3 {
+    let mut least = V3::zeros();
+    least[v.iamin()] = 1.0;
+    v.cross(&least).try_normalize(0.0).unwrap_or(least)
+}
+
+/// Adds what is beside a flat ring of different points: half a cylinder along each side, and at each corner the lune
+/// of a ball by which the outline turns there.
+fn add_rim(ring: &[V3], normal: &V3, radius: f64, sum: &mut Integrals<3>) {
+    let [.., last] = ring else { return };
+    if ring.len() == 1 {
+        return add_lune(last, [normal, &across(normal)], core::f64::consts::TAU, radius, sum);
+    }
+    let outward = |a: &V3, b: &V3| (b - a).cross(normal).normalize();
+    let mut before = outward(last, &ring[0]);
+    for (a, b) in sides(ring) {
+        let beside = outward(&a, &b);
+        let turn = libm::atan2(before.cross(&beside).dot(normal), before.dot(&beside)).abs();
+        add_lune(&a, [normal, &before], turn, radius, sum);
+        EdgeWedge { ends: [a, b], middle: beside, angle: core::f64::consts::PI }.add(radius, sum);
+        before = beside;
+    }
+}
+
+/// Adds a lune of a ball: what a half-disk sweeps that turns by an angle about `axis`, counter-clockwise from the
+/// unit vector `from`.
+fn add_lune(corner: &V3, [axis, from]: [&V3; 2], angle: f64, radius: f64, sum: &mut Integrals<3>) {
+    let (sine, cosine) = libm::sincos(angle * 0.5);
+    let middle = from * cosine + axis.cross(from) * sine;
+    let across = axis.cross(&middle);
+    let whole = libm::sin(angle);
+    // Over the directions: ∫ u = π sin(angle / 2) along the middle, and ∫ u uᵀ by its three axes.
+    let second = middle * middle.transpose() * ((angle + whole) * (2.0 / 3.0))
+        + across * across.transpose() * ((angle - whole) * (2.0 / 3.0))
+        + axis * axis.transpose() * (angle * (2.0 / 3.0));
+    let [third, fourth, fifth] = radial(radius);
+    sum.add_about(
+        corner,
+        &Integrals {
+            mass: 2.0 * angle * third,
+            first: middle * (core::f64::consts::PI * sine * fourth),
+            second: second * fifth,
+        },
+    );
+}
+
+/// The integrals of r², r³ and r⁴ from zero to the radius.
+pub(super) fn radial(radius: f64) -> [f64; 3] {
+    let cubed = radius * radius * radius;
+    [cubed / 3.0, cubed * radius / 4.0, cubed * radius * radius / 5.0]
+}

@@ -1,0 +1,216 @@
+//! Mass properties: what a solver needs to know of a rigid body.
+//!
+//! Here is the type and its arithmetic; [`crate::query::mass_properties`] computes them from shapes. Arithmetic is
+//! in double precision for both scalars, and rounded once. Principal moments are kept, not the tensor: beside a large
+//! moment a small one keeps its digits, and none ever becomes negative.
+
+mod error;
+mod moments;
+mod plane;
+mod space;
+
+pub use error::MassError;
+pub(crate) use error::{amount, finite};
+pub(crate) use moments::Moments;
+
+use core::iter::Sum;
+use core::ops::{Add, AddAssign, Sub, SubAssign};
+
+use crate::math::{AbstractRotation, Isometry, Matrix, Point, Pose, Real, Vector};
+
+/// The mass of a rigid body, its centre of mass, and its inertia about that centre.
+///
+/// All is in the frame of the body. [`mass_properties`](crate::query::mass_properties) makes them from a shape and
+/// a density, `new` from numbers. The inertia is a number in 2D, about the centre and the axis out of the plane; in
+/// 3D a tensor, which is kept as its principal moments and axes.
+///
+/// `+` joins two bodies in one frame, by the parallel axis theorem; where they overlap the mass is there twice. `-`
+/// takes a part out of a body: a hollow ball is a ball less a smaller one. [`Self::transformed`] brings a body into
+/// another frame.
+///
+/// **Inverses.** A solver multiplies impulses by the inverses of the mass and the inertia. The inverse of zero is
+/// taken as zero: a body without mass, and one without inertia about an axis, such as a rod about itself, is not
+/// moved or turned, like one that is infinitely heavy. For a body that shall not be turned, or not moved, put
+/// zeros in place of the inverses.
+///
+/// ```
+/// use impinge::dim3::math::{Isometry, Vector};
+/// use impinge::dim3::query::mass_properties;
+/// use impinge::dim3::shape::{Ball, Cuboid};
+///
+/// // A hammer: a wooden handle along x, an iron head at its end. Lengths in metres.
+/// let handle = mass_properties(&Cuboid::new(Vector::new(0.2_f64, 0.02, 0.01)), 700.0)?;
+/// let head = mass_properties(&Ball::new(0.05), 7800.0)?;
+/// let hammer = handle + head.transformed(&Isometry::translation(0.2, 0.0, 0.0));
+/// assert!((hammer.mass() - 4.308).abs() < 1e-3, "kilograms");
+/// assert!((hammer.center_of_mass().x - 0.190).abs() < 1e-3, "near the head");
+///
+/// // Turned about its centre by a torque of 1 around y: the angular acceleration.
+/// let inverse = hammer.inverse_inertia_at(&Isometry::identity());
+/// assert!((inverse * Vector::y() - Vector::y() * 64.2).norm() < 0.1);
+/// # Ok::<(), impinge::query::MassError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MassProperties<N: Real, const D: usize> {
+    mass: N,
+    center: Point<N, D>,
+    /// A rotation whose columns are the principal axes.
+    axes: Matrix<N, D>,
+    /// By axis; see [`Moments`].
+    principal: Vector<N, D>,
+}
+
+/// No mass, at the origin.
+impl<N: Real, const D: usize> Default for MassProperties<N, D> {
+    fn default() -> Self {
+        let (axes, principal) = (Matrix::<N, D>::identity(), Vector::<N, D>::zeros());
+        Self { mass: N::ZERO, center: Point::origin(), axes, principal }
+    }
+}
+
+impl<N: Real, const D: usize> MassProperties<N, D> {
+    /// The mass; zero or more.
+    #[must_use]
+    pub const fn mass(&self) -> N {
+        self.mass
+    }
+
+    /// 1 / mass; zero for a body without mass.
+    #[must_use]
+    pub fn inverse_mass(&self) -> N {
+        inverse(self.mass)
+    }
+
+    /// The centre of mass in the frame of the body. Of a shape without mass it is some point of the shape.
+    #[must_use]
+    pub const fn center_of_mass(&self) -> &Point<N, D> {
+        &self.center
+    }
+
+    /// The centre of mass in the world, of a body placed at `position`.
+    #[must_use]
+    pub fn center_of_mass_at<R: AbstractRotation<N, D>>(
+        &self,
+        position: &Isometry<N, R, D>,
+    ) -> Point<N, D> {
+        position.transform_point(&self.center)
+    }
+
+    /// The body as it is seen from the frame in which it is placed at `position`.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point, Vector};
+    /// use impinge::dim2::query::mass_properties;
+    /// use impinge::dim2::shape::Cuboid;
+    ///
+    /// let plate = mass_properties(&Cuboid::new(Vector::new(1.0_f64, 2.0)), 3.0)?;
+    /// let placed = plate.transformed(&Isometry::new(Vector::new(5.0, 1.0), 0.5));
+    /// assert_eq!((placed.mass(), placed.inertia()), (plate.mass(), plate.inertia()));
+    /// assert_eq!(placed.center_of_mass(), &Point::new(5.0, 1.0));
+    /// # Ok::<(), impinge::query::MassError>(())
+    /// ```
+    #[must_use]
+    pub fn transformed<R: AbstractRotation<N, D>>(&self, position: &Isometry<N, R, D>) -> Self {
+        let Pose { rotation, translation } = Pose::from_isometry(position);
+        let (rotation, translation) = (rotation.map(N::as_f64), translation.map(N::as_f64));
+        Self::of_moments(&self.moments().placed(&rotation, &translation))
+    }
+
+    /// The same body with another mass, and an inertia in proportion. A body without mass becomes a point mass.
+    ///
+    /// # Errors
+    /// If the mass is negative or not finite, or a moment is beyond the range of the scalar.
+    ///
+    /// ```
+    /// use impinge::dim2::query::{MassProperties, mass_properties};
+    /// use impinge::dim2::shape::Ball;
+    ///
+    /// let disk: MassProperties<f64> = mass_properties(&Ball::new(0.5), 1.0)?;
+    /// let wheel = disk.with_mass(8.0)?;
+    /// assert!((wheel.inertia() - 1.0).abs() < 1e-15, "half of m r²");
+    /// # Ok::<(), impinge::query::MassError>(())
+    /// ```
+    pub fn with_mass(&self, mass: N) -> Result<Self, MassError> {
+        let (body, mass) = (self.moments(), amount("the mass", mass.as_f64())?);
+        let factor = if body.mass > 0.0 { mass / body.mass } else { 0.0 };
+        Self::try_of_moments(&Moments { mass, principal: body.principal * factor, ..body })
+    }
+
+    /// The properties in double precision.
+    pub(crate) fn moments(&self) -> Moments<D> {
+        Moments {
+            mass: self.mass.as_f64(),
+            center: self.center.coords.map(N::as_f64),
+            axes: self.axes.map(N::as_f64),
+            principal: self.principal.map(N::as_f64),
+        }
+    }
+
+    /// The properties, rounded.
+    fn of_moments(moments: &Moments<D>) -> Self {
+        Self {
+            mass: N::lit(moments.mass),
+            center: Point::from(moments.center.map(N::lit)),
+            axes: moments.axes.map(N::lit),
+            principal: moments.principal.map(N::lit),
+        }
+    }
+
+    /// The properties, rounded, if all are numbers of the scalar.
+    pub(crate) fn try_of_moments(moments: &Moments<D>) -> Result<Self, MassError> {
+        let found = Self::of_moments(moments);
+        finite("the mass", found.mass.as_f64())?;
+        for coordinate in &found.center.coords {
+            finite("a coordinate of the centre of mass", coordinate.as_f64())?;
+        }
+        for moment in &found.principal {
+            finite("a moment of inertia", moment.as_f64())?;
+        }
+        Ok(found)
+    }
+}
+
+/// 1 / x; zero for zero, and where the inverse is beyond the range of the scalar.
+fn inverse<N: Real>(x: N) -> N {
+    let inverse = N::ONE / x;
+    if inverse.is_finite_number() { inverse } else { N::ZERO }
+}
+
+/// Two bodies in one frame as one. A mass beyond the range of the scalar becomes infinite.
+impl<N: Real, const D: usize> Add for MassProperties<N, D> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self::of_moments(&self.moments().plus(&other.moments()))
+    }
+}
+
+impl<N: Real, const D: usize> AddAssign for MassProperties<N, D> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+/// A body without a part of it, in the same frame; without mass if the part weighs as much as the body.
+impl<N: Real, const D: usize> Sub for MassProperties<N, D> {
+    type Output = Self;
+
+    fn sub(self, part: Self) -> Self {
+        Self::of_moments(&self.moments().minus(&part.moments()))
+    }
+}
+
+impl<N: Real, const D: usize> SubAssign for MassProperties<N, D> {
+    fn sub_assign(&mut self, part: Self) {
+        *self = *self - part;
+    }
+}
+
+/// All bodies in one frame as one, rounded once; the default for none.
+impl<N: Real, const D: usize> Sum for MassProperties<N, D> {
+    fn sum<I: Iterator<Item = Self>>(bodies: I) -> Self {
+        let all = bodies.map(|body| body.moments()).reduce(|all, body| all.plus(&body));
+        all.map_or_else(Self::default, |all| Self::of_moments(&all))
+    }
+}

@@ -1,0 +1,121 @@
+//! Mass, centre and moments in double precision, whatever the scalar of the body.
+
+use crate::math::eigen::symmetric_eigen;
+use crate::math::{Matrix, Vector};
+
+/// Moments below so much of the largest one are those of a line: rounding of the sums that they come from.
+const THIN: f64 = 16.0 * f64::EPSILON;
+
+/// The mass of a body, its centre, and its principal moments, all in its own frame.
+///
+/// With the matrix `S = ∫ x xᵀ dm` about the centre, the tensor here is `tr(S) − S` in 2D and in 3D. In 3D it is
+/// the inertia tensor; in 2D it is the upper left block of the tensor of a thin plate, and its trace is the
+/// moment of inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Moments<const D: usize> {
+    pub(crate) mass: f64,
+    pub(crate) center: Vector<f64, D>,
+    /// A rotation whose columns are the principal axes.
+    pub(crate) axes: Matrix<f64, D>,
+    /// The eigenvalues of the tensor, in the order of the axes; none is negative.
+    pub(crate) principal: Vector<f64, D>,
+}
+
+/// The distance matrix of the parallel axis theorem: `|d|² − d dᵀ`.
+fn about<const D: usize>(offset: &Vector<f64, D>) -> Matrix<f64, D> {
+    tensor_of(&(offset * offset.transpose()))
+}
+
+/// The tensor `tr(S) − S` of a matrix of second moments, each element a sum of its own: what is small beside the
+/// trace keeps its digits.
+fn tensor_of<const D: usize>(second: &Matrix<f64, D>) -> Matrix<f64, D> {
+    Matrix::<f64, D>::from_fn(|row, column| {
+        if row != column {
+            return -(second[(row, column)] + second[(column, row)]) * 0.5;
+        }
+        (0..D).filter(|&axis| axis != row).map(|axis| second[(axis, axis)]).sum()
+    })
+}
+
+impl<const D: usize> Moments<D> {
+    /// A body without mass.
+    pub(crate) fn massless(center: Vector<f64, D>) -> Self {
+        let (axes, principal) = (Matrix::<f64, D>::identity(), Vector::<f64, D>::zeros());
+        Self { mass: 0.0, center, axes, principal }
+    }
+
+    /// A body whose second moments along its principal axes are known.
+    pub(crate) fn along_axes(
+        mass: f64,
+        center: Vector<f64, D>,
+        axes: Matrix<f64, D>,
+        seconds: &Vector<f64, D>,
+    ) -> Self {
+        let principal = tensor_of(&Matrix::<f64, D>::from_diagonal(seconds)).diagonal();
+        Self { mass, center, axes, principal }
+    }
+
+    /// A body whose matrix of second moments about the centre is known.
+    pub(crate) fn of_seconds(mass: f64, center: Vector<f64, D>, second: &Matrix<f64, D>) -> Self {
+        Self::of_tensor(mass, center, &tensor_of(second))
+    }
+
+    /// A body whose tensor is known. What rounding makes of moments that are none is none.
+    pub(crate) fn of_tensor(mass: f64, center: Vector<f64, D>, tensor: &Matrix<f64, D>) -> Self {
+        let (principal, axes) = symmetric_eigen(tensor);
+        let least = THIN * principal.amax();
+        let principal = principal.map(|moment| if moment > least { moment } else { 0.0 });
+        Self { mass, center, axes, principal }
+    }
+
+    /// The tensor about the centre, along the axes of the frame.
+    pub(crate) fn tensor(&self) -> Matrix<f64, D> {
+        self.axes * Matrix::<f64, D>::from_diagonal(&self.principal) * self.axes.transpose()
+    }
+
+    /// The body in the frame outside, which the pose takes it to.
+    pub(crate) fn placed(&self, rotation: &Matrix<f64, D>, translation: &Vector<f64, D>) -> Self {
+        let center = rotation * self.center + translation;
+        Self { center, axes: rotation * self.axes, ..*self }
+    }
+
+    /// The body with a density that is so many times as large.
+    pub(crate) fn of_density(&self, density: f64) -> Self {
+        Self { mass: self.mass * density, principal: self.principal * density, ..*self }
+    }
+
+    /// The body with all lengths multiplied by a power of two and moved to an origin; the density stays.
+    pub(crate) fn grown(&self, scale: f64, origin: &Vector<f64, D>) -> Self {
+        let measure = (0..D).fold(self.mass, |measure, _| measure * scale);
+        let grown = |moment: f64| (0..D + 2).fold(moment, |moment, _| moment * scale);
+        let (center, principal) = (origin + self.center * scale, self.principal.map(grown));
+        Self { mass: measure, center, principal, ..*self }
+    }
+
+    /// Both bodies as one. Without mass its centre is between theirs.
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        let mass = self.mass + other.mass;
+        let offset = other.center - self.center;
+        // From the middle on: bodies at one place stay there, and the order changes nothing.
+        let lead = if mass > 0.0 { (other.mass - self.mass) / mass * 0.5 } else { 0.0 };
+        let center = self.center * 0.5 + other.center * 0.5 + offset * lead;
+        if mass <= 0.0 {
+            return Self::massless(center);
+        }
+        let reduced = self.mass / mass * other.mass;
+        let tensor = self.tensor() + other.tensor() + about(&offset) * reduced;
+        Self::of_tensor(mass, center, &tensor)
+    }
+
+    /// What is left of the body without a part of it; without mass if that weighs as much.
+    pub(crate) fn minus(&self, part: &Self) -> Self {
+        let mass = self.mass - part.mass;
+        if mass <= 0.0 {
+            return Self::massless(self.center);
+        }
+        let offset = part.center - self.center;
+        let center = self.center - offset * (part.mass / mass);
+        let reduced = self.mass / mass * part.mass;
+        Self::of_tensor(mass, center, &(self.tensor() - part.tensor() - about(&offset) * reduced))
+    }
+}

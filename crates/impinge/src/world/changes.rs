@@ -1,0 +1,336 @@
+//! What changed since the last update: who learns of it at the next, and where queries look for it until then.
+//!
+//! The broad phase knows the boxes of the last update. Objects whose boxes changed since are dirty: they stand in
+//! a [`DirtyTree`], which the first query after a change makes and each later change keeps up to date. Without
+//! queries there is none.
+
+use std::sync::OnceLock;
+
+use super::CollisionGroups;
+use super::bodies::{WorldBody, WorldBroadPhase, aabb_at, grown};
+use super::dirty::DirtyTree;
+use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::broad_phase::ProxyHandle;
+use crate::math::{Real, Space};
+use crate::memory::Look;
+use crate::narrow_phase::{ObjectRow, ObjectTable};
+
+/// No handle index.
+const GONE: u32 = u32::MAX;
+
+/// What happened to an object since the last update.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct BodyChanges {
+    /// Another object, shape or query type: the whole row is to be written.
+    row: bool,
+    /// The shape or query type of an object that may have pairs.
+    algorithm: bool,
+    /// The volume in the broad phase is out of date: the object is dirty.
+    volume: bool,
+    /// The pairs are to be filtered again.
+    filter: bool,
+}
+
+/// An object that changed.
+#[derive(Clone, Debug)]
+struct BodyEntry<N: Real, const D: usize> {
+    /// The handle index; [`GONE`] if the object is.
+    index: u32,
+    changes: BodyChanges,
+    /// The exact box of the shape where the object is now, if the volume changed.
+    aabb: Aabb<N, D>,
+}
+
+/// The objects that changed since the last update, each once.
+#[derive(Debug)]
+pub(crate) struct ChangeList<N: Space<D>, const D: usize> {
+    entries: Vec<BodyEntry<N, D>>,
+    /// By handle index: the pose that an object whose position was set with a prediction may move to. As long as
+    /// the last such object needs; of no meaning for others.
+    predictions: Vec<N::Isometry>,
+    /// By handle index, as long as the last object with a skin needs: how far contacts are measured from
+    /// the surface.
+    skins: Vec<N>,
+    /// The boxes of dirty objects, once a query has asked for them.
+    dirty: OnceLock<DirtyTree<D>>,
+    /// Memory for the handle indices of changed objects in order.
+    order: Vec<u32>,
+    /// Of the last update: those whose pairs with themselves begin or end.
+    self_changed: Vec<u32>,
+}
+
+/// What learns of changes when an update begins.
+pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
+    pub(crate) table: &'a mut ObjectTable<N, D>,
+    pub(crate) broad_phase: &'a mut WorldBroadPhase<N, D>,
+    /// Gets the objects whose pairs need other algorithms.
+    pub(crate) algorithms: &'a mut Vec<u32>,
+}
+
+impl<N: Space<D>, const D: usize> ChangeList<N, D> {
+    pub(crate) const fn new() -> Self {
+        Self {
+            entries: Vec::new(),
+            predictions: Vec::new(),
+            skins: Vec::new(),
+            dirty: OnceLock::new(),
+            order: Vec::new(),
+            self_changed: Vec::new(),
+        }
+    }
+
+    /// The body of a new object, whose volume the broad phase learns of by `proxy`.
+    pub(crate) fn admit(
+        &mut self,
+        row: ObjectRow<N, D>,
+        groups: CollisionGroups,
+        proxy: impl FnOnce(Aabb<N, D>) -> ProxyHandle,
+    ) -> WorldBody<N, D> {
+        let aabb = aabb_at(&*row.shape, &N::pose(&row.isometry));
+        let proxy = proxy(grown(&aabb, row.query.query_limit()));
+        let mut body = WorldBody::new(row, groups, proxy);
+        self.note_volume(&mut body, aabb).row = true;
+        body
+    }
+
+    /// The pose that the object may move to, as the user predicts; `None` without a prediction.
+    pub(crate) fn prediction(&self, body: &WorldBody<N, D>) -> Option<&N::Isometry> {
+        body.is_predicted().then(|| &self.predictions[body.index() as usize])
+    }
+
+    /// How far from its surface the contacts of an object are measured.
+    pub(crate) fn skin(&self, index: u32) -> N {
+        self.skins.get(index as usize).copied().unwrap_or(N::ZERO)
+    }
+
+    pub(super) fn put_skin(&mut self, index: u32, skin: N) {
+        let index = index as usize;
+        self.skins.resize(self.skins.len().max(index + 1), N::ZERO);
+        self.skins[index] = skin;
+    }
+
+    pub(super) fn predict(&mut self, index: u32, predicted: N::Isometry) {
+        let index = index as usize;
+        if self.predictions.len() <= index {
+            self.predictions.resize(index + 1, predicted);
+        }
+        self.predictions[index] = predicted;
+    }
+
+    /// The volume of an object for the broad phase.
+    pub(crate) fn volume(&self, body: &WorldBody<N, D>) -> Aabb<N, D> {
+        self.volume_around(body, &body.aabb())
+    }
+
+    /// [`Self::volume`] of an object whose exact box is known.
+    fn volume_around(&self, body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> Aabb<N, D> {
+        let limit = body.query_limit() + self.skin(body.index());
+        match self.prediction(body) {
+            None => grown(aabb, limit),
+            Some(next) => {
+                let next = aabb_at(&*body.shape, &N::pose(next));
+                grown(&aabb.merged(&next), limit)
+            }
+        }
+    }
+
+    /// Forgets what an object that is gone changed, and its skin.
+    pub(crate) fn forget(&mut self, body: &WorldBody<N, D>) {
+        if let Some(skin) = self.skins.get_mut(body.index() as usize) {
+            *skin = N::ZERO;
+        }
+        if let Some(tree) = self.dirty.get_mut()
+            && let Some(id) = tree.id_of(body)
+        {
+            (N::tables().world.take_dirty)(tree, id);
+        }
+        if let Some(place) = body.place() {
+            self.entries[place as usize].index = GONE;
+        }
+    }
+
+    /// The broad phase does not know where the object is now.
+    #[inline]
+    pub(crate) fn is_dirty(&self, body: &WorldBody<N, D>) -> bool {
+        body.place().is_some_and(|place| self.entries[place as usize].changes.volume)
+    }
+
+    /// The number of dirty objects.
+    pub(crate) fn num_dirty(&self) -> usize {
+        self.dirty_places().count()
+    }
+
+    /// The boxes of the dirty objects, by place in this list.
+    pub(crate) fn dirty_boxes(&self) -> impl Iterator<Item = (u32, Aabb<N, D>)> {
+        self.dirty_places().map(|place| (place, self.box_at(place)))
+    }
+
+    /// The box of an object, if it is dirty.
+    pub(crate) fn dirty_box(&self, body: &WorldBody<N, D>) -> Option<Aabb<N, D>> {
+        let place = body.place().filter(|_| self.is_dirty(body))?;
+        Some(self.box_at(place))
+    }
+
+    fn dirty_places(&self) -> impl Iterator<Item = u32> {
+        let is_dirty = |entry: &BodyEntry<N, D>| entry.changes.volume && entry.index != GONE;
+        (0..).zip(&self.entries).filter(move |(_, entry)| is_dirty(entry)).map(|(place, _)| place)
+    }
+
+    /// The box of the dirty object at a place, grown by what rounding may have taken from it.
+    fn box_at(&self, place: u32) -> Aabb<N, D> {
+        grown(&self.entries[place as usize].aabb, N::ZERO)
+    }
+
+    /// The boxes that queries search beside those of the broad phase, or in their place: the tree that `make`
+    /// returns, kept until the next update. `None` if nothing changed.
+    pub(crate) fn dirty_tree(&self, make: impl FnOnce() -> DirtyTree<D>) -> Option<&DirtyTree<D>> {
+        if self.entries.is_empty() {
+            return None;
+        }
+        if let Some(tree) = self.made_dirty_tree() {
+            return Some(tree);
+        }
+        // Outside of the lock: a thread that waits for others to sort their share of the boxes may take up
+        // another query, which must not wait for this one.
+        let made = make();
+        Some(self.dirty.get_or_init(|| made))
+    }
+
+    /// The tree of dirty objects, if a query has made one since the last update.
+    pub(crate) fn made_dirty_tree(&self) -> Option<&DirtyTree<D>> {
+        self.dirty.get()
+    }
+
+    /// The handle index of an object that the tree knows by `id`.
+    #[inline]
+    pub(crate) fn dirty_index(&self, tree: &DirtyTree<D>, id: u32) -> u32 {
+        if tree.has_all() { id } else { self.entries[id as usize].index }
+    }
+
+    /// The handle indices of the changed objects, in order. The memory is to be given back to
+    /// [`Self::clear`].
+    pub(crate) fn take_order(&mut self) -> Vec<u32> {
+        let mut order = core::mem::take(&mut self.order);
+        order.extend(self.entries.iter().map(|entry| entry.index).filter(|&index| index != GONE));
+        order.sort_unstable();
+        order
+    }
+
+    /// Hands the changes of an object since the last update on, and forgets them.
+    pub(crate) fn flush(&mut self, body: &mut WorldBody<N, D>, readers: &mut Readers<'_, N, D>) {
+        let Some(place) = body.place() else { return };
+        let BodyEntry { changes, aabb, .. } = self.entries[place as usize];
+        body.leave_place();
+        if body.wants_self_pair() != body.has_self_pair() {
+            body.toggle_self_pair();
+            self.self_changed.push(body.index());
+        }
+        if changes.row {
+            readers.table.set_skin(body.index(), self.skin(body.index()));
+            readers.table.set(body.index(), || body.row());
+        } else if changes.volume {
+            readers.table.set_position(body.index(), &body.isometry);
+        }
+        if changes.algorithm {
+            readers.algorithms.push(body.index());
+        }
+        if changes.volume {
+            let volume = self.volume_around(body, &aabb);
+            readers.broad_phase.deferred_set_bounding_volume(body.proxy, volume);
+        }
+        if changes.filter {
+            readers.broad_phase.deferred_recompute_all_proximities_with(body.proxy);
+        }
+    }
+
+    /// Forgets all changes but those of pairs of objects with themselves.
+    pub(crate) fn clear(&mut self, mut order: Vec<u32>) {
+        order.clear();
+        self.order = order;
+        self.entries.clear();
+        self.dirty.take();
+    }
+
+    /// The objects whose pairs with themselves begin or end, as of the last flush; forgotten hereby.
+    pub(crate) fn take_self_changed(&mut self) -> Vec<u32> {
+        core::mem::take(&mut self.self_changed)
+    }
+
+    /// How many objects changed that are still there.
+    pub(crate) fn num_present(&self) -> usize {
+        self.entries.iter().filter(|entry| entry.index != GONE).count()
+    }
+
+    /// How many objects changed.
+    pub(crate) const fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// Gives the memory of lists that have been short for some time back.
+    pub(crate) fn give_back(&mut self, look: Look) {
+        look.trim(&mut self.entries);
+        look.fit(&mut self.predictions);
+        look.fit(&mut self.skins);
+        look.trim(&mut self.order);
+    }
+
+    /// Notes the box of an object that moved.
+    pub(super) fn note_box(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) {
+        self.note_volume(body, aabb);
+    }
+
+    /// Notes that the shape or query type of an object is another.
+    pub(super) fn note_row(&mut self, body: &mut WorldBody<N, D>) {
+        let changes = self.note_volume(body, body.aabb());
+        (changes.row, changes.algorithm) = (true, true);
+    }
+
+    /// Notes that the pairs of an object are to be filtered again.
+    pub(super) fn note_filter(&mut self, body: &mut WorldBody<N, D>) {
+        let place = self.note(body);
+        self.entries[place as usize].changes.filter = true;
+    }
+
+    fn note_volume(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) -> &mut BodyChanges {
+        let place = self.note(body);
+        let entry = &mut self.entries[place as usize];
+        entry.aabb = aabb;
+        entry.changes.volume = true;
+        if self.dirty.get().is_some() {
+            self.follow(body, place);
+        }
+        &mut self.entries[place as usize].changes
+    }
+
+    /// Gives the tree of dirty objects the box of one, or the tree up if it is worn.
+    #[cold]
+    fn follow(&mut self, body: &WorldBody<N, D>, place: u32) {
+        let aabb = self.box_at(place);
+        let Some(tree) = self.dirty.get_mut() else { return };
+        let id = if tree.has_all() { body.index() } else { place };
+        (N::tables().world.put_dirty)(tree, id, &aabb);
+        if tree.is_worn() {
+            self.dirty.take();
+        }
+    }
+
+    /// Lists an object as changed; returns its place.
+    fn note(&mut self, body: &mut WorldBody<N, D>) -> u32 {
+        body.place().unwrap_or_else(|| {
+            let place = body.set_place(self.entries.len());
+            let (index, changes) = (body.index(), BodyChanges::default());
+            self.entries.push(BodyEntry { index, changes, aabb: Aabb::unbounded() });
+            place
+        })
+    }
+
+    /// What is wrong with the places of an object in the list, if anything.
+    pub(crate) fn validate(&self, body: &WorldBody<N, D>) -> Result<(), String> {
+        match body.place().map(|place| self.entries.get(place as usize)) {
+            Some(entry) if entry.map(|entry| entry.index) != Some(body.index()) => {
+                Err(format!("{:?} has the place of another among the changes", body.handle))
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! The boxes of dirty objects in a tree, for the queries before the next update.
+//!
+//! Made at once, in an order that serves searches, and then changed box by box: each change costs the way from a
+//! leaf block to the top. Changes wear the order; after a quarter as many as there are boxes the tree is given up,
+//! and the next query makes another. So a change costs O(log n) in the long run, whether queries come after each
+//! one or after many. A search costs what it costs in the broad phase, and a block for each 16 boxes that came since
+//! the tree was made.
+//!
+//! A search of two trees costs more than one of a tree of all. Where many objects are dirty, the tree holds the
+//! others too, and the broad phase is not asked.
+
+use super::bodies::WorldBody;
+use crate::bounding_volume::Aabb;
+use crate::bvh::{Bounds, Lanes, Tree};
+use crate::math::{Real, Space};
+use crate::partitioning::{Search, Sweep, packed};
+
+/// Changes that a tree of few boxes stands.
+const MIN_PATIENCE: usize = 32;
+/// One in so many boxes may change before the order is worn.
+const PATIENCE: usize = 4;
+
+/// Boxes by id: the handle indices of all objects, or the places of the dirty ones in the list of changes.
+#[derive(Clone, Debug)]
+pub(crate) struct DirtyTree<const D: usize> {
+    has_all: bool,
+    tree: Tree<D>,
+    /// The ids of boxes that no finite `f32` box encloses.
+    unbounded: Vec<u32>,
+    lanes: Lanes,
+    /// Changes until the order is worn.
+    patience: usize,
+}
+
+/// Gets a few ids with bounds below their keys, and returns the largest key that still counts.
+pub(crate) type DirtyVisitor<'a, N> = dyn FnMut(&[(u32, N)]) -> N + 'a;
+
+impl<const D: usize> DirtyTree<D> {
+    /// The tree of some boxes with different ids: of all objects, if that is said.
+    pub(crate) fn new<N: Real>(
+        has_all: bool,
+        boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
+    ) -> Self {
+        let lanes = Lanes::detect();
+        let (tree, unbounded) = packed(lanes, boxes);
+        let patience = MIN_PATIENCE.max(tree.len() / PATIENCE);
+        Self { has_all, tree, unbounded, lanes, patience }
+    }
+
+    /// Ids are handle indices, and the objects that are not dirty are here too.
+    #[inline]
+    pub(crate) const fn has_all(&self) -> bool {
+        self.has_all
+    }
+
+    /// Too much has changed for the order of the boxes to be a good one.
+    pub(crate) const fn is_worn(&self) -> bool {
+        self.patience == 0
+    }
+
+    /// The id of an object that may be here.
+    pub(crate) fn id_of<N: Space<D>>(&self, body: &WorldBody<N, D>) -> Option<u32> {
+        if self.has_all { Some(body.index()) } else { body.place() }
+    }
+
+    /// Gives an id a box, whether it had one or not.
+    pub(crate) fn put<N: Real>(&mut self, id: u32, aabb: &Aabb<N, D>) {
+        let bounds = Bounds::enclosing(aabb);
+        if !self.tree.contains(id) || !bounds.is_finite() {
+            self.take(id);
+        }
+        if bounds.is_finite() {
+            self.tree.put(id, &bounds);
+        } else {
+            self.unbounded.push(id);
+        }
+        self.patience = self.patience.saturating_sub(1);
+    }
+
+    /// Takes the box of an id out, if it has one.
+    pub(crate) fn take(&mut self, id: u32) {
+        if self.tree.contains(id) {
+            self.tree.remove(id);
+        } else {
+            self.unbounded.retain(|&other| other != id);
+        }
+    }
+
+    /// Calls `found` with the ids whose boxes the moving one may touch by `limit`, and times that are not after that.
+    pub(crate) fn by_time<N: Real>(
+        &self,
+        sweep: &Sweep<N, D>,
+        limit: N,
+        found: &mut DirtyVisitor<'_, N>,
+    ) {
+        self.search().groups_by_time(sweep, limit, found);
+    }
+
+    /// Calls `found` with the ids whose boxes may be at most `limit` from `aabb`, and distances that are not larger.
+    pub(crate) fn by_distance<N: Real>(
+        &self,
+        aabb: &Aabb<N, D>,
+        limit: N,
+        found: &mut DirtyVisitor<'_, N>,
+    ) {
+        self.search().groups_by_distance(aabb, limit, found);
+    }
+
+    /// What is wrong, if anything: the tree, or that it has other boxes than these.
+    pub(crate) fn validate<N: Real>(
+        &self,
+        boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
+    ) -> Result<(), String> {
+        self.tree.validate()?;
+        let mut count = 0;
+        for (id, aabb) in boxes {
+            let (bounds, kept) = (Bounds::enclosing(&aabb), self.tree.bounds(id));
+            let is_listed = self.unbounded.contains(&id);
+            if kept != Some(bounds).filter(Bounds::is_finite) || is_listed == bounds.is_finite() {
+                return Err(format!("the tree of dirty objects has {kept:?} for {id}: {aabb:?}"));
+            }
+            count += 1;
+        }
+        let kept = self.tree.len() + self.unbounded.len();
+        (kept == count).then_some(()).ok_or(format!("{kept} dirty boxes are kept of {count}"))
+    }
+
+    /// Proposals are made by the boxes of the tree alone.
+    fn search<N: Real>(&self) -> Search<'_, N, D, 1> {
+        let trees = [&self.tree];
+        Search { exact: &[], trees, unbounded: &self.unbounded, lanes: self.lanes }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::Block;
+    use crate::dim2::math::{Isometry, Point, Vector};
+    use crate::dim2::query::Ray;
+    use crate::dim2::shape::{Ball, HalfSpace, ShapeHandle};
+    use crate::dim2::world::{
+        CollisionGroups, CollisionObject, CollisionWorld, GeometricQueryType, QueryFilter,
+    };
+
+    type Box2 = Aabb<f32, 2>;
+    type World = CollisionWorld<f32, ()>;
+
+    /// A number from zero to below `bound`.
+    fn below(state: &mut u64, bound: u16) -> u16 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040);
+        u16::try_from((*state >> 33) % u64::from(bound)).expect("below a u16")
+    }
+
+    fn square(state: &mut u64, side: u16) -> Box2 {
+        Aabb::from_half_extents(place(state, side).into(), Vector::repeat(0.5))
+    }
+
+    fn place(state: &mut u64, side: u16) -> Vector<f32> {
+        Vector::from([(); 2].map(|()| f32::from(below(state, side))))
+    }
+
+    /// The blocks that a search of a square looks at.
+    fn opened(dirty: &DirtyTree<2>, square: &Box2) -> usize {
+        let (mut count, still) = (0, Vector::zeros());
+        let test = |block: &Block<2>| {
+            count += 1;
+            dirty.lanes.times_of_block(block, square, &still).0
+        };
+        dirty.tree.visit(test, |_| ());
+        count
+    }
+
+    /// Blocks for each search, when as many boxes come one by one and then move one by one, with a search after
+    /// each change: where they come, and where they move.
+    fn opened_on_average(count: u16, state: &mut u64) -> [f64; 2] {
+        let side = (1..256).find(|side| side * side > count).unwrap_or(256) - 1;
+        let mut boxes: Vec<(u32, Box2)> = Vec::new();
+        let mut dirty = DirtyTree::new::<f32>(false, &mut boxes.iter().copied());
+        [0, count].map(|first| {
+            let mut all = 0;
+            for change in first..first + count {
+                let (id, aabb) = (u32::from(change % count), square(state, side));
+                boxes.retain(|&(other, _)| other != id);
+                boxes.push((id, aabb));
+                dirty.put(id, &aabb);
+                if dirty.is_worn() {
+                    dirty = DirtyTree::new(false, &mut boxes.iter().copied());
+                }
+                all += opened(&dirty, &square(state, side));
+            }
+            assert_eq!(dirty.validate(&mut boxes.iter().copied()), Ok(()), "{count} boxes");
+            f64::from(u32::try_from(all).expect("few")) / f64::from(count)
+        })
+    }
+
+    #[test]
+    fn searches_among_many_changes_look_at_few_blocks() {
+        let [[few_new, few], [many_new, many]] =
+            [512, 8192].map(|count| opened_on_average(count, &mut 9));
+        // Boxes that came since the last sorting, an eighth of all in the mean, lie in blocks by age.
+        let unsorted = |count: f64| count / 8.0 / 16.0;
+        for (count, opened) in [(512.0, few_new), (8192.0, many_new)] {
+            assert!(opened < 8.0 + unsorted(count), "{opened} blocks of {count} boxes");
+        }
+        assert!(
+            many < 8.0 + unsorted(8192.0),
+            "{many} blocks where {few} would do for a sixteenth"
+        );
+    }
+
+    fn add(world: &mut World, shape: &ShapeHandle<f32>, position: Isometry<f32>) {
+        let (groups, query) = (CollisionGroups::new(), GeometricQueryType::Contacts(0.01, 0.0));
+        world.add(position, shape.clone(), groups, query, ());
+    }
+
+    fn change_one(world: &mut World, state: &mut u64) {
+        let ball = ShapeHandle::new(Ball::new(0.5));
+        let ground = ShapeHandle::new(HalfSpace::new(Vector::y_axis()));
+        let handles: Vec<_> = world.objects.iter().map(CollisionObject::handle).collect();
+        let handle = handles[usize::from(below(state, 30_000)) % handles.len()];
+        let position = Isometry::from(place(state, 30));
+        match below(state, 120) {
+            0 => world.update(),
+            1..20 => world.remove(&[handle]),
+            20..39 => add(world, &ball, position),
+            39..42 => world.set_shape(handle, ground),
+            42..52 => world.set_shape(handle, ball),
+            52..56 => world.set_collision_groups(handle, CollisionGroups::new()),
+            _ => world.set_position(handle, position),
+        }
+    }
+
+    #[test]
+    fn the_tree_of_a_world_follows_every_change() {
+        let (mut world, state) = (World::new(0.1), &mut 7);
+        let ball = ShapeHandle::new(Ball::new(0.5));
+        (0..200).for_each(|_| add(&mut world, &ball, Isometry::from(place(state, 30))));
+        let (mut trees, mut made) = ([0, 0], 0);
+        for change in 0..4000 {
+            change_one(&mut world, state);
+            let kept = world.objects.changes.made_dirty_tree().map(DirtyTree::has_all);
+            if change % 3 == 0 {
+                let ray = Ray::new(Point::origin(), Vector::repeat(1.0));
+                let _ = world.first_ray_hit(&ray, 0.0, true, &QueryFilter::new());
+                made += usize::from(kept.is_none());
+            }
+            kept.into_iter().for_each(|has_all| trees[usize::from(has_all)] += 1);
+            assert_eq!(world.objects.validate(&*world.broad_phase), Ok(()), "change {change}");
+        }
+        assert!(trees[0] > 500 && trees[1] > 500, "some of both kinds: {trees:?}");
+        assert!(made > 60, "given up by updates and by wear: {made}");
+    }
+}

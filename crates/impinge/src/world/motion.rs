@@ -1,0 +1,134 @@
+//! How objects move, as far as it matters for their pairs: fixed ones have none among each other, and the box
+//! of a fast one covers its way.
+
+use super::error::or_panic;
+use super::{CollisionWorld, WorldError};
+use crate::math::Space;
+use crate::narrow_phase::CollisionObjectHandle;
+
+/// What the world knows about the motion of objects.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Marks an object as fixed, or takes the mark away. Two fixed objects have no pair: the walls and
+    /// floors of a level, which overlap each other, cost nothing in the narrow phase and have no events.
+    ///
+    /// A new object is not fixed. Takes effect at the next update: pairs of two objects that are both
+    /// fixed by then stop, with their events, and pairs of two that no longer are both fixed start. A
+    /// fixed object can still be moved, has pairs with all objects that are not fixed, and with itself
+    /// if its groups say so ([`CollisionGroups::enable_self_collision`]); queries see it as any other.
+    /// The mark is tested before groups and filters are asked, once when the boxes of two objects begin
+    /// to overlap.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Vector};
+    /// use impinge::dim2::shape::{Ball, Cuboid, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, ContactQuery};
+    ///
+    /// let mut world = CollisionWorld::new(0.02_f32);
+    /// let (groups, contacts) = (CollisionGroups::new(), ContactQuery::default());
+    /// let slab = ShapeHandle::new(Cuboid::new(Vector::new(4.0, 1.0)));
+    /// let walls = [0.0, 3.0].map(|x| {
+    ///     let wall = world.add(Isometry::translation(x, 0.0), slab.clone(), groups, contacts, "wall");
+    ///     world.set_fixed(wall, true);
+    ///     wall
+    /// });
+    /// let ball = ShapeHandle::new(Ball::new(1.0));
+    /// world.add(Isometry::translation(1.5, 1.75), ball, groups, contacts, "ball");
+    /// world.update();
+    /// assert_eq!(world.contact_pairs().count(), 2, "the ball with each wall");
+    /// world.set_fixed(walls[0], false);
+    /// world.update();
+    /// assert_eq!(world.contact_events().len(), 1, "the walls overlap");
+    /// ```
+    ///
+    /// # Panics
+    /// If the handle is stale; [`Self::try_set_fixed`] returns this.
+    ///
+    /// [`CollisionGroups::enable_self_collision`]: super::CollisionGroups::enable_self_collision
+    #[track_caller]
+    pub fn set_fixed(&mut self, handle: CollisionObjectHandle, is_fixed: bool) {
+        or_panic(self.try_set_fixed(handle, is_fixed));
+    }
+
+    /// Marks an object as fixed, or takes the mark away; see [`Self::set_fixed`].
+    ///
+    /// # Errors
+    /// If the handle is stale. The world is unchanged then.
+    pub fn try_set_fixed(
+        &mut self,
+        handle: CollisionObjectHandle,
+        is_fixed: bool,
+    ) -> Result<(), WorldError> {
+        let (body, changes) = self.objects.fresh(handle)?;
+        body.set_fixed(changes, is_fixed);
+        Ok(())
+    }
+
+    /// Moves an object and predicts where it will be next: the broad phase covers the box of the object
+    /// at both positions, so that it has a pair with all objects whose boxes it may meet on the way, and
+    /// two fast bodies have one although their boxes overlap at no time at which they are looked at.
+    ///
+    /// Such pairs are there to be looked at more closely, by
+    /// [`nonlinear_time_of_impact`](crate::query::nonlinear_time_of_impact) and [`Self::update_pair`]; their
+    /// contacts and proximities are those of `position`, and so are the answers of all queries. The prediction holds
+    /// until the object is moved again, by [`Self::set_position`] (also to where it is) or with another
+    /// prediction; other changes leave it. As with any other change, queries see the position at once, pairs
+    /// at the next update.
+    ///
+    /// The box covers both ends and everything between them of a motion that does not turn. A body that
+    /// turns on the way can leave it by as much as it does in turning; a larger margin of the world, or
+    /// prediction of its query type, makes room for that. A pair costs memory and time although it does not
+    /// touch: predict for bodies that move by more than about their size in a step.
+    ///
+    /// ```
+    /// use impinge::dim3::math::Isometry;
+    /// use impinge::dim3::shape::{Ball, ShapeHandle};
+    /// use impinge::dim3::world::{CollisionGroups, CollisionWorld, ContactQuery};
+    ///
+    /// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(0.1)), CollisionGroups::new());
+    /// let at = |x| Isometry::translation(x, 0.0, 0.0);
+    /// let bullets = [-5.0, 5.0].map(|x| {
+    ///     let bullet = world.add(at(x), ball.clone(), groups, ContactQuery::default(), ());
+    ///     world.set_position_with_prediction(bullet, at(x), at(-x));
+    ///     bullet
+    /// });
+    /// world.update();
+    /// assert!(world.pairs_with(bullets[0]).map(|other| other.handle()).eq([bullets[1]]));
+    /// assert_eq!(world.predicted_position(bullets[0]), Some(&at(5.0)));
+    /// ```
+    ///
+    /// # Panics
+    /// If the handle is stale or a number of a position is not finite;
+    /// [`Self::try_set_position_with_prediction`] returns these.
+    #[track_caller]
+    pub fn set_position_with_prediction(
+        &mut self,
+        handle: CollisionObjectHandle,
+        position: N::Isometry,
+        predicted: N::Isometry,
+    ) {
+        or_panic(self.try_set_position_with_prediction(handle, position, predicted));
+    }
+
+    /// Moves an object and predicts where it will be next; see [`Self::set_position_with_prediction`].
+    ///
+    /// # Errors
+    /// If the handle is stale or a number of a position is not finite. The world is unchanged then.
+    pub fn try_set_position_with_prediction(
+        &mut self,
+        handle: CollisionObjectHandle,
+        position: N::Isometry,
+        predicted: N::Isometry,
+    ) -> Result<(), WorldError> {
+        let (body, changes) = self.objects.fresh(handle)?;
+        (N::tables().world.set_predicted)(body, changes, position, predicted)
+    }
+
+    /// Where [`Self::set_position_with_prediction`] predicted an object to be next; `None` if the object was
+    /// moved without a prediction since, and for a stale handle.
+    #[must_use]
+    pub fn predicted_position(&self, handle: CollisionObjectHandle) -> Option<&N::Isometry> {
+        let object = self.objects.get(handle)?;
+        self.objects.changes.prediction(&object.body)
+    }
+}

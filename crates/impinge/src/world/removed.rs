@@ -1,0 +1,95 @@
+//! Objects that were removed, as long as an event names them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{CollisionObject, CollisionWorld};
+use crate::math::Space;
+use crate::narrow_phase::{CollisionObjectHandle, Events};
+
+/// The removed objects that events name, and which objects these are.
+///
+/// Nothing is kept, and no event is looked at, before an object is removed.
+pub(super) struct RemovedObjects<N: Space<D>, const D: usize, T> {
+    objects: BTreeMap<CollisionObjectHandle, CollisionObject<N, D, T>>,
+    /// The objects that the events name which [`Self::note`] has looked at since the update.
+    named: BTreeSet<CollisionObjectHandle>,
+    /// How many events of each kind were looked at: those of the last update, and those queued since.
+    noted: [(usize, usize); 2],
+}
+
+impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
+    pub(super) const fn new() -> Self {
+        Self { objects: BTreeMap::new(), named: BTreeSet::new(), noted: [(0, 0); 2] }
+    }
+
+    /// Notes which objects events name that have come since.
+    pub(super) fn note(&mut self, events: &Events, queued: &Events) {
+        for (noted, events) in self.noted.iter_mut().zip([events, queued]) {
+            self.named.extend(events.named_from(*noted));
+            *noted = events.counts();
+        }
+    }
+
+    /// Keeps an object that is removed if an event names it, else drops it.
+    pub(super) fn keep(&mut self, object: CollisionObject<N, D, T>) {
+        let handle = object.handle();
+        if self.named.contains(&handle) {
+            self.objects.insert(handle, object);
+        }
+    }
+
+    /// Drops the objects that the events of a new batch do not name.
+    pub(super) fn keep_named(&mut self, events: &Events) {
+        self.named.clear();
+        self.noted = [(0, 0); 2];
+        if !self.objects.is_empty() {
+            self.note(events, &Events::default());
+            self.objects.retain(|handle, _| self.named.contains(handle));
+        }
+    }
+}
+
+/// Removed objects that events still name.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// An object that was removed, as it was then, as long as an event names it: one of the last update, or
+    /// one that its removal has queued for the next. So every handle in [`Self::contact_events`] and
+    /// [`Self::proximity_events`] has its object, here or by [`Self::collision_object`].
+    ///
+    /// `None` for objects that are there, stale handles that no event names, and objects that were taken by
+    /// [`Self::take_removed`]. A removed object that no event names is dropped at once, the others by the
+    /// update that forgets the last event which names them: without [`Self::keep_events`] that is the second
+    /// one after the removal at the latest. Until then their data and shapes take memory.
+    ///
+    /// ```
+    /// use impinge::dim2::math::Isometry;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, ContactQuery};
+    ///
+    /// let mut world = CollisionWorld::<f32, &str>::new(0.02);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let mut add = |name| {
+    ///     world.add(Isometry::identity(), ball.clone(), groups, ContactQuery::default(), name)
+    /// };
+    /// let [_, coin] = ["player", "coin"].map(|name| add(name));
+    /// world.update();
+    /// world.remove(&[coin]);
+    /// world.update();
+    /// let (_, gone) = world.contact_events()[0].handles();
+    /// assert!(world.collision_object(gone).is_none());
+    /// assert_eq!(world.removed_object(gone).map(|object| *object.data()), Some("coin"));
+    /// world.update();
+    /// assert!(world.removed_object(gone).is_none(), "no event names it any more");
+    /// ```
+    #[must_use]
+    pub fn removed_object(
+        &self,
+        handle: CollisionObjectHandle,
+    ) -> Option<&CollisionObject<N, D, T>> {
+        self.removed.objects.get(&handle)
+    }
+
+    /// The data of an object that [`Self::removed_object`] has, which has it no more hereafter.
+    pub fn take_removed(&mut self, handle: CollisionObjectHandle) -> Option<T> {
+        self.removed.objects.remove(&handle).map(|object| object.data)
+    }
+}

@@ -1,0 +1,94 @@
+//! Computing one pair between two updates.
+
+use super::error::or_panic;
+use super::step::in_order;
+use super::{CollisionWorld, WorldError};
+use crate::math::Space;
+use crate::narrow_phase::CollisionObjectHandle;
+
+/// Continuous collision: single pairs at new positions.
+impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
+    /// Computes the contacts or the proximity of two objects, whichever is named first, at their present
+    /// positions, without an update: for the substeps of a solver that moves a fast body to where it
+    /// hits.
+    ///
+    /// Answers whether the last update kept a pair of the two; if not, nothing happens: the broad phase is not
+    /// asked, so where two bodies may come to meet within a step, have their boxes cover it
+    /// ([`Self::set_position_with_prediction`]). A pair that is kept is computed as an update would: contacts
+    /// that moved keep their ids. From now on to the next update it is read at these positions,
+    /// wherever pairs are read, and all other pairs as of the last update. Shapes, query types and groups
+    /// are those of the last update.
+    ///
+    /// If the pair came to touch or parted, the event of that is queued: the next update delivers it first,
+    /// with those of removals, in the order in which things happened to the pair. It goes on from there, so
+    /// each `Started` still has one `Stopped`: of a pair that touches in a substep and has parted by the
+    /// update, both are delivered.
+    ///
+    /// Costs one query and two look-ups. A narrow phase of one's own has to implement
+    /// [`NarrowPhase::update_pair`](super::NarrowPhase::update_pair).
+    ///
+    /// ```
+    /// use impinge::dim2::events::ContactEvent;
+    /// use impinge::dim2::math::Isometry;
+    /// use impinge::dim2::shape::{Ball, ShapeHandle};
+    /// use impinge::dim2::world::{CollisionGroups, CollisionWorld, ContactQuery};
+    ///
+    /// let mut world = CollisionWorld::<f64, ()>::new(0.02);
+    /// let (ball, groups) = (ShapeHandle::new(Ball::new(1.0)), CollisionGroups::new());
+    /// let [post, bullet] = [0.0, -8.0].map(|x| {
+    ///     let place = Isometry::translation(x, 0.0);
+    ///     world.add(place, ball.clone(), groups, ContactQuery::default(), ())
+    /// });
+    /// let at = |x| Isometry::translation(x, 0.0);
+    /// world.set_position_with_prediction(bullet, at(-8.0), at(8.0));
+    /// world.update();
+    /// assert!(world.contact_events().is_empty(), "a pair without contact");
+    ///
+    /// world.set_position(bullet, at(-1.75));
+    /// assert!(world.update_pair(post, bullet));
+    /// let (_, point) = world.contacts_with(post).next().expect("they touch");
+    /// assert_eq!((point.contact.depth, point.contact.normal.x), (0.25, -1.0));
+    ///
+    /// world.set_position(bullet, at(-3.0));
+    /// world.update();
+    /// let both = [ContactEvent::Started(post, bullet), ContactEvent::Stopped(post, bullet)];
+    /// assert_eq!(world.contact_events(), both, "it has bounced off");
+    /// ```
+    ///
+    /// # Panics
+    /// If a handle is stale; [`Self::try_update_pair`] returns this.
+    #[doc(alias = "update_contact")]
+    #[track_caller]
+    pub fn update_pair(
+        &mut self,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> bool {
+        or_panic(self.try_update_pair(handle1, handle2))
+    }
+
+    /// Computes one pair at the present positions; see [`Self::update_pair`].
+    ///
+    /// # Errors
+    /// If a handle is stale. The world is unchanged then.
+    pub fn try_update_pair(
+        &mut self,
+        handle1: CollisionObjectHandle,
+        handle2: CollisionObjectHandle,
+    ) -> Result<bool, WorldError> {
+        for handle in [handle1, handle2] {
+            self.objects.fresh(handle)?;
+        }
+        let (first, second) = in_order(handle1, handle2);
+        let key = [first.index(), second.index()];
+        let [one, other] = key.map(|index| self.objects.body(index).map(|body| body.isometry));
+        let Some(positions) = one.zip(other).map(<[_; 2]>::from) else { return Ok(false) };
+        let Some(substep) = self.objects.table.begin_substep(key, positions) else {
+            return Ok(false);
+        };
+        let (events, objects) = (&mut self.queued, &self.objects);
+        let is_kept = self.narrow_phase.update_pair(events, objects, first, second);
+        self.objects.table.end_substep(&substep, is_kept);
+        Ok(is_kept)
+    }
+}

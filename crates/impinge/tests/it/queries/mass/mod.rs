@@ -1,0 +1,63 @@
+//! Mass, centre of mass and inertia.
+
+mod by_hand;
+mod counted;
+mod laws;
+mod meshes;
+mod own;
+
+use impinge::math::{Matrix, Point, Real, Space, Vector};
+use impinge::query::{MassProperties, mass_properties};
+use impinge::shape::Shape;
+
+/// The properties at density one, in doubles: mass, centre, and the tensor about it.
+pub(super) type Found<const D: usize> = (f64, Vector<f64, D>, Matrix<f64, D>);
+
+/// What a dimension calls inertia, as a matrix; in 2D the moment is its only element that is not zero.
+pub(super) trait Inertia<const D: usize>: Space<D> {
+    fn inertia_of(body: &MassProperties<Self, D>) -> Matrix<f64, D>;
+}
+
+impl<N: Real> Inertia<2> for N {
+    fn inertia_of(body: &MassProperties<N, 2>) -> Matrix<f64, 2> {
+        Matrix::<f64, 2>::new(body.inertia().as_f64(), 0.0, 0.0, 0.0)
+    }
+}
+
+impl<N: Real> Inertia<3> for N {
+    fn inertia_of(body: &MassProperties<N, 3>) -> Matrix<f64, 3> {
+        body.inertia().map(N::as_f64)
+    }
+}
+
+pub(super) fn wide<N: Inertia<D>, const D: usize>(body: &MassProperties<N, D>) -> Found<D> {
+    (body.mass().as_f64(), body.center_of_mass().coords.map(N::as_f64), N::inertia_of(body))
+}
+
+/// The properties of a shape at density one.
+pub(super) fn unit<N: Inertia<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Found<D> {
+    wide(&mass_properties(shape, N::ONE).unwrap_or_else(|error| panic!("{error}: {shape:?}")))
+}
+
+/// The two are equal up to a share of the size of each.
+#[track_caller]
+pub(super) fn assert_alike<const D: usize>(
+    found: &Found<D>,
+    expected: &Found<D>,
+    share: f64,
+    what: &str,
+) {
+    let reach = (expected.2.amax() / expected.0.max(f64::MIN_POSITIVE)).sqrt() + expected.1.norm();
+    let alike = (found.0 - expected.0).abs() <= share * expected.0
+        && (found.1 - expected.1).norm() <= share * reach
+        && (found.2 - expected.2).amax() <= share * expected.2.amax();
+    assert!(alike, "{what}: {found:?}\nis not {expected:?}");
+}
+
+pub(super) fn p2(x: f64, y: f64) -> Point<f64, 2> {
+    Point::<f64, 2>::new(x, y)
+}
+
+pub(super) fn p3(x: f64, y: f64, z: f64) -> Point<f64, 3> {
+    Point::<f64, 3>::new(x, y, z)
+}

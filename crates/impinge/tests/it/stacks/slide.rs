@@ -1,0 +1,52 @@
+//! Solids that slide without friction over thousands of triangles feel a plane, and keep their contacts.
+
+use impinge_stacks::{Choices, Kind, Stack, Stage, stacks2, stacks3};
+
+use super::{above, assert_none, played};
+
+/// Ten seconds at five units a second: a hundred cells.
+const STEPS: usize = 600;
+/// A thousandth of the speed: no bump, no brake.
+const BUMP: f64 = 5e-3;
+
+fn slide<N: Stage<D>, const D: usize>(stacks: &[Stack<D>]) {
+    let mut faults = Vec::new();
+    let mut count = 0;
+    for stack in stacks.iter().filter(|stack| stack.kind == Kind::Slide) {
+        let outcome = played::<N, D>(stack, Choices::default(), STEPS);
+        let counts = outcome.counts;
+        // Boxes have corners of their own; where the line of a capsule or cylinder crosses triangles, points come and go.
+        let share = if stack.name.contains("box") { 0.01 } else { 0.2 };
+        let numbers = [
+            ("change of velocity", outcome.max_speed, BUMP),
+            ("drift", outcome.drift, 0.01),
+            ("sinking", outcome.sunk, 0.01),
+            ("share of new ids", counts.new_share(), share),
+            ("share of lost ids", counts.lost_share(), share),
+            ("pairs that parted", outcome.parted as f64, 0.0),
+        ];
+        faults.extend(above(stack.name, numbers));
+        if counts.contacts < STEPS - 1 {
+            faults.push(format!("{}: {} contacts in all", stack.name, counts.contacts));
+        }
+        count += 1;
+    }
+    assert!(count > 0, "some scenes slide");
+    assert_none(&faults);
+}
+
+#[test]
+fn in_2d() {
+    slide::<f32, 2>(&stacks2());
+    slide::<f64, 2>(&stacks2());
+}
+
+#[test]
+fn in_3d_f32() {
+    slide::<f32, 3>(&stacks3());
+}
+
+#[test]
+fn in_3d_f64() {
+    slide::<f64, 3>(&stacks3());
+}
