@@ -147,8 +147,13 @@ fn step(world: &mut World, bodies: &mut [Body], stored: &Impulses) -> Impulses {
     for joint in &joints {
         joint.rows.iter().for_each(|row| row.push(row.impulse, joint.bodies, bodies));
     }
-    for _ in 0..ITERATIONS {
-        joints.iter_mut().for_each(|joint| solve(joint, bodies));
+    // Up the stack and down again: what is solved last is met best.
+    for turn in 0..ITERATIONS {
+        if turn % 2 == 0 {
+            joints.iter_mut().for_each(|joint| solve(joint, bodies));
+        } else {
+            joints.iter_mut().rev().for_each(|joint| solve(joint, bodies));
+        }
     }
     for body in bodies.iter_mut().filter(|body| body.inverse_mass > 0.0) {
         body.advance();
