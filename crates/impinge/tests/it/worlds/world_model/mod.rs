@@ -56,7 +56,7 @@ fn space_f32() {
 }
 
 #[test]
-#[ignore = "a known fault: one proximity event is missing at this seed"]
+#[ignore = "at this seed a box and a capsule that touch along (3, 4, 5) have the distance 6e-8 in f32"]
 fn space_f32_at_a_known_fault() {
     run::<f32, 3>(6, 12_000);
 }
