@@ -130,8 +130,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
     /// Appends all points.
     fn write(&self, rows: &mut ManifoldRows<N, D>) {
         let pose1 = &self.placed[0].pose;
-        let placement =
-            Placement { pose1, pair: 0, is_swapped: self.is_swapped, skins: [N::ZERO; 2] };
+        let placement = Placement { pose1, pair: 0, is_swapped: self.is_swapped };
         let pair = PairRef::new(self, [self.is_swapped, !self.is_swapped].map(u32::from));
         if let Some(contacts) = &self.composite {
             let views = (0..).map_while(|patch| contacts.view(patch, placement, pair));

@@ -18,6 +18,7 @@ pub(crate) mod mesh;
 pub(crate) mod packet;
 pub(crate) mod pair;
 pub(crate) mod parts;
+mod ones;
 mod raw_manifold;
 pub(crate) mod separation;
 mod size;

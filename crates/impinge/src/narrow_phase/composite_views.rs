@@ -1,11 +1,12 @@
 //! All contacts of pairs with composites, read where they lie.
 
+use core::iter;
 use core::ops::Range;
 
 use super::ObjectTable;
 use super::lanes::CompositeGroup;
+use super::view::{Composite, View};
 use crate::math::{Space, max};
-use crate::query::ManifoldView;
 
 /// The manifolds that hold a contact, in the order in which they lie.
 pub(super) struct CompositeViews<'a, N: Space<D>, const D: usize> {
@@ -63,10 +64,21 @@ impl<'a, N: Space<D>, const D: usize> CompositeViews<'a, N, D> {
         }
         core::hint::black_box(seen);
     }
+
+    /// The same manifolds where some pairs may not be read where they lie.
+    pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
+        let next = move || {
+            self.next_pair()?;
+            let (group, place) = (self.group, u32::try_from(self.place).ok()?);
+            Some((group.key(place), Composite { table: self.table, group, place }))
+        };
+        iter::from_fn(next)
+            .flat_map(|(key, pair)| pair.views().map(move |view| (key[0], key[1], view)))
+    }
 }
 
 impl<'a, N: Space<D>, const D: usize> Iterator for CompositeViews<'a, N, D> {
-    type Item = (u32, u32, ManifoldView<'a, N, D>);
+    type Item = View<'a, N, D>;
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {

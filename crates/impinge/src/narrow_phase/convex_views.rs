@@ -1,13 +1,13 @@
 //! All contacts of pairs of convex solids, read where they lie.
 
 use core::ops::Range;
-use core::slice;
+use core::{iter, slice};
 
 use super::ObjectTable;
 use super::lanes::ContactGroup;
 use super::state::KeptContacts;
+use super::view::{BuiltIn, View};
 use crate::math::Space;
-use crate::query::ManifoldView;
 
 /// The manifolds that hold a contact, group by group in the order in which they lie.
 pub(super) struct ConvexViews<'a, N: Space<D>, const D: usize> {
@@ -75,6 +75,23 @@ impl<'a, N: Space<D>, const D: usize> ConvexViews<'a, N, D> {
         }
         core::hint::black_box(sum);
     }
+
+    /// Goes to the next pair that touches.
+    #[inline]
+    fn next_pair(&mut self) -> Option<(&'a ContactGroup<N, D>, usize)> {
+        let group = if self.flags == 0 { self.next_word()? } else { self.group? };
+        Some((group, place(self.word, &mut self.flags)))
+    }
+
+    /// The same manifolds where some pairs may not be read where they lie.
+    pub(super) fn particular(mut self) -> impl Iterator<Item = View<'a, N, D>> + Send {
+        let next = move || {
+            let (group, place) = self.next_pair()?;
+            let place = u32::try_from(place).expect("places are numbers of 32 bits");
+            Some((group.key(place), BuiltIn { table: self.table, group, place }))
+        };
+        iter::from_fn(next).filter_map(|(key, pair)| Some((key[0], key[1], pair.view()?)))
+    }
 }
 
 /// Takes the lowest flag out of the word before `word`; the place of its pair.
@@ -86,12 +103,11 @@ const fn place(word: usize, flags: &mut u64) -> usize {
 }
 
 impl<'a, N: Space<D>, const D: usize> Iterator for ConvexViews<'a, N, D> {
-    type Item = (u32, u32, ManifoldView<'a, N, D>);
+    type Item = View<'a, N, D>;
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
-        let group = if self.flags == 0 { self.next_word()? } else { self.group? };
-        let place = place(self.word, &mut self.flags);
+        let (group, place) = self.next_pair()?;
         let (key, entry) = (group.keys()[place], &group.states()[place]);
         debug_assert!(entry.state.len() > 0, "a touching pair has contacts");
         Some((key[0], key[1], entry.state.view(self.table, key, entry.number)))

@@ -48,3 +48,4 @@ pub use traits::{
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,
 };
 pub use view::{ContactPair, ProximityPair};
+pub(crate) use view::Views;

@@ -12,7 +12,7 @@ use crate::collide::{
     own_distance,
 };
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::query::{ContactManifold, ManifoldView, Placement, Proximity, materialise};
+use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 
 /// Two solids placed in the world.
@@ -287,8 +287,9 @@ impl<N: Space<D>, const D: usize> ContactState<N, D> {
         key: PairKey,
         number: u64,
     ) -> ManifoldView<'a, N, D> {
-        let (placement, pair) = table.placement(key, number, self.kept.swapped);
-        ManifoldView::of_convex(&self.kept.contacts, placement, pair)
+        let pose1 = table.pose(self.home(key));
+        let placement = Placement { pose1, pair: number, is_swapped: self.kept.swapped };
+        ManifoldView::of_convex(&self.kept.contacts, placement, PairRef::new(table, key))
     }
 }
 
@@ -321,8 +322,9 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         number: u64,
         patch: usize,
     ) -> Option<ManifoldView<'a, N, D>> {
-        let (placement, pair) = table.placement(key, number, self.swapped);
-        self.contacts.view(patch, placement, pair)
+        let pose1 = table.pose(self.home(key));
+        let placement = Placement { pose1, pair: number, is_swapped: self.swapped };
+        self.contacts.view(patch, placement, PairRef::new(table, key))
     }
 }
 

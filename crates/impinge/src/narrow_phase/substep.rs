@@ -1,8 +1,7 @@
 //! Pairs that were computed anew between two updates.
 //!
 //! The rows of the table keep the poses of the last update, by which all other pairs are read. A pair that was
-//! computed since is read by poses of its own, which the table keeps until the next update begins. While
-//! there is no such pair, and no object with a skin, a reader pays for the look at two empty lists.
+//! computed since is read by poses of its own, which the table keeps until the next update begins.
 
 use super::ObjectTable;
 use super::entry::posed;
@@ -10,21 +9,12 @@ use super::group::PairKey;
 use super::objects::ObjectSolid;
 use super::state::Posed;
 use crate::math::{Pose, Real, Space};
-use crate::query::{PairRef, PlacedSolids, Placement};
-use crate::shape::Geometry;
 
 /// A pair, and its objects where they were when it was computed.
 #[derive(Clone, Debug)]
 pub(super) struct PairSolids<N: Real, const D: usize> {
     key: PairKey,
     solids: [ObjectSolid<N, D>; 2],
-}
-
-impl<N: Real, const D: usize> PlacedSolids<N, D> for PairSolids<N, D> {
-    fn placed(&self, object: u32) -> (&Pose<N, D>, Geometry<'_, N, D>) {
-        let solid = &self.solids[usize::from(object != self.key[0])];
-        (&solid.pose, solid.shape.geometry())
-    }
 }
 
 /// The poses of the last update, while other ones stand in the rows of a pair.
@@ -84,40 +74,15 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         }
     }
 
-    /// What places the contacts of a pair in the world; they are kept in the frame of the second object if
-    /// `is_swapped`, else of the first.
-    #[inline]
-    pub(super) fn placement(
-        &self,
-        key: PairKey,
-        number: u64,
-        is_swapped: bool,
-    ) -> (Placement<'_, N, D>, PairRef<'_, N, D>) {
-        let home = key[usize::from(is_swapped)];
-        if self.substeps.is_empty() && self.skins.is_empty() {
-            let (pose1, skins) = (self.pose(home), [N::ZERO; 2]);
-            let placement = Placement { pose1, pair: number, is_swapped, skins };
-            return (placement, PairRef::new(self, key));
-        }
-        self.particular_placement(key, number, is_swapped)
+    /// The contacts of a pair are not those of the rows: it was computed since, or an object has a skin. Such a pair
+    /// is read from manifolds made for it.
+    pub(super) fn is_particular(&self, key: PairKey) -> bool {
+        self.solids_between(key).is_some() || self.skins_of(key) != [N::ZERO; 2]
     }
 
-    /// [`Self::placement`] where some objects have skins, or some pairs were computed since the last update.
-    #[inline(never)]
-    fn particular_placement(
-        &self,
-        key: PairKey,
-        number: u64,
-        is_swapped: bool,
-    ) -> (Placement<'_, N, D>, PairRef<'_, N, D>) {
-        let solids: &dyn PlacedSolids<N, D> = match self.solids_between(key) {
-            Some(pair) => pair,
-            None => self,
-        };
-        let [home, other] = [usize::from(is_swapped), usize::from(!is_swapped)];
-        let (pose1, _) = solids.placed(key[home]);
-        let skins = [self.skin(key[home]), self.skin(key[other])];
-        (Placement { pose1, pair: number, is_swapped, skins }, PairRef::new(solids, key))
+    /// No pair is [particular](Self::is_particular).
+    pub(super) fn is_plain(&self) -> bool {
+        self.substeps.is_empty() && self.skins.is_empty()
     }
 
     /// The objects of a pair that was computed since the last update.

@@ -13,25 +13,55 @@ use crate::math::Space;
 use crate::pairs::PairTable;
 use crate::query::{ContactManifold, ManifoldView, Proximity};
 
-/// The manifolds of convex solids, then all others: a chain that forgets nothing and asks nothing of its
-/// second half until it gets there.
-struct Views<'a, N: Space<D>, I, const D: usize> {
+/// Manifolds that hold a contact: of convex solids, then of composites, then those of algorithms of the user's own.
+pub(crate) struct Views<'a, N: Space<D>, const D: usize> {
+    /// Every pair may be read where its contacts lie.
+    pub(crate) is_plain: bool,
     convex: ConvexViews<'a, N, D>,
-    others: I,
+    composites: CompositeViews<'a, N, D>,
+    custom: Option<&'a DefaultNarrowPhase<N, D>>,
+}
+
+impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
+    /// All of them, read where they lie, each as `name` has it, before they meet: views that come from two places are
+    /// copied.
+    pub(crate) fn plain<R>(
+        self,
+        name: impl Fn(View<'a, N, D>) -> R + Copy,
+    ) -> impl Iterator<Item = R> {
+        let custom = self.custom.into_iter().flat_map(DefaultNarrowPhase::custom_views);
+        let others = Chain { first: self.composites.map(name), others: custom.map(name) };
+        Chain { first: self.convex.map(name), others }
+    }
+
+    /// All of them, those of [particular](ObjectTable::is_particular) pairs made for the reader.
+    pub(crate) fn particular<R>(
+        self,
+        name: impl Fn(View<'a, N, D>) -> R,
+    ) -> impl Iterator<Item = R> {
+        let custom = self.custom.into_iter().flat_map(DefaultNarrowPhase::custom_views);
+        self.convex.particular().chain(self.composites.particular()).chain(custom).map(name)
+    }
 }
 
 /// Two objects and a manifold of theirs.
-type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
+pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
 
-impl<'a, N: Space<D>, I: Iterator<Item = View<'a, N, D>>, const D: usize> Iterator
-    for Views<'a, N, I, D>
-{
-    type Item = View<'a, N, D>;
+/// One iterator after another: forgets nothing and asks nothing of the second until it gets there.
+struct Chain<A, B> {
+    first: A,
+    others: B,
+}
+
+impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for Chain<A, B> {
+    type Item = A::Item;
 
     #[inline]
-    fn next(&mut self) -> Option<View<'a, N, D>> {
-        let view = self.convex.next();
-        if view.is_some() { view } else { self.others.next() }
+    fn next(&mut self) -> Option<A::Item> {
+        if let Some(item) = self.first.next() {
+            return Some(item);
+        }
+        self.others.next()
     }
 }
 
@@ -69,18 +99,18 @@ enum ViewedContacts<'a, N: Space<D>, const D: usize> {
 
 /// Where the contacts of one of the library's own pairs are.
 #[derive(Clone, Copy)]
-struct BuiltIn<'a, N: Space<D>, const D: usize> {
-    table: &'a ObjectTable<N, D>,
-    group: &'a ContactGroup<N, D>,
-    place: u32,
+pub(super) struct BuiltIn<'a, N: Space<D>, const D: usize> {
+    pub(super) table: &'a ObjectTable<N, D>,
+    pub(super) group: &'a ContactGroup<N, D>,
+    pub(super) place: u32,
 }
 
 /// Where the contacts of a pair with a composite are.
 #[derive(Clone, Copy)]
-struct Composite<'a, N: Space<D>, const D: usize> {
-    table: &'a ObjectTable<N, D>,
-    group: &'a CompositeGroup<N, D>,
-    place: u32,
+pub(super) struct Composite<'a, N: Space<D>, const D: usize> {
+    pub(super) table: &'a ObjectTable<N, D>,
+    pub(super) group: &'a CompositeGroup<N, D>,
+    pub(super) place: u32,
 }
 
 impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
@@ -99,12 +129,14 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
         Some(group.view(place).manifolds(make))
     }
 
-    /// The same, read in place.
-    fn view(&self) -> Option<ManifoldView<'a, N, D>> {
-        let (group, place) = (self.group, self.place);
+    /// The same, read in place where the rows tell it.
+    pub(super) fn view(&self) -> Option<ManifoldView<'a, N, D>> {
+        let (group, place, key) = (self.group, self.place, self.group.key(self.place));
+        if self.table.is_particular(key) {
+            return self.manifold().and_then(ManifoldView::of_manifold);
+        }
         let entry = group.state(place);
-        let view = || entry.state.view(self.table, group.key(place), entry.number);
-        group.is_touching(place).then(view)
+        group.is_touching(place).then(|| entry.state.view(self.table, key, entry.number))
     }
 }
 
@@ -123,10 +155,14 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
         group.view(place).manifolds(make)
     }
 
-    /// The same, read in place.
-    fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
+    /// The same, read in place where the rows tell them.
+    pub(super) fn views(self) -> impl Iterator<Item = ManifoldView<'a, N, D>> {
         let (key, entry) = (self.group.key(self.place), self.group.state(self.place));
-        (0..).map_while(move |patch| entry.state.view(self.table, key, entry.number, patch))
+        let is_particular = self.table.is_particular(key);
+        let made = if is_particular { self.manifolds() } else { &[] };
+        let view = move |patch| entry.state.view(self.table, key, entry.number, patch);
+        let kept = (0..).map_while(move |patch| (!is_particular).then(|| view(patch))?);
+        made.iter().filter_map(ManifoldView::of_manifold).chain(kept)
     }
 }
 
@@ -283,14 +319,11 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         })
     }
 
-    /// All manifolds that hold a contact, read where they lie and in the order in which they do.
-    pub(crate) fn contact_views<'a>(
-        &'a self,
-        table: &'a ObjectTable<N, D>,
-    ) -> impl Iterator<Item = View<'a, N, D>> + 'a {
-        let composites = CompositeViews::new(&self.lanes.composites, table);
+    /// All manifolds that hold a contact, in the order in which they lie.
+    pub(crate) fn contact_views<'a>(&'a self, table: &'a ObjectTable<N, D>) -> Views<'a, N, D> {
         let convex = ConvexViews::new(&self.lanes.contacts, table);
-        Views { convex, others: composites.chain(self.custom_views()) }
+        let composites = CompositeViews::new(&self.lanes.composites, table);
+        Views { is_plain: table.is_plain(), convex, composites, custom: Some(self) }
     }
 
     /// The same, cut into at most so many pieces of about as many pairs, in their order.
@@ -298,7 +331,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         &'a self,
         table: &'a ObjectTable<N, D>,
         pieces: usize,
-    ) -> impl Iterator<Item = impl Iterator<Item = View<'a, N, D>> + Send + 'a> + 'a {
+    ) -> impl Iterator<Item = Views<'a, N, D>> + 'a {
         let PairLanes { contacts, composites, .. } = &self.lanes;
         // Cut between words of flags: first those of convex solids, then those of composites.
         let convex = ConvexViews::num_words(contacts);
@@ -307,11 +340,14 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         (0..pieces).map(move |piece| {
             let [from, to] = [piece, piece + 1].map(|cut| words * cut / pieces);
             let of_composites = from.saturating_sub(convex)..to.saturating_sub(convex);
-            let composites = CompositeViews::new(composites, table).of_words(of_composites);
             let of_convex = from.min(convex)..to.min(convex);
-            let convex = ConvexViews::new(contacts, table).of_words(of_convex);
-            let custom = (to == words).then(|| self.custom_views());
-            Views { convex, others: composites.chain(custom.into_iter().flatten()) }
+            let all = self.contact_views(table);
+            Views {
+                convex: all.convex.of_words(of_convex),
+                composites: all.composites.of_words(of_composites),
+                custom: all.custom.filter(|_| to == words),
+                ..all
+            }
         })
     }
 

@@ -238,28 +238,13 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
     pub(crate) pair: u64,
     /// The user's first solid is the second of the raw pair: all comes out flipped.
     pub(crate) is_swapped: bool,
-    /// By how much the solids of the raw pair are grown. Read by views only.
-    pub(crate) skins: [N; 2],
 }
 
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
     /// Of a pair whose solids have these poses in the user's order.
     #[inline]
     pub(crate) fn new(poses: [&'a Pose<N, D>; 2], pair: u64, is_swapped: bool) -> Self {
-        let (pose1, skins) = (poses[usize::from(is_swapped)], [N::ZERO; 2]);
-        Self { pose1, pair, is_swapped, skins }
-    }
-}
-
-impl<N: Real, const D: usize> Placement<'_, N, D> {
-    /// A contact of the cores, in the user's order, as one of the solids with their skins.
-    pub(super) fn grow(&self, tracked: TrackedContact<N, D>) -> TrackedContact<N, D> {
-        let [first, second] = self.skins;
-        match self.skins {
-            skins if skins == [N::ZERO; 2] => tracked,
-            _ if self.is_swapped => tracked.grown([second, first]),
-            skins => tracked.grown(skins),
-        }
+        Self { pose1: poses[usize::from(is_swapped)], pair, is_swapped }
     }
 }
 

@@ -297,17 +297,6 @@ impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
 
     /// See [`Self::tracked_contact`].
     pub(crate) fn tracked(&self, index: usize) -> TrackedContact<N, D> {
-        let tracked = self.tracked_on_cores(index);
-        match self.0 {
-            ViewSource::Convex(_, placement, _) | ViewSource::Patch(_, placement, _) => {
-                placement.grow(tracked)
-            }
-            ViewSource::Made(_) => tracked,
-        }
-    }
-
-    /// [`Self::tracked`] of the solids without their skins.
-    fn tracked_on_cores(&self, index: usize) -> TrackedContact<N, D> {
         match self.0 {
             ViewSource::Convex(raw, placement, pair) => {
                 let pair = pair.in_order(placement.is_swapped);
@@ -332,8 +321,6 @@ fn point<N: Real, const D: usize>(
     placement: &Placement<'_, N, D>,
 ) -> ContactPoint<N, D> {
     let contact = placed(own, raw, placement.pose1, *normal);
-    let has_skins = placement.skins != [N::ZERO; 2];
-    let contact = if has_skins { contact.grown(placement.skins) } else { contact };
     let id = ContactId { pair: placement.pair, number: raw.id };
     let (feature1, feature2) = (raw.feature1, raw.feature2);
     let point = ContactPoint { contact, id, feature1, feature2, part1, part2 };

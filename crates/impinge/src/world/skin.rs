@@ -21,8 +21,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ///
     /// Nothing else sees the skin: neither proximity, whose margin is another way to be early, nor queries,
     /// nor algorithms of a dispatcher of one's own. Takes effect at the next update; contacts keep their ids.
-    /// Costs nothing in a world without skins; in one with skins, reading a contact takes a few additions
-    /// more, and boxes are larger by the skin.
+    /// Costs nothing in a world without skins. In one with skins boxes are larger by the skin, and the manifolds
+    /// of an object with a skin are made when they are first read.
     ///
     /// ```
     /// use impinge::dim3::math::{Isometry, Vector};

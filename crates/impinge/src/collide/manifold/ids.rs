@@ -26,6 +26,7 @@
 
 use smallvec::SmallVec;
 
+use super::super::ones::Ones;
 use super::super::{RawManifold, RawPoint};
 use super::frame::Candidate;
 use crate::math::order::{order_of, sort_keyed};
@@ -108,7 +109,7 @@ const CLASS_AT: u32 = 62;
 const NEVER: u64 = u64::MAX;
 
 /// Up to so many old and new points all pairs are compared; of more, those that can be near are found first.
-const FEW: usize = 8;
+const FEW: usize = u32::BITS as usize;
 
 /// Visits the index of each old point that goes on and that of the new point that it is now, and whether that is
 /// where the old one was. `size` is that of the pair ([`smaller_size`](crate::collide::size::smaller_size)).
@@ -120,43 +121,65 @@ pub(in crate::collide) fn each_match<N: Real, const D: usize>(
     size: N,
     visit: &mut dyn FnMut(usize, usize, bool),
 ) {
-    let length = N::lit(SHARE) * size;
     if old.len() <= FEW && new.len() <= FEW {
-        match_few(old, new, length, visit);
+        match_few(old, new, near_scale(size), visit);
     } else {
-        match_many(old, new, length, visit);
+        match_many(old, new, size, visit);
     }
 }
 
-/// [`each_match`] by a table of all keys, of which the lowest is taken again and again.
+/// [`each_match`] of points that are bits of a word.
 fn match_few<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
-    length: N,
+    scale: N,
     visit: &mut dyn FnMut(usize, usize, bool),
 ) {
-    let (mut keys, scale) = ([[NEVER; FEW]; FEW], N::ONE / length);
-    for (row, old) in keys.iter_mut().zip(old) {
-        for (key, new) in row.iter_mut().zip(new) {
-            *key = key_of(old, new, scale);
+    let all = |points: &[Anchors<N, D>]| u32::MAX.unbounded_shr(32 - points.len() as u32);
+    nearest_first(
+        [all(old), all(new)],
+        NEVER,
+        |at, other| key_of(&old[at], &new[other], scale),
+        |at, other, key| visit(at, other, is_near(key)),
+    );
+}
+
+/// Visits pairs of old and new points, both given by bits, the one with the smallest key first and each point once. Ties
+/// go to the old point that comes first, then to the new one. Keys that are not below `never` make no pair.
+#[inline(always)]
+pub(in crate::collide) fn nearest_first<K: PartialOrd + Copy>(
+    [old, mut new]: [u32; 2],
+    never: K,
+    key: impl Fn(usize, usize) -> K,
+    mut visit: impl FnMut(usize, usize, K),
+) {
+    let best = |at: usize, new: u32| {
+        let nearer = |best: (K, usize), other: usize| {
+            let key = key(at, other);
+            if key < best.0 { (key, other) } else { best }
+        };
+        Ones::<FEW>(new).fold((never, 0), nearer)
+    };
+    // Of each old point that is left the nearest new one.
+    let mut nearest = SmallVec::<[(usize, K, usize); 8]>::new();
+    for at in Ones::<FEW>(old) {
+        let (key, other) = best(at, new);
+        if key < never {
+            nearest.push((at, key, other));
         }
     }
-    for _ in 0..old.len().min(new.len()) {
-        let (mut least, mut best) = (NEVER, [0; 2]);
-        for (at, row) in keys.iter().enumerate().take(old.len()) {
-            for (other, &key) in row.iter().enumerate().take(new.len()) {
-                if key < least {
-                    (least, best) = (key, [at, other]);
-                }
+    while !nearest.is_empty() {
+        let nearer = |a: usize, b: usize| if nearest[b].1 < nearest[a].1 { b } else { a };
+        let first = (1..nearest.len()).fold(0, nearer);
+        let (at, key, other) = nearest.remove(first);
+        visit(at, other, key);
+        new &= !(1 << other);
+        nearest.retain(|entry| {
+            if entry.2 == other {
+                (entry.1, entry.2) = best(entry.0, new);
             }
-        }
-        if least == NEVER {
-            return;
-        }
-        let [at, other] = best;
-        keys[at] = [NEVER; FEW];
-        keys.iter_mut().for_each(|row| row[other] = NEVER);
-        visit(at, other, is_near(least));
+            entry.1 < never
+        });
     }
 }
 
@@ -164,12 +187,12 @@ fn match_few<N: Real, const D: usize>(
 fn match_many<N: Real, const D: usize>(
     old: &[Anchors<N, D>],
     new: &[Anchors<N, D>],
-    length: N,
+    size: N,
     visit: &mut dyn FnMut(usize, usize, bool),
 ) {
     let (mut pairs, mut keys, mut number) = (Vec::new(), Vec::new(), 0);
-    each_possible(old, new, length, &mut |at, other| {
-        let key = key_of(&old[at], &new[other], N::ONE / length);
+    each_possible(old, new, N::lit(SHARE) * size, &mut |at, other| {
+        let key = key_of(&old[at], &new[other], near_scale(size));
         if key != NEVER {
             keys.push((key, number));
             pairs.push([at, other]);
@@ -185,6 +208,15 @@ fn match_many<N: Real, const D: usize>(
             visit(at, other, is_near(key));
         }
     }
+}
+
+/// The one point is where the other was.
+pub(in crate::collide) fn are_near<N: Real, const D: usize>(
+    old: &Anchors<N, D>,
+    new: &Anchors<N, D>,
+    size: N,
+) -> bool {
+    moved(old, new, near_scale(size)) <= N::ONE
 }
 
 /// The key is one of the first two classes.
@@ -252,17 +284,43 @@ fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = u
 /// vertex it has not moved.
 #[inline]
 fn moved<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> N {
-    let is_on_vertex = |solid: usize| {
-        let name = |point: &Anchors<N, D>| (point.names.0[solid], point.names.1[solid]);
-        matches!(name(old).1, FeatureId::Vertex(_)) && name(old) == name(new)
-    };
-    if is_on_vertex(0) || is_on_vertex(1) {
+    let names = |point: &Anchors<N, D>, solid: usize| (point.names.0[solid], point.names.1[solid]);
+    let is_same = [0, 1].map(|solid| names(old, solid) == names(new, solid));
+    if has_same_vertex(is_same, old.names.1) {
         return N::ZERO;
     }
     let on = |solid: usize| ((new.places[solid] - old.places[solid]) * scale).norm_squared();
     let [on1, on2] = [on(0), on(1)];
     // Written so that a place that is not known does not count.
     if on2 < on1 { on2 } else { on1 }
+}
+
+/// [`moved`] of two points of which the places on the first solid are known, as lanes know them. The old one is not on a
+/// composite.
+#[inline(always)]
+pub(in crate::collide) fn moved_on_first<N: Real, const D: usize>(
+    old: &RawPoint<N, D>,
+    (new, features): (&Point<N, D>, [FeatureId; 2]),
+    scale: N,
+) -> N {
+    let olds = [old.feature1, old.feature2];
+    if has_same_vertex([olds[0] == features[0], olds[1] == features[1]], olds) {
+        return N::ZERO;
+    }
+    ((new - old.point1) * scale).norm_squared()
+}
+
+/// A solid touches with the vertex that it did before.
+#[inline(always)]
+fn has_same_vertex(is_same: [bool; 2], old: [FeatureId; 2]) -> bool {
+    let is_vertex = |id: FeatureId| matches!(id, FeatureId::Vertex(_));
+    is_same[0] && is_vertex(old[0]) || is_same[1] && is_vertex(old[1])
+}
+
+/// One over the length that a contact of a pair of this size moves by in a step at most.
+#[inline(always)]
+pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
+    N::ONE / (N::lit(SHARE) * size)
 }
 
 /// A pair of features names one point: a vertex is among them. Edges may be round rims, which many points lie on.
@@ -322,7 +380,7 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
     /// The anchors of one of the points.
     #[inline]
     pub(in crate::collide) fn anchors(&self, point: &RawPoint<N, D>) -> Anchors<N, D> {
-        let pose = PairPose { pose12: self.pose12.as_ref(), normal: &self.normal };
+        let pose = PairPose { pose12: self.pose12.as_deref(), normal: &self.normal };
         let features = [point.feature1, point.feature2];
         pose.anchors(&point.point1, point.distance, ([0; 2], features))
     }

@@ -242,7 +242,11 @@ fn choose_in_frame<N: Real, const D: usize>(
         limit,
     };
     choose(candidates, &choice, out);
-    out.pose12 = Some(*pose12).filter(|_| keeps_pose(pair));
+    match &mut out.pose12 {
+        _ if !keeps_pose(pair) => out.pose12 = None,
+        Some(kept) => **kept = *pose12,
+        none => *none = Some(Box::new(*pose12)),
+    }
 }
 
 /// Places on the second solid are compared: not where lanes may serve the pair, which keep no pose.

@@ -14,7 +14,7 @@ use smallvec::SmallVec;
 use super::patch_groups::Groups;
 use super::patch_points::{Choosing, Members};
 use crate::collide::manifold::ids::{
-    AnchorList, Anchors, Inherited, PairPose, each_match, is_one_point,
+    AnchorList, Anchors, Inherited, PairPose, are_near, each_match,
 };
 use crate::collide::manifold::reduce::ordering;
 use crate::collide::size::smaller_size;
@@ -112,10 +112,9 @@ fn merge_one<N: Real, const D: usize>(
 
 fn anchors<N: Real, const D: usize>(
     pose: &PairPose<'_, N, D>,
-    raw: &RawPoint<N, D>,
-    parts: [u32; 2],
+    PatchPoint { raw, parts }: &PatchPoint<N, D>,
 ) -> Anchors<N, D> {
-    pose.anchors(&raw.point1, raw.distance, (parts, [raw.feature1, raw.feature2]))
+    pose.anchors(&raw.point1, raw.distance, (*parts, [raw.feature1, raw.feature2]))
 }
 
 /// A patch without points, in the place of an old one if there is one.
@@ -141,19 +140,17 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
     fn kept(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>]) -> KeptIds {
         let mut kept = KeptIds::from_elem(None, self.points.len());
         let (mut at, mut olds, mut ids) = (0, AnchorList::new(), SmallVec::<[u32; 8]>::new());
-        for Patch { normal, points } in old {
-            for PatchPoint { raw, parts } in points {
-                let piece = self.piece_of(*parts, at);
+        for patch in old {
+            let pose = PairPose { pose12: Some(old_pose12), normal: &patch.normal };
+            for point in &patch.points {
+                let (piece, place) = (self.piece_of(point.parts, at), anchors(&pose, point));
                 at = piece.unwrap_or(at);
-                match piece.and_then(|piece| self.only_heir(raw, &self.pieces[piece], &kept)) {
-                    Some(heir) => kept[heir] = Some(Inherited { id: raw.id, is_old: true }),
+                let heir = piece.and_then(|piece| self.only_heir(point, patch, piece));
+                match heir.filter(|&(heir, new)| kept[heir].is_none() && are_near(&place, &new, self.size())) {
+                    Some((heir, _)) => kept[heir] = Some(Inherited { id: point.raw.id, is_old: true }),
                     None => {
-                        olds.push(anchors(
-                            &PairPose { pose12: Some(old_pose12), normal },
-                            raw,
-                            *parts,
-                        ));
-                        ids.push(raw.id);
+                        olds.push(place);
+                        ids.push(point.raw.id);
                     }
                 }
             }
@@ -164,24 +161,26 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         kept
     }
 
-    /// The point of a piece with the features of an old one, if these name one point and no id was given to it.
+    /// The point of a piece with the features of a point of an old patch, and its anchors, if these name one point of
+    /// either.
     fn only_heir(
         &self,
-        old: &RawPoint<N, D>,
-        piece: &Piece<N, D>,
-        kept: &KeptIds,
-    ) -> Option<usize> {
-        let features = [old.feature1, old.feature2];
-        if !is_one_point(features) {
+        old: &PatchPoint<N, D>,
+        patch: &Patch<N, D>,
+        piece: usize,
+    ) -> Option<(usize, Anchors<N, D>)> {
+        let features = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
+        let is_twin = |other: &&PatchPoint<N, D>| {
+            other.parts == old.parts && features(&other.raw) == features(&old.raw)
+        };
+        let Piece { normal, parts, points } = &self.pieces[piece];
+        let mut heirs = points.clone().filter(|&at| features(&self.points[at]) == features(&old.raw));
+        let heir = heirs.next()?;
+        if heirs.next().is_some() || patch.points.iter().filter(is_twin).count() > 1 {
             return None;
         }
-        let is_heir = |at: &usize| {
-            let new = &self.points[*at];
-            [new.feature1, new.feature2] == features
-        };
-        let mut heirs = piece.points.clone().filter(is_heir);
-        let heir = heirs.next().filter(|&heir| kept[heir].is_none());
-        if heirs.next().is_some() { None } else { heir }
+        let pose = PairPose { pose12: Some(&self.pair.pose12), normal };
+        Some((heir, anchors(&pose, &PatchPoint { raw: self.points[heir], parts: *parts })))
     }
 
     /// Gives the points that have none the ids of old points.
@@ -191,7 +190,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         for Piece { normal, parts, points } in self.pieces {
             let pose = PairPose { pose12: Some(&self.pair.pose12), normal };
             for at in points.clone().filter(|&at| kept[at].is_none()) {
-                news.push(anchors(&pose, &self.points[at], *parts));
+                news.push(anchors(&pose, &PatchPoint { raw: self.points[at], parts: *parts }));
                 places.push(at);
             }
         }

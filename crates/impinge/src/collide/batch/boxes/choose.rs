@@ -2,9 +2,10 @@
 
 use super::LANES;
 use super::admit::Slots;
-use crate::collide::manifold::ids::{AnchorList, PairPose, each_match};
+use crate::collide::manifold::ids::{moved_on_first, near_scale, nearest_first};
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::slack_level;
+use crate::collide::ones::Ones;
 use crate::collide::{RawManifold, RawPoint};
 use crate::math::{Point, Real, Vector};
 use crate::shape::FeatureId;
@@ -101,27 +102,8 @@ impl KeptSlots {
 
 /// The numbers of the bits that are set, upwards.
 #[inline(always)]
-const fn ones(bits: u32) -> Ones {
+const fn ones(bits: u32) -> Ones<SLOTS> {
     Ones(bits)
-}
-
-#[derive(Clone)]
-struct Ones(u32);
-
-impl Iterator for Ones {
-    type Item = usize;
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<usize> {
-        let slot = self.0.trailing_zeros() as usize;
-        self.0 &= self.0.wrapping_sub(1);
-        (slot < SLOTS).then_some(slot)
-    }
-
-    #[inline(always)]
-    fn count(self) -> usize {
-        self.0.count_ones() as usize
-    }
 }
 
 impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
@@ -157,19 +139,14 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         some: u32,
         kept: &mut KeptSlots,
     ) {
-        let pose = PairPose { pose12: None, normal: &self.normal() };
-        let (mut olds, mut news) = (AnchorList::new(), AnchorList::new());
-        for at in ones(kept.left) {
-            olds.push(raw.anchors(&raw.points[at]));
-        }
-        let slots = some & !kept.slots;
-        for slot in ones(slots) {
-            let names = ([0; 2], naming.features(slot));
-            news.push(pose.anchors(&self.point1(slot), self.distance(slot), names));
-        }
-        each_match(&olds, &news, self.size, &mut |old, new, _| {
-            let nth = |bits: u32, count| ones(bits).nth(count).expect("as many as points");
-            let (at, slot) = (nth(kept.left, old), nth(slots, new));
+        let (scale, slots) = (near_scale(self.size), some & !kept.slots);
+        let moved = |at: usize, slot: usize| {
+            let new = (&self.point1(slot), naming.features(slot));
+            moved_on_first(&raw.points[at], new, scale)
+        };
+        // Those on the same features are matched already.
+        let never = N::ONE + N::EPSILON;
+        nearest_first([kept.left, slots], never, moved, |at, slot, _| {
             kept.slots |= 1 << slot;
             kept.ids[slot] = raw.points[at].id;
         });

@@ -1,0 +1,16 @@
+//! Sets of small numbers as the bits of a word.
+
+/// The numbers of the bits that are set, upwards, all below `BELOW`: the first that is not ends them.
+#[derive(Clone)]
+pub(crate) struct Ones<const BELOW: usize>(pub(crate) u32);
+
+impl<const BELOW: usize> Iterator for Ones<BELOW> {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let bit = self.0.trailing_zeros() as usize;
+        self.0 &= self.0.wrapping_sub(1);
+        (bit < BELOW).then_some(bit)
+    }
+}
