@@ -75,8 +75,8 @@ impl<'a, N: Real, const D: usize> Placing<'a, N, D> for Placed<'a, N, D> {
 ///
 /// Every answer about two solids is computed in this order and turned round at the end, so that
 /// swapping the arguments flips the answer bit for bit. Kinds come in the order of
-/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations, then rotations, of
-/// which a ball has none, then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
+/// [`crate::shape::ShapeKind`]; equal kinds in that of their world translations along a direction that is askew, then
+/// of all coordinates, then of rotations, of which a ball has none, then of their own numbers. Solids that agree in all of these are the same, and so is the answer.
 /// (Of a support map of the user's own the numbers are its rounding and its support points along the
 /// axes and the diagonals; of a composite they are those of its parts.)
 #[inline]
@@ -141,9 +141,9 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     shape2: Geometry<'_, N, D>,
 ) -> bool {
     let (kind1, kind2) = (shape1.kind(), shape2.kind());
-    let (x1, x2) = (pose1.translation[0], pose2.translation[0]);
-    let is_beyond = x1 > x2;
-    if kind1 == kind2 && !(is_beyond | (x1 < x2)) {
+    let way = way(pose1, pose2);
+    let is_beyond = way < N::ZERO;
+    if kind1 == kind2 && !(is_beyond | (way > N::ZERO)) {
         return compare_at_length(pose1, shape1, pose2, shape2) == Ordering::Greater;
     }
     if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
@@ -158,7 +158,7 @@ pub(crate) fn order<N: Real, const D: usize>(
     compare(&placed1.pose, placed1.shape, &placed2.pose, placed2.shape)
 }
 
-/// The order of [`canonical`]. Nearly always the first coordinates of solids of one kind tell.
+/// The order of [`canonical`]. Nearly always the places of solids of one kind tell.
 #[inline]
 fn compare<N: Real, const D: usize>(
     pose1: &Pose<N, D>,
@@ -170,14 +170,26 @@ fn compare<N: Real, const D: usize>(
     if kind1 != kind2 {
         return kind1.cmp(&kind2);
     }
-    let (x1, x2) = (pose1.translation[0], pose2.translation[0]);
-    if x1 < x2 {
+    let way = way(pose1, pose2);
+    if way > N::ZERO {
         Ordering::Less
-    } else if x1 > x2 {
+    } else if way < N::ZERO {
         Ordering::Greater
     } else {
         compare_at_length(pose1, shape1, pose2, shape2)
     }
+}
+
+/// How far it is from a solid to another along a direction to which neither an axis nor a diagonal of space is at right
+/// angles: so the order of two that tremble on one another, or in a grid, does not change.
+#[inline]
+fn way<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> N {
+    const DIRECTION: [f64; 3] = [1.0, 1.6875, 2.5625];
+    let mut way = N::ZERO;
+    for axis in 0..D {
+        way += (pose2.translation[axis] - pose1.translation[axis]) * N::lit(DIRECTION[axis]);
+    }
+    way
 }
 
 /// [`compare`] for solids of one kind.

@@ -78,7 +78,7 @@ pub(crate) struct RawManifold<N: Real, const D: usize> {
     pub(crate) points: SmallVec<[RawPoint<N, D>; 4]>,
     /// The second solid in the frame of the first when the points were found, by which they are found again on the
     /// second. `None` where that is not kept: of boxes, balls and segments, whose vertices are known by their ids.
-    pub(crate) pose12: Option<Box<Pose<N, D>>>,
+    pub(crate) pose12: Option<Pose<N, D>>,
 }
 
 /// The numbers given to the contacts of one pair, each once.
@@ -123,12 +123,10 @@ impl<N: Real, const D: usize> RawManifold<N, D> {
     /// second. Where the old pose is not kept, the points stay where they are on the first solid.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>) {
         let Self { normal, pose12, points, .. } = self;
-        let old21 = pose12.as_deref().map_or(*pose21, Pose::inverse);
+        let old21 = pose12.as_ref().map_or(*pose21, Pose::inverse);
         points.iter_mut().for_each(|point| point.flip(&old21, normal));
         *normal = -old21.vector(normal);
-        if let Some(kept) = pose12 {
-            **kept = old21;
-        }
+        *pose12 = pose12.map(|_| old21);
     }
 
     /// The index of the deepest point, the first of equals; 0 for an empty manifold.

@@ -47,5 +47,5 @@ pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,
 };
-pub use view::{ContactPair, ProximityPair};
 pub(crate) use view::Views;
+pub use view::{ContactPair, ProximityPair};

@@ -169,11 +169,18 @@ impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
 
 impl<C> InOrder<C> {
     /// The canonical order is this one now.
+    #[inline(always)]
     fn turn(&mut self, swapped: bool, flip: impl FnOnce(&mut C)) {
         if swapped != self.swapped {
-            flip(&mut self.contacts);
-            self.swapped = swapped;
+            self.turn_round(flip);
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn turn_round(&mut self, flip: impl FnOnce(&mut C)) {
+        flip(&mut self.contacts);
+        self.swapped = !self.swapped;
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a world keeps of an object beside the user's data.
 
 use super::changes::ChangeList;
-use super::error::finite_pose;
+use super::error::check_pose;
 use super::{CollisionGroups, WorldError};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
@@ -148,7 +148,8 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
             self.isometry = isometry;
             return Ok(());
         }
-        let pose = finite_pose(N::pose(&isometry), Some(self.handle))?;
+        let pose = N::pose(&isometry);
+        check_pose(&pose, Some(self.handle))?;
         self.state &= !PREDICTED;
         self.isometry = isometry;
         let aabb = aabb_at(&*self.shape, &pose);
@@ -163,8 +164,9 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         isometry: N::Isometry,
         predicted: N::Isometry,
     ) -> Result<(), WorldError> {
-        let pose = finite_pose(N::pose(&isometry), Some(self.handle))?;
-        finite_pose(N::pose(&predicted), Some(self.handle))?;
+        let pose = N::pose(&isometry);
+        check_pose(&pose, Some(self.handle))?;
+        check_pose(&N::pose(&predicted), Some(self.handle))?;
         self.state |= PREDICTED;
         self.isometry = isometry;
         list.predict(self.index(), predicted);

@@ -275,6 +275,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// Notes the box of an object that moved.
+    #[inline(always)]
     pub(super) fn note_box(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) {
         self.note_volume(body, aabb);
     }
@@ -291,12 +292,13 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         self.entries[place as usize].changes.filter = true;
     }
 
+    #[inline(always)]
     fn note_volume(&mut self, body: &mut WorldBody<N, D>, aabb: Aabb<N, D>) -> &mut BodyChanges {
         let place = self.note(body);
         let entry = &mut self.entries[place as usize];
         entry.aabb = aabb;
         entry.changes.volume = true;
-        if self.dirty.get().is_some() {
+        if self.dirty.get_mut().is_some() {
             self.follow(body, place);
         }
         &mut self.entries[place as usize].changes
@@ -315,6 +317,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
     }
 
     /// Lists an object as changed; returns its place.
+    #[inline]
     fn note(&mut self, body: &mut WorldBody<N, D>) -> u32 {
         body.place().unwrap_or_else(|| {
             let place = body.set_place(self.entries.len());

@@ -2,7 +2,7 @@
 //!
 //! An operation that fails changes nothing.
 
-use super::error::{finite_pose, or_panic, usable_query};
+use super::error::{check_pose, or_panic, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
 use super::removed::RemovedObjects;
@@ -144,7 +144,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         query_type: impl Into<GeometricQueryType<N>>,
         data: T,
     ) -> Result<CollisionObjectHandle, WorldError> {
-        finite_pose(N::pose(&position), None)?;
+        check_pose(&N::pose(&position), None)?;
         let query_type = usable_query(query_type.into())?;
         let handle = self.objects.next_handle()?;
         let broad_phase = &mut self.broad_phase;
@@ -248,7 +248,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> Result<(), WorldError> {
         for (handle, position) in positions {
             self.objects.fresh(*handle)?;
-            finite_pose(N::pose(position), Some(*handle))?;
+            check_pose(&N::pose(position), Some(*handle))?;
         }
         for (handle, position) in positions {
             self.try_set_position(*handle, *position)?;

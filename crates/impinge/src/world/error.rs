@@ -91,17 +91,23 @@ impl fmt::Display for WorldError {
 
 impl std::error::Error for WorldError {}
 
-/// The pose, if all of its numbers are finite.
-pub(super) fn finite_pose<N: Real, const D: usize>(
-    pose: Pose<N, D>,
+/// All numbers of a pose are finite.
+#[inline]
+pub(super) fn check_pose<N: Real, const D: usize>(
+    pose: &Pose<N, D>,
     handle: Option<CollisionObjectHandle>,
-) -> Result<Pose<N, D>, WorldError> {
-    if pose.is_finite() {
-        return Ok(pose);
-    }
+) -> Result<(), WorldError> {
+    if pose.is_finite() { Ok(()) } else { Err(bad_position(pose, handle)) }
+}
+
+#[cold]
+fn bad_position<N: Real, const D: usize>(
+    pose: &Pose<N, D>,
+    handle: Option<CollisionObjectHandle>,
+) -> WorldError {
     let mut numbers = pose.translation.iter().chain(pose.rotation.iter());
     let value = numbers.find(|x| !x.is_finite_number()).map_or(f64::NAN, |value| value.as_f64());
-    Err(WorldError::Position { handle, value })
+    WorldError::Position { handle, value }
 }
 
 /// The query type, if its numbers are finite and not negative.

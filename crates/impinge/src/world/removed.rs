@@ -43,8 +43,9 @@ impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
         self.named.clear();
         self.noted = [(0, 0); 2];
         if !self.objects.is_empty() {
-            self.note(events, &Events::default());
-            self.objects.retain(|handle, _| self.named.contains(handle));
+            let is_here = |handle: &CollisionObjectHandle| self.objects.contains_key(handle);
+            let named: BTreeSet<_> = events.named_from((0, 0)).filter(is_here).collect();
+            self.objects.retain(|handle, _| named.contains(handle));
         }
     }
 }

@@ -14,6 +14,7 @@ mod clip;
 pub(in crate::collide) mod frame;
 mod half_space;
 pub(in crate::collide) mod ids;
+pub(in crate::collide) mod matching;
 pub(in crate::collide) mod reduce;
 mod ring;
 mod stretch;
@@ -242,11 +243,7 @@ fn choose_in_frame<N: Real, const D: usize>(
         limit,
     };
     choose(candidates, &choice, out);
-    match &mut out.pose12 {
-        _ if !keeps_pose(pair) => out.pose12 = None,
-        Some(kept) => **kept = *pose12,
-        none => *none = Some(Box::new(*pose12)),
-    }
+    out.pose12 = Some(*pose12).filter(|_| keeps_pose(pair));
 }
 
 /// Places on the second solid are compared: not where lanes may serve the pair, which keep no pose.
@@ -267,14 +264,16 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
     let PointChoice { distance, tolerance, .. } = *choice;
     let limit = choice.limit.max(1);
     if !(candidates.len() <= limit && ids::renew(candidates, distance, out)) {
-        ids::inherit_by_features(out, candidates);
-        let all: reduce::Indices = (0..candidates.len()).collect();
-        ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &all);
-        let has_slack = candidates.len() > limit && !out.points.is_empty();
-        let size = if has_slack { (choice.size)() } else { N::ZERO };
+        let is_over = candidates.len() > limit && !out.points.is_empty();
+        if !out.points.is_empty() {
+            ids::inherit_by_features(out, candidates);
+            let all: reduce::Indices = (0..candidates.len()).collect();
+            ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &all);
+        }
+        let size = if is_over { (choice.size)() } else { N::ZERO };
         let levels = [distance + tolerance, slack_level(distance, size, tolerance)];
         let chosen = chosen(candidates, levels, tolerance, limit);
-        if chosen.len() < all.len() {
+        if is_over {
             // The ids of candidates that are not chosen go to chosen ones near them.
             ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &chosen);
         }

@@ -37,6 +37,8 @@ mod patch_points;
 mod resolve;
 mod scene;
 
+use core::cell::OnceCell;
+
 use smallvec::SmallVec;
 
 pub(crate) use self::ball::update_on_surface;
@@ -213,7 +215,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
             self.patches.reserve_exact(1);
         }
         let (pieces, points) = (pieces.as_slice(), arena.points.as_slice());
-        let merging = Merging { pair, request, tolerance, pieces, points };
+        let size = OnceCell::new();
+        let merging = Merging { pair, request, tolerance, pieces, points, size };
         merge(&merging, &self.pose12, &mut self.patches, &mut self.ids);
         self.pose12 = pair.pose12;
     }

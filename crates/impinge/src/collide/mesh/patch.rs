@@ -6,6 +6,7 @@
 //! A contact point keeps its id by the rule of [`ids`](crate::collide::manifold::ids), in which the parts count
 //! among the features.
 
+use core::cell::OnceCell;
 use core::cmp::Ordering;
 use core::ops::Range;
 
@@ -14,8 +15,9 @@ use smallvec::SmallVec;
 use super::patch_groups::Groups;
 use super::patch_points::{Choosing, Members};
 use crate::collide::manifold::ids::{
-    AnchorList, Anchors, Inherited, PairPose, are_near, each_match,
+    AnchorList, Anchors, Inherited, PairPose, are_near, is_one_point, normals_agree,
 };
+use crate::collide::manifold::matching::each_match;
 use crate::collide::manifold::reduce::ordering;
 use crate::collide::size::smaller_size;
 use crate::collide::{ManifoldRequest, Pair, PairIds, RawPoint};
@@ -57,6 +59,8 @@ pub(crate) struct Merging<'a, N: Real, const D: usize> {
     /// In the order of their parts, of which no two are the same.
     pub(crate) pieces: &'a [Piece<N, D>],
     pub(crate) points: &'a [RawPoint<N, D>],
+    /// See [`Self::size`].
+    pub(crate) size: OnceCell<N>,
 }
 
 /// The ids that points inherit.
@@ -80,7 +84,8 @@ pub(crate) fn merge<N: Space<D>, const D: usize>(
         }
         _ => (),
     }
-    let kept = merging.kept(old_pose12, patches);
+    let mut kept = KeptIds::new();
+    merging.keep(old_pose12, patches, &mut kept);
     let (choosing, groups) = (Choosing { merging, kept: &kept }, Groups::of(merging));
     let mut members = Members::new();
     for (at, group) in groups.groups.iter().enumerate() {
@@ -104,17 +109,19 @@ fn merge_one<N: Real, const D: usize>(
     if !is_near {
         return patches.clear();
     }
-    let kept = merging.kept(old_pose12, patches)[piece.points.start];
-    raw.id = kept.map_or_else(|| ids.next(), |kept| kept.id);
+    let mut kept = KeptIds::new();
+    merging.keep(old_pose12, patches, &mut kept);
+    raw.id = kept[piece.points.start].map_or_else(|| ids.next(), |kept| kept.id);
     blank(patches, 0, piece.normal).push(PatchPoint { raw, parts: piece.parts });
     patches.truncate(1);
 }
 
 fn anchors<N: Real, const D: usize>(
     pose: &PairPose<'_, N, D>,
-    PatchPoint { raw, parts }: &PatchPoint<N, D>,
+    raw: &RawPoint<N, D>,
+    parts: [u32; 2],
 ) -> Anchors<N, D> {
-    pose.anchors(&raw.point1, raw.distance, (*parts, [raw.feature1, raw.feature2]))
+    pose.anchors(&raw.point1, raw.distance, (parts, [raw.feature1, raw.feature2]))
 }
 
 /// A patch without points, in the place of an old one if there is one.
@@ -135,52 +142,56 @@ fn blank<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> Merging<'_, N, D> {
-    /// The ids that points have from old ones, by the rule of [`ids`](crate::collide::manifold::ids): first where parts
-    /// and features name one point, then by place.
-    fn kept(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>]) -> KeptIds {
-        let mut kept = KeptIds::from_elem(None, self.points.len());
+    /// Fills in the ids that points have from old ones, by the rule of [`ids`](crate::collide::manifold::ids): first where
+    /// parts and features name one point, then by place.
+    fn keep(&self, old_pose12: &Pose<N, D>, old: &[Patch<N, D>], kept: &mut KeptIds) {
+        kept.resize(self.points.len(), None);
         let (mut at, mut olds, mut ids) = (0, AnchorList::new(), SmallVec::<[u32; 8]>::new());
         for patch in old {
             let pose = PairPose { pose12: Some(old_pose12), normal: &patch.normal };
             for point in &patch.points {
-                let (piece, place) = (self.piece_of(point.parts, at), anchors(&pose, point));
+                let piece = self.piece_of(point.parts, at);
                 at = piece.unwrap_or(at);
-                let heir = piece.and_then(|piece| self.only_heir(point, patch, piece));
-                match heir.filter(|&(heir, new)| kept[heir].is_none() && are_near(&place, &new, self.size())) {
-                    Some((heir, _)) => kept[heir] = Some(Inherited { id: point.raw.id, is_old: true }),
-                    None => {
-                        olds.push(place);
-                        ids.push(point.raw.id);
-                    }
+                let heir = piece.and_then(|piece| self.only_heir(&pose, (patch, point), piece));
+                if let Some(heir) = heir.filter(|&heir| kept[heir].is_none()) {
+                    kept[heir] = Some(Inherited { id: point.raw.id, is_old: true });
+                } else {
+                    olds.push(anchors(&pose, &point.raw, point.parts));
+                    ids.push(point.raw.id);
                 }
             }
         }
         if !olds.is_empty() {
-            self.keep_by_places(&olds, &ids, &mut kept);
+            self.keep_by_places(&olds, &ids, kept);
         }
-        kept
     }
 
-    /// The point of a piece with the features of a point of an old patch, and its anchors, if these name one point of
+    /// The point of a piece where a point of an old patch was, with the same features, if these name one point of
     /// either.
     fn only_heir(
         &self,
-        old: &PatchPoint<N, D>,
-        patch: &Patch<N, D>,
+        old_pose: &PairPose<'_, N, D>,
+        (patch, old): (&Patch<N, D>, &PatchPoint<N, D>),
         piece: usize,
-    ) -> Option<(usize, Anchors<N, D>)> {
-        let features = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
-        let is_twin = |other: &&PatchPoint<N, D>| {
-            other.parts == old.parts && features(&other.raw) == features(&old.raw)
-        };
-        let Piece { normal, parts, points } = &self.pieces[piece];
-        let mut heirs = points.clone().filter(|&at| features(&self.points[at]) == features(&old.raw));
-        let heir = heirs.next()?;
-        if heirs.next().is_some() || patch.points.iter().filter(is_twin).count() > 1 {
+    ) -> Option<usize> {
+        let names = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
+        let (features, Piece { normal, parts, points }) = (names(&old.raw), &self.pieces[piece]);
+        let mut heirs = points.clone().filter(|&at| names(&self.points[at]) == features);
+        let heir = heirs.next().filter(|_| normals_agree(&patch.normal, normal))?;
+        let is_twin = |at: &&PatchPoint<N, D>| at.parts == old.parts && names(&at.raw) == features;
+        if heirs.next().is_some() {
             return None;
         }
+        if is_one_point(features) {
+            return Some(heir);
+        }
         let pose = PairPose { pose12: Some(&self.pair.pose12), normal };
-        Some((heir, anchors(&pose, &PatchPoint { raw: self.points[heir], parts: *parts })))
+        let are_near = || {
+            let old = anchors(old_pose, &old.raw, old.parts);
+            are_near(&old, &anchors(&pose, &self.points[heir], *parts), self.size())
+        };
+        let is_only = patch.points.iter().filter(is_twin).nth(1).is_none();
+        (is_only && are_near()).then_some(heir)
     }
 
     /// Gives the points that have none the ids of old points.
@@ -190,7 +201,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         for Piece { normal, parts, points } in self.pieces {
             let pose = PairPose { pose12: Some(&self.pair.pose12), normal };
             for at in points.clone().filter(|&at| kept[at].is_none()) {
-                news.push(anchors(&pose, &PatchPoint { raw: self.points[at], parts: *parts }));
+                news.push(anchors(&pose, &self.points[at], *parts));
                 places.push(at);
             }
         }
@@ -201,7 +212,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
 
     /// The size of the pair, for lengths in proportion to it.
     pub(super) fn size(&self) -> N {
-        smaller_size([self.pair.first, self.pair.second])
+        *self.size.get_or_init(|| smaller_size([self.pair.first, self.pair.second]))
     }
 
     /// The piece of two parts, most often that at a place or the next: the points of one pair of parts come

@@ -1,17 +1,17 @@
 //! From the filled slots of one pair to its manifold: the rules of `choose`, without moving anything.
 
+use smallvec::SmallVec;
+
 use super::LANES;
 use super::admit::Slots;
-use crate::collide::manifold::ids::{moved_on_first, near_scale, nearest_first};
+use crate::collide::manifold::ids::normals_agree;
+use crate::collide::manifold::matching::{LanePoint, each_near};
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::slack_level;
 use crate::collide::ones::Ones;
 use crate::collide::{RawManifold, RawPoint};
 use crate::math::{Point, Real, Vector};
 use crate::shape::FeatureId;
-
-/// The most slots of a pair: those of space.
-pub(super) const SLOTS: usize = 24;
 
 /// The slots of one pair.
 pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize> {
@@ -51,16 +51,16 @@ const fn slot_of(code: u32) -> usize {
 }
 
 /// The ids of the old points, for the slots that continue them.
-struct KeptSlots {
+struct KeptSlots<const COUNT: usize> {
     slots: u32,
     /// All of the old points are candidates again, and in the same slots.
     is_still: bool,
     /// The old points that are not, by bits.
     left: u32,
-    ids: [u32; SLOTS],
+    ids: [u32; COUNT],
 }
 
-impl KeptSlots {
+impl<const COUNT: usize> KeptSlots<COUNT> {
     /// Takes over the numbers; no two old points share their names, nor do two slots.
     #[inline(always)]
     fn of<N: Real, const D: usize>(
@@ -68,7 +68,7 @@ impl KeptSlots {
         naming: &impl Naming,
         valid: u32,
     ) -> Self {
-        let mut kept = Self { slots: 0, is_still: true, left: 0, ids: [0; SLOTS] };
+        let mut kept = Self { slots: 0, is_still: true, left: 0, ids: [0; COUNT] };
         for (at, point) in old.iter().enumerate() {
             let own = slot_of(point.code);
             let is_same = point.code == naming.code(own) && valid >> own & 1 == 1;
@@ -89,7 +89,7 @@ impl KeptSlots {
         self.slots &= slots;
         self.left = 0;
         for (at, point) in old.iter().enumerate() {
-            let is_kept = ones(self.slots).any(|slot| self.ids[slot] == point.id);
+            let is_kept = Ones::<COUNT>(self.slots).any(|slot| self.ids[slot] == point.id);
             self.left |= u32::from(!is_kept) << (at & 31);
         }
     }
@@ -100,23 +100,19 @@ impl KeptSlots {
     }
 }
 
-/// The numbers of the bits that are set, upwards.
-#[inline(always)]
-const fn ones(bits: u32) -> Ones<SLOTS> {
-    Ones(bits)
-}
-
 impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     /// Replaces the points of a manifold, and its normal, by at most `limit` of the candidates.
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
         let mut kept = KeptSlots::of(&raw.points, naming, self.valid);
-        if kept.left != 0 && kept.slots != self.valid {
+        let normal = self.normal();
+        let may_match = normals_agree(&raw.normal, &normal);
+        if may_match && kept.left != 0 && kept.slots != self.valid {
             self.match_places(naming, raw, self.valid, &mut kept);
         }
         let is_full = self.valid.count_ones() as usize <= limit;
         let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
-        if !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
+        if may_match && !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
             // The ids of candidates that are not chosen go to chosen ones near them.
             kept.retain(slots, &raw.points);
             self.match_places(naming, raw, slots, &mut kept);
@@ -127,7 +123,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         } else {
             self.replace(slots, deepest, &kept, naming, raw);
         }
-        raw.normal = self.normal();
+        raw.normal = normal;
     }
 
     /// Gives those of some slots that have no ids those of the old points that are left, by place.
@@ -137,18 +133,16 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         naming: &impl Naming,
         raw: &RawManifold<N, D>,
         some: u32,
-        kept: &mut KeptSlots,
+        kept: &mut KeptSlots<COUNT>,
     ) {
-        let (scale, slots) = (near_scale(self.size), some & !kept.slots);
-        let moved = |at: usize, slot: usize| {
-            let new = (&self.point1(slot), naming.features(slot));
-            moved_on_first(&raw.points[at], new, scale)
-        };
-        // Those on the same features are matched already.
-        let never = N::ONE + N::EPSILON;
-        nearest_first([kept.left, slots], never, moved, |at, slot, _| {
-            kept.slots |= 1 << slot;
-            kept.ids[slot] = raw.points[at].id;
+        let (mut news, mut places) = (SmallVec::<[_; 8]>::new(), SmallVec::<[_; 8]>::new());
+        for slot in Ones::<COUNT>(some & !kept.slots) {
+            news.push(LanePoint::new(self.point1(slot), naming.features(slot)));
+            places.push(slot);
+        }
+        each_near((&raw.points, kept.left), &news, self.size, |old, new| {
+            kept.slots |= 1 << places[new];
+            kept.ids[places[new]] = raw.points[old].id;
         });
     }
 
@@ -175,23 +169,41 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         &self,
         slots: u32,
         deepest: usize,
-        kept: &KeptSlots,
+        kept: &KeptSlots<COUNT>,
         naming: &impl Naming,
         raw: &mut RawManifold<N, D>,
     ) {
-        raw.points.resize(slots.count_ones() as usize, RawPoint::default());
-        let (mut last, mut is_sorted) = (0, true);
-        for (slot, point) in ones(slots).zip(&mut raw.points) {
-            point.id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
-            is_sorted &= last <= point.id;
-            last = point.id;
+        let (order, count) = self.by_ids(slots, kept, raw);
+        raw.points.resize(count, RawPoint::default());
+        for (&[id, slot], point) in order.iter().zip(&mut raw.points) {
+            let slot = slot as usize;
+            point.id = id;
             self.place(slot, deepest, point);
             [point.feature1, point.feature2] = naming.features(slot);
             point.code = naming.code(slot);
         }
-        if !is_sorted {
-            raw.sort_points();
+    }
+
+    /// The ids of some slots, new ones of those that have none, and the slots, in the order of the ids.
+    #[inline(always)]
+    fn by_ids(
+        &self,
+        slots: u32,
+        kept: &KeptSlots<COUNT>,
+        raw: &mut RawManifold<N, D>,
+    ) -> ([[u32; 2]; COUNT], usize) {
+        let (mut order, mut count) = ([[0; 2]; COUNT], 0);
+        for slot in Ones::<COUNT>(slots & kept.slots).chain(Ones::<COUNT>(slots & !kept.slots)) {
+            let id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
+            let mut at = count;
+            while at > 0 && order[at - 1][0] > id {
+                order[at] = order[at - 1];
+                at -= 1;
+            }
+            order[at] = [id, slot as u32];
+            count += 1;
         }
+        (order, count)
     }
 
     /// Says where the candidate of a slot is.
@@ -236,7 +248,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     fn lowest(&self, slots: u32) -> usize {
         let (mut lowest, mut distance) = (slots.trailing_zeros() as usize, N::INFINITY);
         if slots.count_ones() > 1 {
-            for slot in ones(slots) {
+            for slot in Ones::<COUNT>(slots) {
                 let new = self.distance(slot);
                 if new < distance {
                     (lowest, distance) = (slot, new);
@@ -252,7 +264,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         let mut level = self.level;
         if level == 0 {
             let least = self.distance(self.lowest(self.valid));
-            let lowest = ones(self.valid).filter(|&slot| self.distance(slot) <= least);
+            let lowest = Ones::<COUNT>(self.valid).filter(|&slot| self.distance(slot) <= least);
             level = lowest.fold(0, |slots, slot| slots | 1 << slot);
         }
         // An old point that is the deepest needs none to stand for it.
@@ -260,7 +272,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         let slack =
             if has_old { -N::INFINITY } else { slack_level(self.gap, self.size, self.tolerance) };
         let mut points = Projections::new();
-        for slot in ones(self.valid) {
+        for slot in Ones::<COUNT>(self.valid) {
             let [is_level, is_kept] = [level, kept].map(|slots| slots >> slot & 1 == 1);
             let is_deepest = is_level || is_kept && self.distance(slot) <= slack;
             points.push(Projected { at: self.flat(slot), index: slot, is_deepest, is_kept });

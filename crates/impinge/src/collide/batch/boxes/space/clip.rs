@@ -5,7 +5,7 @@
 //! nothing is moved until all is known.
 
 use super::super::admit::{Admission, Limits, Slots};
-use super::super::choose::SLOTS;
+use super::SLOTS;
 use super::faces::{FacesInLanes, cross};
 use super::shown::ShownFaces;
 use crate::math::lanes::bits;

@@ -10,7 +10,7 @@ use self::clip::{Clip, Corners};
 use self::faces::FacesInLanes;
 use self::names::{BoxPairNames, FaceSide, parts_at};
 use super::admit::{Limits, Slots};
-use super::choose::{SLOTS, SlotChoice};
+use super::choose::SlotChoice;
 use super::masks::turned;
 use super::{Boxes, Inputs, LANES, smaller_size};
 use crate::collide::batch::{Batch, PairQuestion};
@@ -19,6 +19,9 @@ use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
+
+/// The slots of a pair.
+const SLOTS: usize = 24;
 
 /// What is known of eight pairs before points are chosen.
 pub(in super::super) struct EightFaces<N: Real> {

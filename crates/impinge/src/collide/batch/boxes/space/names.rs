@@ -1,7 +1,8 @@
 //! Names of the slots of one pair, and the slots of names.
 
-use super::super::choose::{Naming, SLOTS};
+use super::super::choose::Naming;
 use super::FaceSides;
+use super::SLOTS;
 use super::clip::{CORNERS, SIGNS};
 use crate::collide::RawPoint;
 use crate::math::Real;

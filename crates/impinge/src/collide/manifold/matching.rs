@@ -1,0 +1,269 @@
+//! Which new contact points are old ones: the greedy match by the classes and distances of [`ids`](super::ids).
+//!
+//! Few points are bits of a word, and each old one is compared with each new one. Of many, those that can be near on
+//! either solid are found in lists sorted by the first coordinate. Lanes know the places on the first solid alone.
+
+use super::super::RawPoint;
+use super::super::ones::Ones;
+use super::ids::{Anchors, SHARE, moved, near_scale};
+use crate::math::order::{order_of, sort_keyed};
+use crate::math::{Point, Real};
+use crate::shape::FeatureId;
+
+/// The three classes, above the other bits of a key.
+const SAME: u64 = 0;
+const NEAR: u64 = 1;
+const FAR: u64 = 2;
+const CLASS_AT: u32 = 62;
+
+/// No pair has this key.
+const NEVER: u64 = u64::MAX;
+
+/// Up to so many old and new points all pairs are compared; of more, those that can be near are found first.
+const FEW: usize = u32::BITS as usize;
+
+/// Visits the index of each old point that goes on and that of the new point that it is now, and whether that is
+/// where the old one was. `size` is that of the pair ([`smaller_size`](crate::collide::size::smaller_size)).
+///
+/// Cost: O(n log n) for n points that lie apart.
+pub(in crate::collide) fn each_match<N: Real, const D: usize>(
+    old: &[Anchors<N, D>],
+    new: &[Anchors<N, D>],
+    size: N,
+    visit: &mut dyn FnMut(usize, usize, bool),
+) {
+    if old.len() <= FEW && new.len() <= FEW {
+        match_few(old, new, near_scale(size), visit);
+    } else {
+        match_many(old, new, size, visit);
+    }
+}
+
+/// [`each_match`] of points that are bits of a word.
+fn match_few<N: Real, const D: usize>(
+    old: &[Anchors<N, D>],
+    new: &[Anchors<N, D>],
+    scale: N,
+    visit: &mut dyn FnMut(usize, usize, bool),
+) {
+    let nearest =
+        |at: usize, among: u32| least(among, NEVER, |other| key_of(&old[at], &new[other], scale));
+    nearest_first([all(old.len()), all(new.len())], NEVER, nearest, |at, other, key| {
+        visit(at, other, is_near(key));
+    });
+}
+
+/// The bits of so many points.
+#[inline(always)]
+const fn all(count: usize) -> u32 {
+    u32::MAX.unbounded_shr((FEW - count) as u32)
+}
+
+/// The smallest key of points given by bits, and the first that has it; `never` if none is below.
+#[inline(always)]
+fn least<K: PartialOrd>(among: u32, never: K, key: impl Fn(usize) -> K) -> (K, usize) {
+    let mut least = (never, 0);
+    for at in Ones::<FEW>(among) {
+        let key = key(at);
+        if key < least.0 {
+            least = (key, at);
+        }
+    }
+    least
+}
+
+/// Visits pairs of old and new points, both given by bits, the one with the smallest key first and each point once. Ties
+/// go to the old point that comes first, then to the new one. Keys that are not below `never` make no pair.
+///
+/// `nearest` gives the [`least`] key of an old point with some of the new ones.
+#[inline(always)]
+fn nearest_first<K: PartialOrd + Copy>(
+    [mut old, mut new]: [u32; 2],
+    never: K,
+    nearest: impl Fn(usize, u32) -> (K, usize),
+    mut visit: impl FnMut(usize, usize, K),
+) {
+    let (mut keys, mut others) = ([never; FEW], [0; FEW]);
+    let (mut taken, mut is_clear) = (0_u32, true);
+    for at in Ones::<FEW>(old) {
+        let (key, other) = nearest(at, new);
+        (keys[at], others[at]) = (key, other);
+        if key < never {
+            is_clear &= taken >> other & 1 == 0;
+            taken |= 1 << other;
+        } else {
+            // Whoever has none now has none later.
+            old &= !(1 << at);
+        }
+    }
+    if is_clear {
+        // Most often each has one of its own.
+        return Ones::<FEW>(old).for_each(|at| visit(at, others[at], keys[at]));
+    }
+    while old != 0 {
+        let (key, first) = least(old, never, |at| keys[at]);
+        let taken = others[first];
+        visit(first, taken, key);
+        (old, new) = (old & !(1 << first), new & !(1 << taken));
+        let is_due =
+            Ones::<FEW>(old).fold(0, |bits, at| bits | u32::from(others[at] == taken) << at);
+        for at in Ones::<FEW>(is_due) {
+            let (key, other) = nearest(at, new);
+            (keys[at], others[at]) = (key, other);
+            old &= !(u32::from(!(key < never)) << at);
+        }
+    }
+}
+
+/// [`each_match`] by the sorted keys of the pairs that are possible.
+fn match_many<N: Real, const D: usize>(
+    old: &[Anchors<N, D>],
+    new: &[Anchors<N, D>],
+    size: N,
+    visit: &mut dyn FnMut(usize, usize, bool),
+) {
+    let (mut pairs, mut keys, mut number) = (Vec::new(), Vec::new(), 0);
+    each_possible(old, new, N::lit(SHARE) * size, &mut |at, other| {
+        let key = key_of(&old[at], &new[other], near_scale(size));
+        if key != NEVER {
+            keys.push((key, number));
+            pairs.push([at, other]);
+            number += 1;
+        }
+    });
+    sort_keyed(&mut keys);
+    let mut is_taken = [vec![false; old.len()], vec![false; new.len()]];
+    for (key, pair) in keys {
+        let [at, other] = pairs[pair as usize];
+        if !(is_taken[0][at] || is_taken[1][other]) {
+            (is_taken[0][at], is_taken[1][other]) = (true, true);
+            visit(at, other, is_near(key));
+        }
+    }
+}
+
+/// A point as lanes match it: the place on the first solid, and the vertices.
+#[derive(Clone, Copy)]
+pub(in crate::collide) struct LanePoint<N: Real, const D: usize> {
+    place: Point<N, D>,
+    /// The numbers of the vertices of either solid and one; 0 where it is not a vertex.
+    vertices: [u32; 2],
+}
+
+/// The number of a vertex and one; 0 of other features.
+#[inline(always)]
+const fn vertex(feature: FeatureId) -> u32 {
+    if let FeatureId::Vertex(number) = feature { number.wrapping_add(1) } else { 0 }
+}
+
+impl<N: Real, const D: usize> LanePoint<N, D> {
+    #[inline(always)]
+    pub(in crate::collide) fn new(place: Point<N, D>, features: [FeatureId; 2]) -> Self {
+        Self { place, vertices: [vertex(features[0]), vertex(features[1])] }
+    }
+
+    /// [`moved`] of this one and a new one.
+    #[inline(always)]
+    fn moved(&self, new: &Self, scale: N) -> N {
+        let [one, other] = self.vertices;
+        let is_first = (one == new.vertices[0]) & (one != 0);
+        let is_second = (other == new.vertices[1]) & (other != 0);
+        let way = ((new.place - self.place) * scale).norm_squared();
+        if is_first | is_second { N::ZERO } else { way }
+    }
+}
+
+/// Visits the numbers of old points of a pair of this size that are at bits that are set, and those of the new points
+/// that they are now. None is on the features of an old one: only which are near is to be found.
+#[inline(always)]
+pub(in crate::collide) fn each_near<N: Real, const D: usize>(
+    old: (&[RawPoint<N, D>], u32),
+    new: &[LanePoint<N, D>],
+    size: N,
+    mut visit: impl FnMut(usize, usize),
+) {
+    let (scale, never) = (near_scale(size), N::ONE + N::EPSILON);
+    let nearest = |at: usize, among: u32| {
+        let RawPoint { point1, feature1, feature2, .. } = old.0[at];
+        let point = LanePoint::new(point1, [feature1, feature2]);
+        least(among, never, |at| point.moved(&new[at], scale))
+    };
+    nearest_first([old.1, all(new.len())], never, nearest, |at, new, _| visit(at, new));
+}
+
+/// The key is one of the first two classes.
+const fn is_near(key: u64) -> bool {
+    key >> CLASS_AT < FAR
+}
+
+/// The key of a pair; [`NEVER`] if the two are not the same contact. `scale` is one over the length that counts as near.
+#[inline]
+fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
+    let moved = moved(old, new, scale);
+    // Written so that NaN is far.
+    let class = match (old.names == new.names, moved <= N::ONE) {
+        (true, true) => SAME,
+        (false, true) => NEAR,
+        (true, false) => FAR,
+        (false, false) => return NEVER,
+    };
+    key(class, moved)
+}
+
+/// Visits the pairs of many points that [`key_of`] may accept: of the same names, and, on either solid, within `length`
+/// along the first axis.
+fn each_possible<N: Real, const D: usize>(
+    old: &[Anchors<N, D>],
+    new: &[Anchors<N, D>],
+    length: N,
+    visit: &mut dyn FnMut(usize, usize),
+) {
+    let by_names = sorted(new, Anchors::names_key);
+    let by_place = [0, 1].map(|solid| sorted(new, |point| order_of(point.places[solid][0])));
+    for (at, point) in old.iter().enumerate() {
+        let names = point.names_key();
+        between(&by_names, [names; 2]).for_each(|other| visit(at, other));
+        for (solid, order) in by_place.iter().enumerate() {
+            let x = point.places[solid][0];
+            between(order, [x - length, x + length].map(order_of))
+                .for_each(|other| visit(at, other));
+        }
+    }
+}
+
+/// The sort key of a pair: its class, then `moved`, which is not negative, without its last two bits.
+fn key<N: Real>(class: u64, moved: N) -> u64 {
+    class << CLASS_AT | moved.as_f64().to_bits() >> 2
+}
+
+/// Returns the keys and indices of some points in the order of the keys.
+fn sorted<N: Real, const D: usize>(
+    points: &[Anchors<N, D>],
+    key: impl Fn(&Anchors<N, D>) -> u64,
+) -> Vec<(u64, u32)> {
+    let mut keys: Vec<_> = points.iter().map(key).zip(0..).collect();
+    sort_keyed(&mut keys);
+    keys
+}
+
+/// Iterates over the indices whose keys lie between two, both included.
+fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = usize> {
+    let from = keys.partition_point(|&(key, _)| key < low);
+    keys[from..].iter().take_while(move |&&(key, _)| key <= high).map(|&(_, at)| at as usize)
+}
+
+impl<N: Real, const D: usize> Anchors<N, D> {
+    /// A number that points with the same names share, and few others.
+    fn names_key(&self) -> u64 {
+        let ([part1, part2], features) = self.names;
+        let [feature1, feature2] = features.map(|id| match id {
+            FeatureId::Vertex(number) => 3 * u64::from(number),
+            FeatureId::Edge(number) => 3 * u64::from(number) + 1,
+            FeatureId::Face(number) => 3 * u64::from(number) + 2,
+        });
+        let all = [u64::from(part1), u64::from(part2), feature1, feature2];
+        // Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014.
+        all.iter()
+            .fold(0, |sum: u64, &n| (sum.rotate_left(21) ^ n).wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    }
+}
