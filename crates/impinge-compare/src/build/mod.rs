@@ -1,5 +1,5 @@
-//! The suite of what is made once: trees of boxes, meshes, broad phases and worlds with everything new.
-//! Each contender makes its own from the same boxes or triangles; this is timed, in milliseconds. Then all
+//! The suite of what is made once: trees of boxes, meshes, hulls, broad phases and worlds with everything new.
+//! Each contender makes its own from the same boxes, triangles or points; this is timed, in milliseconds. Then all
 //! are asked the same, and the answers compared.
 //!
 //! With the feature `bytes` memory is counted instead: what is left allocated, per object, when all is
@@ -7,6 +7,7 @@
 //! pair. What is only lent to a contender is not.
 
 mod contenders;
+mod hulls;
 mod measure;
 mod meshes;
 pub mod world;
@@ -38,6 +39,11 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
             let case = format!("mesh, {count} triangles");
             table.add(measure(&case, count, &meshes::makers(&mesh)));
         }
+    }
+    for count in [20, 100, 500, 2000].into_iter().filter(fits) {
+        let clouds = hulls::Clouds::new(count);
+        let case = format!("{} hulls of {count} points on a ball", clouds.len());
+        table.add(measure(&case, count, &hulls::makers(&clouds)));
     }
     vec![table]
 }

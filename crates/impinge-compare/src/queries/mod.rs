@@ -39,6 +39,7 @@ pub fn run(arguments: &Arguments) -> Vec<Table> {
     for scene in scenes::<3>(objects) {
         space(&scene, arguments, &mut table);
     }
+    between_updates(arguments, &mut table);
     for edge in MESHES.into_iter().filter(|edge| edge * edge < 10 * objects) {
         table.add(mesh::run(edge, arguments));
     }
@@ -64,6 +65,27 @@ fn space(scene: &Scene<3>, arguments: &Arguments, table: &mut Table) {
     let (rstar, ncollide) = (trees::RstarTree::new(scene), ncollide::space::Ncollide::new(scene));
     let all: [&dyn Library<3>; 7] = [&ours, &rapier, &parry, &obvhs, &bvh, &rstar, &ncollide];
     ask_all(scene, &all, arguments, table);
+}
+
+/// A world of two thousand objects, some of which moved since the last update, beside itself.
+fn between_updates(arguments: &Arguments, table: &mut Table) {
+    let scene = Scene::<3>::new("moved", 2000, 0.075, f32::MAX);
+    let counts = [("none moved", 0), ("100 moved", 100), ("1500 moved", 1500)];
+    let worlds = counts.map(|(name, count)| ours::moved(name, &scene, count));
+    let worlds = worlds.each_ref().map(|world| world as &dyn Library<3>);
+    let is_solid = |questions: &Questions<3>| {
+        use Questions::{Casts, Containing, Nearest, Overlapping, Rays};
+        matches!(questions, Rays(..) | Casts(..) | Nearest(_) | Containing(_) | Overlapping(_))
+    };
+    let questions = scene.questions(scene.objects.len());
+    for (what, questions) in questions.iter().filter(|(_, questions)| is_solid(questions)) {
+        let case = format!("{} 3D: {what}", scene.name);
+        if arguments.wants_case(&case) {
+            let all = worlds.iter().flat_map(|world| world.contenders(questions));
+            let (rule, count) = rule(questions);
+            table.add(race(&case, rule, count, rounds(arguments), all.collect()));
+        }
+    }
 }
 
 fn plane(scene: &Scene<2>, arguments: &Arguments, table: &mut Table) {

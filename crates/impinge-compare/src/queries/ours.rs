@@ -26,6 +26,7 @@ pub struct Impinge<const D: usize>
 where
     f32: Space<D>,
 {
+    name: &'static str,
     isometry: Turn<D>,
     world: CollisionWorld<f32, D, u32>,
     tree: BoxTree<f32, D>,
@@ -33,7 +34,7 @@ where
 
 /// In the plane.
 pub fn plane(scene: &Scene<2>) -> Impinge<2> {
-    Impinge::new(scene, |placement| {
+    Impinge::new("impinge", scene, 0, |placement| {
         let [cosine, sine] = placement.complex().map(|x| x as f32);
         let rotation = UnitComplex::from_cos_sin_unchecked(cosine, sine);
         Isometry2::from_parts(Translation::from(placement.translation.map(|x| x as f32)), rotation)
@@ -42,7 +43,12 @@ pub fn plane(scene: &Scene<2>) -> Impinge<2> {
 
 /// In space.
 pub fn space(scene: &Scene<3>) -> Impinge<3> {
-    Impinge::new(scene, |placement| {
+    moved("impinge", scene, 0)
+}
+
+/// In space; the first so many objects have come where they are since the last update.
+pub fn moved(name: &'static str, scene: &Scene<3>, count: usize) -> Impinge<3> {
+    Impinge::new(name, scene, count, |placement| {
         let [i, j, k, w] = placement.quaternion().map(|x| x as f32);
         let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k));
         Isometry3::from_parts(Translation::from(placement.translation.map(|x| x as f32)), rotation)
@@ -53,18 +59,24 @@ impl<const D: usize> Impinge<D>
 where
     f32: Space<D>,
 {
-    /// The objects interact with nobody: that leaves queries as they are and pairs out.
-    fn new(scene: &Scene<D>, isometry: Turn<D>) -> Self {
+    /// The objects interact with nobody: that leaves queries as they are and pairs out. The first `moved` of
+    /// them come from a place half a unit away.
+    fn new(name: &'static str, scene: &Scene<D>, moved: usize, isometry: Turn<D>) -> Self {
         let mut world = CollisionWorld::new(0.02);
         let mut nobody = CollisionGroups::new();
         nobody.set_whitelist(&[]);
-        for (n, (shape, placement)) in (0..).zip(&scene.objects) {
-            let query = GeometricQueryType::Proximity(0.0);
-            world.add(isometry(placement), solid(shape), nobody, query, n);
+        let mut handles = Vec::new();
+        for (n, (shape, placement)) in (0_u32..).zip(&scene.objects) {
+            let (mut from, query) = (*placement, GeometricQueryType::Proximity(0.0));
+            from.translation[0] -= if (n as usize) < moved { 0.5 } else { 0.0 };
+            handles.push(world.add(isometry(&from), solid(shape), nobody, query, n));
         }
         (0..UPDATES).for_each(|_| world.update());
+        for (handle, (_, placement)) in handles.iter().zip(&scene.objects).take(moved) {
+            world.set_position(*handle, isometry(placement));
+        }
         let tree = BoxTree::from_boxes(&scene.boxes.iter().map(aabb).collect::<Vec<_>>());
-        Self { isometry, world, tree }
+        Self { name, isometry, world, tree }
     }
 
     fn placed(&self, (shape, placement): &Solid<D>) -> (Isometry<D>, ShapeHandle<f32, D>) {
@@ -121,11 +133,11 @@ where
     f32: Space<D>,
 {
     fn on_the_way<'a>(&'a self, questions: &Questions<D>) -> Vec<Contender<'a>> {
-        let (world, all) = (&self.world, QueryFilter::new());
+        let (name, world, all) = (self.name, &self.world, QueryFilter::new());
         match questions {
             Questions::Rays(rays, reach) => {
                 let (rays, reach) = (rays.iter().map(ray).collect(), *reach);
-                vec![Contender::best("impinge", rays, move |ray| {
+                vec![Contender::best(name, rays, move |ray| {
                     let (object, hit) = world.first_ray_hit(ray, reach, true, &all)?;
                     Some((*object.data(), hit.toi))
                 })]
@@ -135,7 +147,7 @@ where
                 let cast =
                     |(solid, to): &(_, [f32; D])| (self.placed(solid), Vector::<f32, D>::from(*to));
                 let casts = casts.iter().map(cast).collect();
-                vec![Contender::best("impinge", casts, move |((at, shape), to)| {
+                vec![Contender::best(name, casts, move |((at, shape), to)| {
                     let (object, hit) = world.cast_shape(at, to, &**shape, &options, &all)?;
                     Some((*object.data(), hit.toi))
                 })]
@@ -145,22 +157,22 @@ where
     }
 
     fn at_rest<'a>(&'a self, questions: &Questions<D>) -> Vec<Contender<'a>> {
-        let (world, all) = (&self.world, QueryFilter::new());
+        let (name, world, all) = (self.name, &self.world, QueryFilter::new());
         match questions {
             Questions::Nearest(asked) => {
-                vec![Contender::best("impinge", points(asked), move |point| {
+                vec![Contender::best(name, points(asked), move |point| {
                     let (object, found) = world.project_point(point, f32::INFINITY, true, &all)?;
                     Some((*object.data(), (found.point - point).norm()))
                 })]
             }
             Questions::Containing(asked) => {
-                vec![Contender::all("impinge", points(asked), move |point, found| {
+                vec![Contender::all(name, points(asked), move |point, found| {
                     world.objects_containing(point, &all).for_each(|object| found(*object.data()));
                 })]
             }
             Questions::Overlapping(solids) => {
                 let solids = solids.iter().map(|solid| self.placed(solid)).collect();
-                vec![Contender::all("impinge", solids, move |(at, shape), found| {
+                vec![Contender::all(name, solids, move |(at, shape), found| {
                     let touching = world.objects_overlapping(at, &**shape, &all);
                     touching.for_each(|object| found(*object.data()));
                 })]

@@ -5,6 +5,7 @@
 
 use core::cmp::Ordering;
 
+use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, SupportMap};
 
@@ -180,16 +181,11 @@ fn compare<N: Real, const D: usize>(
     }
 }
 
-/// How far it is from a solid to another along a direction to which neither an axis nor a diagonal of space is at right
-/// angles: so the order of two that tremble on one another, or in a grid, does not change.
+/// How far it is from a solid to another along a direction that is [`askew`]: so the order of two that tremble on one
+/// another, or stand in a grid, does not change.
 #[inline]
 fn way<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> N {
-    const DIRECTION: [f64; 3] = [1.0, 1.6875, 2.5625];
-    let mut way = N::ZERO;
-    for axis in 0..D {
-        way += (pose2.translation[axis] - pose1.translation[axis]) * N::lit(DIRECTION[axis]);
-    }
-    way
+    askew(&(pose2.translation - pose1.translation))
 }
 
 /// [`compare`] for solids of one kind.

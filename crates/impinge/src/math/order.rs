@@ -1,12 +1,24 @@
-//! Sorting by numbers, compiled once for all that sort.
+//! Sorting by numbers, compiled once for all that sort, and an order of places.
 
-use super::Real;
+use super::{Real, Vector};
 
 /// A whole number for each number, in the total order of IEEE 754.
 pub(crate) fn order_of<N: Real>(value: N) -> u64 {
     const SIGN: u64 = 1 << 63;
     let bits = value.as_f64().to_bits();
     if bits & SIGN == 0 { bits | SIGN } else { !bits }
+}
+
+/// How far a vector reaches along a direction to which neither an axis nor a diagonal of space is at right angles: of
+/// places that people choose, seldom two reach equally far.
+#[inline]
+pub(crate) fn askew<N: Real, const D: usize>(vector: &Vector<N, D>) -> N {
+    const DIRECTION: [f64; 3] = [1.0, 1.6875, 2.5625];
+    let mut reach = N::ZERO;
+    for axis in 0..D {
+        reach += vector[axis] * N::lit(DIRECTION[axis]);
+    }
+    reach
 }
 
 /// Sorts by the first, equals by the second.

@@ -177,7 +177,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         let names = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
         let (features, Piece { normal, parts, points }) = (names(&old.raw), &self.pieces[piece]);
         let mut heirs = points.clone().filter(|&at| names(&self.points[at]) == features);
-        let heir = heirs.next().filter(|_| normals_agree(&patch.normal, normal))?;
+        let heir = heirs.next()?;
         let is_twin = |at: &&PatchPoint<N, D>| at.parts == old.parts && names(&at.raw) == features;
         if heirs.next().is_some() {
             return None;
@@ -190,7 +190,8 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
             let old = anchors(old_pose, &old.raw, old.parts);
             are_near(&old, &anchors(&pose, &self.points[heir], *parts), self.size())
         };
-        let is_only = patch.points.iter().filter(is_twin).nth(1).is_none();
+        let is_only = normals_agree(&patch.normal, normal)
+            && patch.points.iter().filter(is_twin).nth(1).is_none();
         (is_only && are_near()).then_some(heir)
     }
 

@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use super::super::{PairIds, RawPoint};
 use super::patch::{KeptIds, Merging, PatchPoint};
 use super::patch_groups::Lead;
+use crate::collide::manifold::ids::in_order;
 use crate::collide::manifold::reduce::{self, Projections, a_deepest, ordering, projected};
 use crate::collide::manifold::{deepest_of, slack_level};
 use crate::math::{Real, Space, Vector};
@@ -93,8 +94,14 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let deepest = deepest_of(chosen.len(), level, |at| {
             (self.is_old(&chosen[at]), self.distance(&chosen[at]))
         });
+        let new = chosen.iter().enumerate().filter(|(_, member)| self.kept[member.point].is_none());
+        let place = |member: &Member<N>| self.merging.points[member.point].point1;
+        let mut new_ids = SmallVec::<[u32; FEW]>::from_elem(0, chosen.len());
+        for at in in_order(new.map(|(at, member)| (at, place(member)))) {
+            new_ids[at] = ids.next();
+        }
         for (place, &Member { piece, point, .. }) in chosen.iter().enumerate() {
-            let id = self.kept[point].map_or_else(|| ids.next(), |kept| kept.id);
+            let id = self.kept[point].map_or(new_ids[place], |kept| kept.id);
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
             if place == deepest {
                 raw.distance = lowest;

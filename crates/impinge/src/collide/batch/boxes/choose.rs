@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::LANES;
 use super::admit::Slots;
-use crate::collide::manifold::ids::normals_agree;
+use crate::collide::manifold::ids::{in_order, is_one_point, is_within_reach, normals_agree};
 use crate::collide::manifold::matching::{LanePoint, each_near};
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::slack_level;
@@ -61,29 +61,6 @@ struct KeptSlots<const COUNT: usize> {
 }
 
 impl<const COUNT: usize> KeptSlots<COUNT> {
-    /// Takes over the numbers; no two old points share their names, nor do two slots.
-    #[inline(always)]
-    fn of<N: Real, const D: usize>(
-        old: &[RawPoint<N, D>],
-        naming: &impl Naming,
-        valid: u32,
-    ) -> Self {
-        let mut kept = Self { slots: 0, is_still: true, left: 0, ids: [0; COUNT] };
-        for (at, point) in old.iter().enumerate() {
-            let own = slot_of(point.code);
-            let is_same = point.code == naming.code(own) && valid >> own & 1 == 1;
-            kept.is_still &= is_same;
-            let slot = if is_same { Some(own) } else { naming.slot(point, valid & !kept.slots) };
-            if let Some(slot) = slot {
-                kept.slots |= 1 << slot;
-                kept.ids[slot] = point.id;
-            } else {
-                kept.left |= 1 << (at & 31);
-            }
-        }
-        kept
-    }
-
     /// Leaves the ids of some slots, and the old points whose ids these have not.
     fn retain<N: Real, const D: usize>(&mut self, slots: u32, old: &[RawPoint<N, D>]) {
         self.slots &= slots;
@@ -93,18 +70,13 @@ impl<const COUNT: usize> KeptSlots<COUNT> {
             self.left |= u32::from(!is_kept) << (at & 31);
         }
     }
-
-    #[inline(always)]
-    const fn has(&self, slot: usize) -> bool {
-        self.slots >> slot & 1 == 1
-    }
 }
 
 impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     /// Replaces the points of a manifold, and its normal, by at most `limit` of the candidates.
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
-        let mut kept = KeptSlots::of(&raw.points, naming, self.valid);
+        let mut kept = self.kept(&raw.points, naming);
         let normal = self.normal();
         let may_match = normals_agree(&raw.normal, &normal);
         if may_match && kept.left != 0 && kept.slots != self.valid {
@@ -121,9 +93,40 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         if kept.is_still && kept.slots == slots {
             self.put_all(deepest, raw);
         } else {
+            if slots & !kept.slots != 0 {
+                self.begin(slots & !kept.slots, &mut kept, raw);
+            }
             self.replace(slots, deepest, &kept, naming, raw);
         }
         raw.normal = normal;
+    }
+
+    /// The ids of old points on the same features; no two old points share their names, nor do two slots.
+    #[inline(always)]
+    fn kept(&self, old: &[RawPoint<N, D>], naming: &impl Naming) -> KeptSlots<COUNT> {
+        let mut kept = KeptSlots { slots: 0, is_still: true, left: 0, ids: [0; COUNT] };
+        for (at, point) in old.iter().enumerate() {
+            let own = slot_of(point.code);
+            let is_same = point.code == naming.code(own) && self.valid >> own & 1 == 1;
+            let free = self.valid & !kept.slots;
+            let slot = if is_same { Some(own) } else { naming.slot(point, free) };
+            if let Some(slot) = slot.filter(|&slot| self.is_heir(point, slot)) {
+                kept.is_still &= is_same;
+                kept.slots |= 1 << slot;
+                kept.ids[slot] = point.id;
+            } else {
+                kept.is_still = false;
+                kept.left |= 1 << (at & 31);
+            }
+        }
+        kept
+    }
+
+    /// A candidate with the features of an old point is the same: a vertex is among them, or it is not far.
+    #[inline(always)]
+    fn is_heir(&self, old: &RawPoint<N, D>, slot: usize) -> bool {
+        is_one_point([old.feature1, old.feature2])
+            || is_within_reach(&(self.point1(slot) - old.point1), self.size)
     }
 
     /// Gives those of some slots that have no ids those of the old points that are left, by place.
@@ -173,7 +176,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         naming: &impl Naming,
         raw: &mut RawManifold<N, D>,
     ) {
-        let (order, count) = self.by_ids(slots, kept, raw);
+        let (order, count) = Self::by_ids(slots, kept);
         raw.points.resize(count, RawPoint::default());
         for (&[id, slot], point) in order.iter().zip(&mut raw.points) {
             let slot = slot as usize;
@@ -184,17 +187,20 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         }
     }
 
-    /// The ids of some slots, new ones of those that have none, and the slots, in the order of the ids.
+    /// Gives some slots new ids.
+    #[inline(never)]
+    fn begin(&self, new: u32, kept: &mut KeptSlots<COUNT>, raw: &mut RawManifold<N, D>) {
+        for slot in in_order(Ones::<COUNT>(new).map(|slot| (slot, self.point1(slot)))) {
+            kept.ids[slot] = raw.ids.next();
+        }
+    }
+
+    /// The ids of some slots and the slots, in the order of the ids.
     #[inline(always)]
-    fn by_ids(
-        &self,
-        slots: u32,
-        kept: &KeptSlots<COUNT>,
-        raw: &mut RawManifold<N, D>,
-    ) -> ([[u32; 2]; COUNT], usize) {
+    fn by_ids(slots: u32, kept: &KeptSlots<COUNT>) -> ([[u32; 2]; COUNT], usize) {
         let (mut order, mut count) = ([[0; 2]; COUNT], 0);
-        for slot in Ones::<COUNT>(slots & kept.slots).chain(Ones::<COUNT>(slots & !kept.slots)) {
-            let id = if kept.has(slot) { kept.ids[slot] } else { raw.ids.next() };
+        for slot in Ones::<COUNT>(slots) {
+            let id = kept.ids[slot];
             let mut at = count;
             while at > 0 && order[at - 1][0] > id {
                 order[at] = order[at - 1];
