@@ -161,10 +161,13 @@ where
         coordinates: [V; 2],
     ) -> CornerPlace<V, M> {
         let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
+        // A crossing is farther than the tolerance from all ends. Corners are let in up to twice as far out, so that
+        // no rounding puts one out while the crossing that would stand for it is not there either.
+        let out = -(tolerance + tolerance);
         CornerPlace {
             flat,
             height,
-            is_inside: !inside[0].smaller(inside[1]).simd_lt(-tolerance),
+            is_inside: !inside[0].smaller(inside[1]).simd_lt(out),
             at_end: [inside[0].simd_le(tolerance), inside[1].simd_le(tolerance)],
             beyond: [coordinates[0].simd_gt(zero), coordinates[1].simd_gt(zero)],
         }
