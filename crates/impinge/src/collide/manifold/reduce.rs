@@ -32,6 +32,10 @@ const KEPT: f64 = 1.0 / 256.0;
 /// The part of the best area, or of the best length of points in a row, that old points have to span.
 const ENOUGH: f64 = 0.9;
 
+/// Points in a strip that is no wider than this part of its length are a row: its ends bound it, and points between
+/// them come and go by rounding errors.
+const THIN: f64 = 1.0 / 4096.0;
+
 /// A candidate projected along the normal.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Projected<N: Real> {
@@ -101,9 +105,9 @@ fn old_or<N: Real>(best: Indices, points: &[Projected<N>], limit: usize, toleran
     }
     let chosen: Projections<N> = points.iter().filter(|point| is_best(point)).copied().collect();
     let ([old_area, old_length], [area, length]) = (span(&old), span(&chosen));
-    let is_row = area <= tolerance * length;
+    let is_row = area <= max(tolerance, N::lit(THIN) * length) * length;
     let is_enough = if is_row {
-        old_length >= length * N::lit(ENOUGH)
+        old.len() <= best.len() && old_length >= length * N::lit(ENOUGH)
     } else {
         old_area >= area * N::lit(ENOUGH)
     };
