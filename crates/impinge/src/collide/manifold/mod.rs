@@ -209,6 +209,10 @@ pub(in crate::collide) fn contacts_of_separation2<N: Real>(
 /// the surfaces.
 const SLACK: f64 = 1.0 / 512.0;
 
+/// Up to so many candidates are all points, if so many are asked for. Among more there may be some that coincide but for
+/// rounding, as where the corners of equal boxes meet.
+pub(in crate::collide) const ALL: usize = 4;
+
 /// What the points of a manifold are chosen by.
 pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     /// The solids as they lie now, the normal from the first to the second.
@@ -263,8 +267,8 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
 ) {
     let PointChoice { distance, tolerance, .. } = *choice;
     let limit = choice.limit.max(1);
-    if !(candidates.len() <= limit && ids::renew(candidates, distance, choice.size, out)) {
-        let is_over = candidates.len() > limit && !out.points.is_empty();
+    if !(candidates.len() <= limit.min(ALL) && ids::renew(candidates, distance, choice.size, out)) {
+        let is_over = candidates.len() > limit.min(ALL) && !out.points.is_empty();
         if !out.points.is_empty() {
             ids::inherit_by_features(out, candidates);
             let all: reduce::Indices = (0..candidates.len()).collect();
@@ -296,7 +300,7 @@ fn chosen<N: Real, const D: usize>(
     tolerance: N,
     limit: usize,
 ) -> reduce::Indices {
-    if candidates.len() <= limit {
+    if candidates.len() <= limit.min(ALL) {
         return (0..candidates.len()).collect();
     }
     let seen = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));

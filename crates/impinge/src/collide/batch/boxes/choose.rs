@@ -7,7 +7,7 @@ use super::admit::Slots;
 use crate::collide::manifold::ids::{in_order, is_one_point, is_within_reach, normals_agree};
 use crate::collide::manifold::matching::{LanePoint, each_near};
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
-use crate::collide::manifold::slack_level;
+use crate::collide::manifold::{ALL, slack_level};
 use crate::collide::ones::Ones;
 use crate::collide::{RawManifold, RawPoint};
 use crate::math::{Point, Real, Vector};
@@ -82,7 +82,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         if may_match && kept.left != 0 && kept.slots != self.valid {
             self.match_places(naming, raw, self.valid, &mut kept);
         }
-        let is_full = self.valid.count_ones() as usize <= limit;
+        let is_full = self.valid.count_ones() as usize <= limit.min(ALL);
         let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
         if may_match && !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
             // The ids of candidates that are not chosen go to chosen ones near them.
