@@ -7,9 +7,9 @@ use super::gather::Inputs;
 use super::masks::turned;
 use super::vectors::{bits, is_finite};
 use super::{Batch, LANES, PairQuestion};
-use crate::collide::manifold::ids::PairPose;
+use crate::collide::manifold::ids::{PairPose, is_same_point};
 use crate::collide::manifold::{Candidate, PointChoice, choose};
-use crate::collide::{ManifoldRequest, Pair, RawManifold};
+use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::math::simd::Simd;
 use crate::math::{Point, Real, Space, Vector, Wide};
 use crate::shape::FeatureId;
@@ -152,9 +152,14 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
         if !is_found {
             return is_apart;
         }
+        let (features, point1) = (F::features(self.parts[lane]), vector(&self.points1[0], lane));
+        let is_same = |old: &RawPoint<N, D>| {
+            [old.feature1, old.feature2] == features
+                && is_same_point(features, &(point1 - old.point1.coords), || self.size[lane])
+        };
         match raw.points.as_mut_slice() {
-            [old] if !is_two && [old.feature1, old.feature2] == F::features(self.parts[lane]) => {
-                old.point1 = Point::from(vector(&self.points1[0], lane));
+            [old] if !is_two && is_same(old) => {
+                old.point1 = Point::from(point1);
                 old.distance = self.gap[lane];
                 raw.normal = vector(&self.normal, lane);
             }

@@ -5,8 +5,8 @@
 //! 1. points on the same pair of features, no farther from where the old one was than [`SHARE`] of the pair's size;
 //! 2. points on other features within that length: features flicker where edges coincide, and a corner that slides
 //!    over the triangles of a mesh meets another one at each step;
-//! 3. points on the same pair of features no farther than [`REACH`] of the size: the crossing of two edges may move
-//!    fast.
+//! 3. points on the same pair of features at any distance, but for the crossing of two edges, which is the same one
+//!    within [`REACH`] of the size.
 //!
 //! The distance is the smaller of two: how far the point has moved on the first solid, in the frame of that solid,
 //! and on the second in its own frame; zero on a vertex of either. It is infinite if the normal turned by more than 45°,
@@ -33,24 +33,30 @@ use super::super::{RawManifold, RawPoint};
 use super::frame::Candidate;
 use super::matching::each_match;
 use crate::math::order::{askew, order_of, sort_keyed};
-use crate::math::{Point, Pose, Real, Vector};
+use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
 /// A contact is the same one as long as it moves by no more than this part of the size of the smaller solid in a
 /// step: half the diagonal of its box.
 pub(super) const SHARE: f64 = 1.0 / 16.0;
 
-/// Points on the same pair of features are the same one up to this part of the size: two edges that nearly coincide
-/// cross anywhere, at one end now and at the other then.
+/// The crossings of the same two edges are one point up to this part of the size along each axis: edges that nearly coincide cross
+/// anywhere, at one end now and at the other then.
 pub(super) const REACH: f64 = 1.0 / 2.0;
 
-/// Points on the same features that lie so are one; `way` is from the one to the other on a solid of a pair of this size.
+/// Both features are edges.
+pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
+    features.iter().all(|id| matches!(id, FeatureId::Edge(_)))
+}
+
+/// A point with these features, which has moved so on the first solid, is the same one; `size` is that of the pair.
 #[inline(always)]
-pub(in crate::collide) fn is_within_reach<N: Real, const D: usize>(
+pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
+    features: [FeatureId; 2],
     way: &Vector<N, D>,
-    size: N,
+    size: impl FnOnce() -> N,
 ) -> bool {
-    (way * (N::ONE / (N::lit(REACH) * size))).norm_squared() <= N::ONE
+    !are_edges(features) || max_component(way) <= N::lit(REACH) * size()
 }
 
 /// One over the length that a contact of a pair of this size moves by in a step at most.
@@ -228,8 +234,7 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     let old = out.points.as_mut_slice();
     let is_same = |(point, new): (&RawPoint<N, D>, &Candidate<N, D>)| {
         let features = [point.feature1, point.feature2];
-        features == new.features
-            && (is_one_point(features) || is_within_reach(&(new.point1 - point.point1), size()))
+        features == new.features && is_same_point(features, &(new.point1 - point.point1), &size)
     };
     if old.len() != candidates.len() || !old.iter().zip(candidates).all(is_same) {
         return false;

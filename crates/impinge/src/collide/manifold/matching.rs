@@ -5,7 +5,7 @@
 
 use super::super::RawPoint;
 use super::super::ones::Ones;
-use super::ids::{Anchors, REACH, SHARE, moved, near_scale};
+use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Point, Real};
 use crate::shape::FeatureId;
@@ -16,7 +16,7 @@ const NEAR: u64 = 1;
 const FAR: u64 = 2;
 const CLASS_AT: u32 = 62;
 
-/// The square of the farthest way of the last class, where the length that is near is 1.
+/// The square of the farthest way of two edges' crossing in the last class, where the length that is near is 1.
 const FARTHEST: f64 = (REACH / SHARE) * (REACH / SHARE);
 
 /// No pair has this key.
@@ -207,7 +207,7 @@ fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, sca
     let class = match (old.names == new.names, moved <= N::ONE) {
         (true, true) => SAME,
         (false, true) => NEAR,
-        (true, false) if moved <= N::lit(FARTHEST) => FAR,
+        (true, false) if moved <= N::lit(FARTHEST) || !are_edges(old.names.1) => FAR,
         _ => return NEVER,
     };
     key(class, moved)

@@ -13,8 +13,8 @@ fn shaken<N: Stage<D>, const D: usize>(pairs: &[Stack<D>], choices: Choices) {
         for way in [1e-5, 1e-4, 1e-3] {
             let counts = shake(pair, &mut Impinge::<N, D>::new(pair, choices), way, STEPS);
             let numbers = [
-                ("share of new ids", counts.new_share(), 0.01),
-                ("share of lost ids", counts.lost_share(), 0.01),
+                ("share of new ids", counts.new_share(), 0.005),
+                ("share of lost ids", counts.lost_share(), 0.005),
                 ("share of jumps", counts.jump_share(), 0.01),
                 ("pairs that parted", counts.parted as f64, 0.0),
             ];
@@ -39,6 +39,13 @@ fn in_3d_f32() {
 #[test]
 fn in_3d_f64() {
     shaken::<f64, 3>(&pairs3(), Choices::default());
+}
+
+#[test]
+fn with_more_points() {
+    let choices = Choices { max_points: Some(16), ..Choices::default() };
+    shaken::<f32, 2>(&pairs2(), choices);
+    shaken::<f32, 3>(&pairs3(), choices);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use smallvec::SmallVec;
 
 use super::LANES;
 use super::admit::Slots;
-use crate::collide::manifold::ids::{in_order, is_one_point, is_within_reach, normals_agree};
+use crate::collide::manifold::ids::{in_order, is_same_point, normals_agree};
 use crate::collide::manifold::matching::{LanePoint, each_near};
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::{ALL, slack_level};
@@ -122,11 +122,11 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         kept
     }
 
-    /// A candidate with the features of an old point is the same: a vertex is among them, or it is not far.
+    /// The candidate in a slot, with the features of an old point, is the same.
     #[inline(always)]
     fn is_heir(&self, old: &RawPoint<N, D>, slot: usize) -> bool {
-        is_one_point([old.feature1, old.feature2])
-            || is_within_reach(&(self.point1(slot) - old.point1), self.size)
+        let features = [old.feature1, old.feature2];
+        is_same_point(features, &(self.point1(slot) - old.point1), || self.size)
     }
 
     /// Gives those of some slots that have no ids those of the old points that are left, by place.

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use impinge::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
 use impinge::query::{ContactId, TrackedContact, contact};
+use impinge::shape::FeatureId;
 use impinge_reference::precise::{Precise, Quad, Solid, separation_along, signed_distance};
 
 use super::answers::{Lone, Points};
@@ -289,7 +290,13 @@ where
             |point: &TrackedContact<N, D>| [point.kinematic.feature1(), point.kinematic.feature2()];
         let only = |points: &Points<N, D>, wanted| {
             let mut on = points.iter().filter(|point| features(point) == wanted);
-            on.next().filter(|_| on.next().is_none()).map(|point| point.id)
+            on.next().filter(|_| on.next().is_none()).copied()
+        };
+        // A solid that turns another side to the other begins anew, and so do crossings of edges that have no length.
+        let is_edge = |id: &FeatureId| matches!(id, FeatureId::Edge(_));
+        let may_begin = |old: &TrackedContact<N, D>, new: &TrackedContact<N, D>| {
+            old.contact.normal.dot(&new.contact.normal) < N::lit(0.75)
+                || self.scene.is_degenerate && features(new).iter().all(is_edge)
         };
         // All points of a round rim are on one feature, also those that were not chosen.
         let is_named = !self.names.iter().any(|name| is_of_revolution(name));
@@ -297,7 +304,8 @@ where
         for point in after {
             let wanted = features(point);
             if let (Some(old), Some(new)) = (only(before, wanted), only(after, wanted)) {
-                self.holds("4 ids stay", old == new || !is_named, || {
+                let is_kept = old.id == new.id || may_begin(&old, &new);
+                self.holds("4 ids stay", is_kept || !is_named, || {
                     format!("{before:?} becomes {after:?}")
                 });
             }
