@@ -77,6 +77,9 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
         let mut kept = self.kept(&raw.points, naming);
+        if !kept.is_still {
+            self.drop_jumped(&raw.points, &mut kept);
+        }
         let normal = self.normal();
         let may_match = normals_agree(&raw.normal, &normal);
         if may_match && kept.left != 0 && kept.slots != self.valid {
@@ -110,23 +113,33 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
             let is_same = point.code == naming.code(own) && self.valid >> own & 1 == 1;
             let free = self.valid & !kept.slots;
             let slot = if is_same { Some(own) } else { naming.slot(point, free) };
-            if let Some(slot) = slot.filter(|&slot| self.is_heir(point, slot)) {
-                kept.is_still &= is_same;
+            kept.is_still &= is_same;
+            if let Some(slot) = slot {
                 kept.slots |= 1 << slot;
                 kept.ids[slot] = point.id;
             } else {
-                kept.is_still = false;
                 kept.left |= 1 << (at & 31);
             }
         }
         kept
     }
 
-    /// The candidate in a slot, with the features of an old point, is the same.
+    /// Takes the ids of old points back from slots that are too far from them ([`is_same_point`]).
+    #[inline(never)]
+    fn drop_jumped(&self, old: &[RawPoint<N, D>], kept: &mut KeptSlots<COUNT>) {
+        for (at, point) in old.iter().enumerate() {
+            let heir = Ones::<COUNT>(kept.slots).find(|&slot| kept.ids[slot] == point.id);
+            if let Some(slot) = heir.filter(|&slot| !self.is_same(point, &self.point1(slot))) {
+                kept.slots &= !(1 << slot);
+                kept.left |= 1 << (at & 31);
+            }
+        }
+    }
+
+    /// A candidate at a place, with the features of an old point, is the same.
     #[inline(always)]
-    fn is_heir(&self, old: &RawPoint<N, D>, slot: usize) -> bool {
-        let features = [old.feature1, old.feature2];
-        is_same_point(features, &(self.point1(slot) - old.point1), || self.size)
+    fn is_same(&self, old: &RawPoint<N, D>, place: &Point<N, D>) -> bool {
+        is_same_point([old.feature1, old.feature2], &(place - old.point1), || self.size)
     }
 
     /// Gives those of some slots that have no ids those of the old points that are left, by place.
@@ -161,8 +174,16 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     /// Nothing has changed but places.
     #[inline(always)]
     fn put_all(&self, deepest: usize, raw: &mut RawManifold<N, D>) {
+        let mut has_jumped = false;
         for point in &mut raw.points {
+            let old = *point;
             self.place(slot_of(point.code), deepest, point);
+            if !self.is_same(&old, &point.point1) {
+                (point.id, has_jumped) = (raw.ids.next(), true);
+            }
+        }
+        if has_jumped {
+            raw.sort_points();
         }
     }
 
