@@ -112,6 +112,8 @@ fn joints(world: &World, bodies: &[Body], stored: &Impulses) -> Vec<Joint> {
             joints.push(Joint { id: point.id, bodies: numbers, rows, parting });
         }
     }
+    // Views come in no particular order: from the ground upwards. Those of a pair stay in the order of their ids.
+    joints.sort_by_key(|joint| joint.bodies);
     joints
 }
 

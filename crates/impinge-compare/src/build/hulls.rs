@@ -66,7 +66,8 @@ fn polyhedra(clouds: &[Vec<Vector>]) -> Corners {
 }
 
 fn corners(clouds: &[Vec<Vector>]) -> Corners {
-    let hulls = clouds.iter().filter_map(|cloud| parry3d::transformation::try_convex_hull(cloud).ok());
+    let hulls =
+        clouds.iter().filter_map(|cloud| parry3d::transformation::try_convex_hull(cloud).ok());
     hulls.flat_map(|(corners, _)| bits(&corners)).collect()
 }
 
@@ -76,6 +77,9 @@ fn bits(points: &[Vector]) -> Corners {
 
 fn answer<'a>(corners: Corners) -> Answer<'a> {
     Box::new(move || {
-        corners.iter().map(|[x, y, z]| u64::from(x ^ z.rotate_left(9)) << 32 | u64::from(*y)).collect()
+        corners
+            .iter()
+            .map(|[x, y, z]| u64::from(x ^ z.rotate_left(9)) << 32 | u64::from(*y))
+            .collect()
     })
 }

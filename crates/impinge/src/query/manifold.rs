@@ -8,7 +8,8 @@ use crate::math::{Pose, Real, Unit, Vector};
 /// The name of a contact: no two contacts of a world, at any time, share one.
 ///
 /// A contact that moved between two updates keeps its id: one on the same features, or one that has moved by no more
-/// than 1/16 of the size of the smaller solid (half the diagonal of its box), on either solid. The id says nothing
+/// than 1/16 of the size of the smaller solid (half the diagonal of its box), on either solid, while the normal turned by
+/// less than 45°. Two edges that cross are the same features up to half of that size. The id says nothing
 /// else; its order is that of creation within one pair. [`ContactId::NULL`], which is also the default, names no
 /// contact: for the slots of a cache that are empty.
 ///
