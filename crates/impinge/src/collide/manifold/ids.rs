@@ -32,7 +32,7 @@ use smallvec::SmallVec;
 use super::super::{RawManifold, RawPoint};
 use super::frame::Candidate;
 use super::matching::each_match;
-use crate::math::order::{askew, order_of, sort_keyed};
+use crate::math::order::askew;
 use crate::math::{Point, Pose, Real, Vector, max_component};
 use crate::shape::FeatureId;
 
@@ -258,20 +258,28 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     true
 }
 
-/// Puts points that begin together in the order of their ids: the numbers of all, given where each is on the first solid.
+/// Puts points that begin together in the order of their ids: how far each reaches, and its number, given where each is
+/// on the first solid.
 ///
 /// They are numbered along a direction that is [`askew`], in the frame of the first solid. Of the four corners of a
 /// rectangle that one comes last which is opposite to the first: a solver that goes through them in this order, as
 /// most do, leaves a quarter of the sway in a stack that it leaves when it goes round.
-#[inline(never)]
+#[inline(always)]
 pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     points: impl Iterator<Item = (usize, Point<N, D>)>,
-) -> SmallVec<[usize; 8]> {
-    let number = |number| u32::try_from(number).expect("a manifold has few candidates");
-    let mut keyed: SmallVec<[(u64, u32); 8]> =
-        points.map(|(at, point)| (order_of(askew(&point.coords)), number(at))).collect();
-    sort_keyed(&mut keyed);
-    keyed.iter().map(|&(_, at)| at as usize).collect()
+) -> SmallVec<[(N, usize); 8]> {
+    // Nearly always there are four at most, and seldom any.
+    let mut order = SmallVec::<[(N, usize); 8]>::new();
+    for (number, point) in points {
+        let reach = askew(&point.coords);
+        let mut at = order.len();
+        order.push((reach, number));
+        while at > 0 && order[at - 1].0 > reach {
+            order.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+    order
 }
 
 /// Replaces the points of a manifold, in the order of their ids; those without one get the next.
@@ -281,7 +289,7 @@ pub(in crate::collide) fn settle<N: Real, const D: usize>(
     out: &mut RawManifold<N, D>,
 ) {
     let new = chosen.iter().filter(|&&at| candidates[at].kept.is_none());
-    for at in in_order(new.map(|&at| (at, candidates[at].point1))) {
+    for (_, at) in in_order(new.map(|&at| (at, candidates[at].point1))) {
         candidates[at].kept = Some(Inherited { id: out.ids.next(), is_old: false });
     }
     out.points.clear();

@@ -202,9 +202,15 @@ const fn is_near(key: u64) -> bool {
 /// The key of a pair; [`NEVER`] if the two are not the same contact. `scale` is one over the length that counts as near.
 #[inline]
 fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
+    // Most are told apart by the first coordinates. Written so that NaN is far.
+    let is_beside =
+        |solid: usize| ((new.places[solid][0] - old.places[solid][0]) * scale).abs() <= N::ONE;
+    let is_same = old.names == new.names;
+    if !(is_same | is_beside(0) | is_beside(1)) {
+        return NEVER;
+    }
     let moved = moved(old, new, scale);
-    // Written so that NaN is far.
-    let class = match (old.names == new.names, moved <= N::ONE) {
+    let class = match (is_same, moved <= N::ONE) {
         (true, true) => SAME,
         (false, true) => NEAR,
         (true, false) if moved <= N::lit(FARTHEST) || !are_edges(old.names.1) => FAR,

@@ -97,7 +97,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         let new = chosen.iter().enumerate().filter(|(_, member)| self.kept[member.point].is_none());
         let place = |member: &Member<N>| self.merging.points[member.point].point1;
         let mut new_ids = SmallVec::<[u32; FEW]>::from_elem(0, chosen.len());
-        for at in in_order(new.map(|(at, member)| (at, place(member)))) {
+        for (_, at) in in_order(new.map(|(at, member)| (at, place(member)))) {
             new_ids[at] = ids.next();
         }
         for (place, &Member { piece, point, .. }) in chosen.iter().enumerate() {

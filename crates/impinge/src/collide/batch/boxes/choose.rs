@@ -58,6 +58,8 @@ struct KeptSlots<const COUNT: usize> {
     /// The old points that are not, by bits.
     left: u32,
     ids: [u32; COUNT],
+    /// The slots of old points that are, by place in the manifold.
+    heirs: [u8; COUNT],
 }
 
 impl<const COUNT: usize> KeptSlots<COUNT> {
@@ -90,7 +92,9 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         if may_match && !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
             // The ids of candidates that are not chosen go to chosen ones near them.
             kept.retain(slots, &raw.points);
-            self.match_places(naming, raw, slots, &mut kept);
+            if kept.left != 0 {
+                self.match_places(naming, raw, slots, &mut kept);
+            }
         }
         let deepest = self.deepest(slots, kept.slots);
         if kept.is_still && kept.slots == slots {
@@ -107,7 +111,8 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     /// The ids of old points on the same features; no two old points share their names, nor do two slots.
     #[inline(always)]
     fn kept(&self, old: &[RawPoint<N, D>], naming: &impl Naming) -> KeptSlots<COUNT> {
-        let mut kept = KeptSlots { slots: 0, is_still: true, left: 0, ids: [0; COUNT] };
+        let mut kept =
+            KeptSlots { slots: 0, is_still: true, left: 0, ids: [0; COUNT], heirs: [0; COUNT] };
         for (at, point) in old.iter().enumerate() {
             let own = slot_of(point.code);
             let is_same = point.code == naming.code(own) && self.valid >> own & 1 == 1;
@@ -117,6 +122,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
             if let Some(slot) = slot {
                 kept.slots |= 1 << slot;
                 kept.ids[slot] = point.id;
+                kept.heirs[at % COUNT] = slot.to_le_bytes()[0];
             } else {
                 kept.left |= 1 << (at & 31);
             }
@@ -125,11 +131,11 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     }
 
     /// Takes the ids of old points back from slots that are too far from them ([`is_same_point`]).
-    #[inline(never)]
+    #[inline(always)]
     fn drop_jumped(&self, old: &[RawPoint<N, D>], kept: &mut KeptSlots<COUNT>) {
         for (at, point) in old.iter().enumerate() {
-            let heir = Ones::<COUNT>(kept.slots).find(|&slot| kept.ids[slot] == point.id);
-            if let Some(slot) = heir.filter(|&slot| !self.is_same(point, &self.point1(slot))) {
+            let (slot, is_left) = (usize::from(kept.heirs[at % COUNT]), kept.left >> (at & 31) & 1);
+            if is_left == 0 && !self.is_same(point, &self.point1(slot)) {
                 kept.slots &= !(1 << slot);
                 kept.left |= 1 << (at & 31);
             }
@@ -211,7 +217,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     /// Gives some slots new ids.
     #[inline(never)]
     fn begin(&self, new: u32, kept: &mut KeptSlots<COUNT>, raw: &mut RawManifold<N, D>) {
-        for slot in in_order(Ones::<COUNT>(new).map(|slot| (slot, self.point1(slot)))) {
+        for (_, slot) in in_order(Ones::<COUNT>(new).map(|slot| (slot, self.point1(slot)))) {
             kept.ids[slot] = raw.ids.next();
         }
     }
