@@ -30,8 +30,8 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
         name: impl Fn(View<'a, N, D>) -> R + Copy,
     ) -> impl Iterator<Item = R> {
         let custom = self.custom.into_iter().flat_map(DefaultNarrowPhase::custom_views);
-        let others = Chain { first: self.composites.map(name), others: custom.map(name) };
-        Chain { first: self.convex.map(name), others }
+        let others = Behind { first: self.composites.map(name), others: custom.map(name) };
+        Behind { first: self.convex.map(name), others }
     }
 
     /// All of them, those of [particular](ObjectTable::is_particular) pairs made for the reader.
@@ -48,12 +48,12 @@ impl<'a, N: Space<D>, const D: usize> Views<'a, N, D> {
 pub(crate) type View<'a, N, const D: usize> = (u32, u32, ManifoldView<'a, N, D>);
 
 /// One iterator after another: forgets nothing and asks nothing of the second until it gets there.
-struct Chain<A, B> {
+struct Behind<A, B> {
     first: A,
     others: B,
 }
 
-impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for Chain<A, B> {
+impl<A: Iterator, B: Iterator<Item = A::Item>> Iterator for Behind<A, B> {
     type Item = A::Item;
 
     #[inline]

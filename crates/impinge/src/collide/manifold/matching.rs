@@ -3,6 +3,8 @@
 //! Few points are bits of a word, and each old one is compared with each new one. Of many, those that can be near on
 //! either solid are found in lists sorted by the first coordinate. Lanes know the places on the first solid alone.
 
+use core::cmp::Ordering;
+
 use super::super::RawPoint;
 use super::super::ones::Ones;
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
@@ -58,8 +60,8 @@ fn match_few<N: Real, const D: usize>(
 
 /// The bits of so many points.
 #[inline(always)]
-const fn all(count: usize) -> u32 {
-    u32::MAX.unbounded_shr((FEW - count) as u32)
+fn all(count: usize) -> u32 {
+    u32::MAX.unbounded_shr(u32::try_from(FEW - count).unwrap_or(0))
 }
 
 /// The smallest key of points given by bits, and the first that has it; `never` if none is below.
@@ -113,7 +115,7 @@ fn nearest_first<K: PartialOrd + Copy>(
         for at in Ones::<FEW>(is_due) {
             let (key, other) = nearest(at, new);
             (keys[at], others[at]) = (key, other);
-            old &= !(u32::from(!(key < never)) << at);
+            old &= u32::MAX ^ u32::from(key.partial_cmp(&never) != Some(Ordering::Less)) << at;
         }
     }
 }

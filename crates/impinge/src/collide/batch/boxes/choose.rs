@@ -205,9 +205,8 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
     ) {
         let (order, count) = Self::by_ids(slots, kept);
         raw.points.resize(count, RawPoint::default());
-        for (&[id, slot], point) in order.iter().zip(&mut raw.points) {
-            let slot = slot as usize;
-            point.id = id;
+        for (&slot, point) in order.iter().zip(&mut raw.points) {
+            point.id = kept.ids[slot];
             self.place(slot, deepest, point);
             [point.feature1, point.feature2] = naming.features(slot);
             point.code = naming.code(slot);
@@ -222,18 +221,17 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         }
     }
 
-    /// The ids of some slots and the slots, in the order of the ids.
+    /// Some slots in the order of their ids, and how many there are.
     #[inline(always)]
-    fn by_ids(slots: u32, kept: &KeptSlots<COUNT>) -> ([[u32; 2]; COUNT], usize) {
-        let (mut order, mut count) = ([[0; 2]; COUNT], 0);
+    fn by_ids(slots: u32, kept: &KeptSlots<COUNT>) -> ([usize; COUNT], usize) {
+        let (mut order, mut count) = ([0; COUNT], 0);
         for slot in Ones::<COUNT>(slots) {
-            let id = kept.ids[slot];
             let mut at = count;
-            while at > 0 && order[at - 1][0] > id {
+            while at > 0 && kept.ids[order[at - 1]] > kept.ids[slot] {
                 order[at] = order[at - 1];
                 at -= 1;
             }
-            order[at] = [id, slot as u32];
+            order[at] = slot;
             count += 1;
         }
         (order, count)

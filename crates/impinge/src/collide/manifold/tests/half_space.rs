@@ -112,11 +112,10 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
 /// Seen along the normal, a place lies within the outline of the points of a manifold.
 fn is_among<N: Real>(place: &Point<N, 3>, raw: &RawManifold<N, 3>, normal: &Vector<N, 3>) -> bool {
     let (u, v) = orthonormal_basis(normal);
-    (0..256).all(|step| {
-        let (sine, cosine) = (f64::from(step) * core::f64::consts::TAU / 256.0).sin_cos();
-        let along =
-            |at: &Point<N, 3>| (u * N::lit(cosine) + v * N::lit(sine)).dot(&at.coords).as_f64();
-        raw.points.iter().any(|point| along(&point.point1) >= along(place) - 1e-3)
+    let mut directions = (-8..=8).flat_map(|x| (-8..=8).map(move |y| [x, y].map(f64::from)));
+    directions.all(|[x, y]| {
+        let along = |at: &Point<N, 3>| (u * N::lit(x) + v * N::lit(y)).dot(&at.coords).as_f64();
+        raw.points.iter().any(|point| along(&point.point1) >= along(place) - 1e-2)
     })
 }
 
