@@ -191,7 +191,7 @@ impl<N: Space<D>, const D: usize> Stage<N, D> {
         }
     }
 
-    /// What a solver asks for.
+    /// The calls of a solver.
     fn operate_as_engine<M: Dimension<N, D>>(
         &mut self,
         handle: CollisionObjectHandle,

@@ -14,7 +14,7 @@ use crate::space::Recordable;
 pub(crate) struct ObjectHashes {
     /// The index of the object.
     pub(crate) index: u32,
-    /// Of what calls have made of the object.
+    /// The state of the object as calls have made it.
     pub(crate) description: u32,
     /// Of the pairs in which the object is the first, with their contacts.
     pub(crate) pairs: u32,

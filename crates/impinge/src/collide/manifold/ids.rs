@@ -24,8 +24,8 @@
 //!
 //! Each id goes to one point. Ties go to the older id, then to the candidate that comes first: the order does not
 //! depend on the order of the two solids, and scaling by a power of two changes no choice. Where each pair of features
-//! names one point, as of two boxes, the same features are the same point and no place has to be compared ([`renew`],
-//! and the codes of lanes).
+//! names one point, as of two boxes, the same features are the same point, and places are compared for two edges alone
+//! ([`is_same_point`]).
 
 use smallvec::SmallVec;
 
@@ -72,14 +72,14 @@ pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
     pub(super) names: ([u32; 2], [FeatureId; 2]),
     /// Where the point is on each solid, in that solid's frame.
     pub(super) places: [Point<N, D>; 2],
-    /// Of the contact, in the frame of the first solid.
+    /// The normal of the contact, in the frame of the first solid.
     normal: Vector<N, D>,
 }
 
 /// How two solids lie: what it takes to find where a contact is on each of them.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct PairPose<'a, N: Real, const D: usize> {
-    /// Of the second solid in the frame of the first; `None` if places on the second are not compared.
+    /// The pose of the second solid in the frame of the first; `None` if places on the second are not compared.
     pub(in crate::collide) pose12: Option<&'a Pose<N, D>>,
     /// Unit, from the first to the second, in the frame of the first.
     pub(in crate::collide) normal: &'a Vector<N, D>,
@@ -294,8 +294,8 @@ pub(in crate::collide) fn settle<N: Real, const D: usize>(
     }
     out.points.clear();
     for &at in chosen {
-        let id = candidates[at].kept.map_or(0, |kept| kept.id);
-        out.points.push(candidates[at].named(id));
+        let kept = candidates[at].kept.expect("the new ones have ids now, too");
+        out.points.push(candidates[at].named(kept.id));
     }
     out.sort_points();
 }

@@ -3,8 +3,6 @@
 //! Few points are bits of a word, and each old one is compared with each new one. Of many, those that can be near on
 //! either solid are found in lists sorted by the first coordinate. Lanes know the places on the first solid alone.
 
-use core::cmp::Ordering;
-
 use super::super::RawPoint;
 use super::super::ones::Ones;
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
@@ -89,34 +87,24 @@ fn nearest_first<K: PartialOrd + Copy>(
     mut visit: impl FnMut(usize, usize, K),
 ) {
     let (mut keys, mut others) = ([never; FEW], [0; FEW]);
-    let (mut taken, mut is_clear) = (0_u32, true);
-    for at in Ones::<FEW>(old) {
-        let (key, other) = nearest(at, new);
-        (keys[at], others[at]) = (key, other);
-        if key < never {
-            is_clear &= taken >> other & 1 == 0;
-            taken |= 1 << other;
-        } else {
+    let mut due = old;
+    loop {
+        for at in Ones::<FEW>(due) {
+            (keys[at], others[at]) = nearest(at, new);
+            let has_one = keys[at] < never;
             // Whoever has none now has none later.
-            old &= !(1 << at);
+            old &= !(u32::from(!has_one) << at);
         }
-    }
-    if is_clear {
-        // Most often each has one of its own.
-        return Ones::<FEW>(old).for_each(|at| visit(at, others[at], keys[at]));
-    }
-    while old != 0 {
+        let taken = Ones::<FEW>(old).fold(0_u32, |bits, at| bits | 1 << others[at]);
+        if taken.count_ones() == old.count_ones() {
+            // Most often each has one of its own.
+            return Ones::<FEW>(old).for_each(|at| visit(at, others[at], keys[at]));
+        }
         let (key, first) = least(old, never, |at| keys[at]);
         let taken = others[first];
         visit(first, taken, key);
         (old, new) = (old & !(1 << first), new & !(1 << taken));
-        let is_due =
-            Ones::<FEW>(old).fold(0, |bits, at| bits | u32::from(others[at] == taken) << at);
-        for at in Ones::<FEW>(is_due) {
-            let (key, other) = nearest(at, new);
-            (keys[at], others[at]) = (key, other);
-            old &= u32::MAX ^ u32::from(key.partial_cmp(&never) != Some(Ordering::Less)) << at;
-        }
+        due = Ones::<FEW>(old).fold(0, |bits, at| bits | u32::from(others[at] == taken) << at);
     }
 }
 

@@ -213,7 +213,7 @@ const SLACK: f64 = 1.0 / 512.0;
 /// rounding, as where the corners of equal boxes meet.
 pub(in crate::collide) const ALL: usize = 4;
 
-/// What the points of a manifold are chosen by.
+/// The measures by which the points of a manifold are chosen.
 pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     /// The solids as they lie now, the normal from the first to the second.
     pub(in crate::collide) pose: PairPose<'a, N, D>,

@@ -96,7 +96,7 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                     asked.prediction + if radius > N::ZERO { N::lit(-0.05 * scale) } else { room };
                 let is_near = |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= room;
                 let has_it = raw.points.iter().any(|point| is_near(point.point1));
-                // Of more than four corners those on the outline count, and old ones that span most of it.
+                // If there are more than four corners, those on the outline count, and old ones that span most of it.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
                 let is_far = distance > reach - room - room;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");
