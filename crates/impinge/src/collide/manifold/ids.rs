@@ -61,7 +61,7 @@ pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
 
 /// One over the length that a contact of a pair of this size moves by in a step at most.
 #[inline(always)]
-pub(super) fn near_scale<N: Real>(size: N) -> N {
+pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
     N::ONE / (N::lit(SHARE) * size)
 }
 

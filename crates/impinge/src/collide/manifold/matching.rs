@@ -1,13 +1,13 @@
 //! Which new contact points are old ones: the greedy match by the classes and distances of [`ids`](super::ids).
 //!
 //! Few points are bits of a word, and each old one is compared with each new one. Of many, those that can be near on
-//! either solid are found in lists sorted by the first coordinate. Lanes know the places on the first solid alone.
+//! either solid are found in lists sorted by the first coordinate. Lanes know the places on the first solid, and of the
+//! second which of its vertices a point is on.
 
-use super::super::RawPoint;
 use super::super::ones::Ones;
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
+use crate::math::Real;
 use crate::math::order::{order_of, sort_keyed};
-use crate::math::{Point, Real};
 use crate::shape::FeatureId;
 
 /// The three classes, above the other bits of a key.
@@ -135,53 +135,24 @@ fn match_many<N: Real, const D: usize>(
     }
 }
 
-/// A point as lanes match it: the place on the first solid, and the vertices.
-#[derive(Clone, Copy)]
-pub(in crate::collide) struct LanePoint<N: Real, const D: usize> {
-    place: Point<N, D>,
-    /// The numbers of the vertices of either solid and one; 0 where it is not a vertex.
-    vertices: [u32; 2],
-}
-
-/// The number of a vertex and one; 0 of other features.
+/// Visits the numbers of old points of a pair, given by bits, and those of the new points, given by bits, that they are
+/// now, where none is on the features of an old one: only which are near is to be found.
+///
+/// `moved` is the square of the way from an old point to a new one, where the length that is near is 1. `same_vertex` tells which of
+/// some new points are on the vertex of the second solid that an old point is on, so that they have not moved on it.
 #[inline(always)]
-const fn vertex(feature: FeatureId) -> u32 {
-    if let FeatureId::Vertex(number) = feature { number.wrapping_add(1) } else { 0 }
-}
-
-impl<N: Real, const D: usize> LanePoint<N, D> {
-    #[inline(always)]
-    pub(in crate::collide) fn new(place: Point<N, D>, features: [FeatureId; 2]) -> Self {
-        Self { place, vertices: [vertex(features[0]), vertex(features[1])] }
-    }
-
-    /// [`moved`] of this one and a new one.
-    #[inline(always)]
-    fn moved(&self, new: &Self, scale: N) -> N {
-        let [one, other] = self.vertices;
-        let is_first = (one == new.vertices[0]) & (one != 0);
-        let is_second = (other == new.vertices[1]) & (other != 0);
-        let way = ((new.place - self.place) * scale).norm_squared();
-        if is_first | is_second { N::ZERO } else { way }
-    }
-}
-
-/// Visits the numbers of old points of a pair of this size that are at bits that are set, and those of the new points
-/// that they are now. None is on the features of an old one: only which are near is to be found.
-#[inline(always)]
-pub(in crate::collide) fn each_near<N: Real, const D: usize>(
-    old: (&[RawPoint<N, D>], u32),
-    new: &[LanePoint<N, D>],
-    size: N,
+pub(in crate::collide) fn each_near<N: Real>(
+    [old, new]: [u32; 2],
+    same_vertex: impl Fn(usize, u32) -> u32,
+    moved: impl Fn(usize, usize) -> N,
     mut visit: impl FnMut(usize, usize),
 ) {
-    let (scale, never) = (near_scale(size), N::ONE + N::EPSILON);
-    let nearest = |at: usize, among: u32| {
-        let RawPoint { point1, feature1, feature2, .. } = old.0[at];
-        let point = LanePoint::new(point1, [feature1, feature2]);
-        least(among, never, |at| point.moved(&new[at], scale))
+    let never = N::ONE + N::EPSILON;
+    let nearest = |at: usize, among: u32| match same_vertex(at, among) {
+        0 => least(among, never, |new| moved(at, new)),
+        same => (N::ZERO, same.trailing_zeros() as usize),
     };
-    nearest_first([old.1, all(new.len())], never, nearest, |at, new, _| visit(at, new));
+    nearest_first([old, new], never, nearest, |at, new, _| visit(at, new));
 }
 
 /// The key is one of the first two classes.

@@ -1,11 +1,9 @@
 //! From the filled slots of one pair to its manifold: the rules of `choose`, without moving anything.
 
-use smallvec::SmallVec;
-
 use super::LANES;
 use super::admit::Slots;
-use crate::collide::manifold::ids::{in_order, is_same_point, normals_agree};
-use crate::collide::manifold::matching::{LanePoint, each_near};
+use crate::collide::manifold::ids::{in_order, is_same_point, near_scale, normals_agree};
+use crate::collide::manifold::matching::each_near;
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::{ALL, slack_level};
 use crate::collide::ones::Ones;
@@ -36,6 +34,16 @@ pub(super) trait Naming {
     /// The candidate with the features of a point, among those that there are.
     fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize>;
 
+    /// Those of some candidates that are on a feature of the second box, if it is a vertex.
+    #[inline(always)]
+    fn on_vertex(&self, feature: FeatureId, among: u32) -> u32 {
+        if !matches!(feature, FeatureId::Vertex(_)) {
+            return 0;
+        }
+        let is_on = |slot: &usize| self.features(*slot)[1] == feature;
+        Ones::<SLOTS_OF_CODE>(among).filter(is_on).fold(0, |slots, slot| slots | 1 << slot)
+    }
+
     /// A number, not zero, that no candidate of any pair has but in this slot with these features;
     /// the slot is in the lowest bits.
     fn code(&self, slot: usize) -> u32;
@@ -43,6 +51,8 @@ pub(super) trait Naming {
 
 /// The bits of a code that are the slot.
 const SLOT_BITS: u32 = 31;
+/// A code tells one of so many slots.
+const SLOTS_OF_CODE: usize = 32;
 
 /// The slot that a code tells.
 #[inline(always)]
@@ -157,15 +167,16 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
         some: u32,
         kept: &mut KeptSlots<COUNT>,
     ) {
-        let (mut news, mut places) = (SmallVec::<[_; 8]>::new(), SmallVec::<[_; 8]>::new());
-        for slot in Ones::<COUNT>(some & !kept.slots) {
-            news.push(LanePoint::new(self.point1(slot), naming.features(slot)));
-            places.push(slot);
-        }
-        each_near((&raw.points, kept.left), &news, self.size, |old, new| {
-            kept.slots |= 1 << places[new];
-            kept.ids[places[new]] = raw.points[old].id;
-        });
+        let (old, scale) = (&raw.points, near_scale(self.size));
+        each_near(
+            [kept.left, some & !kept.slots],
+            |at, among| naming.on_vertex(old[at].feature2, among),
+            |at, slot| ((self.point1(slot) - old[at].point1) * scale).norm_squared(),
+            |at, slot| {
+                kept.slots |= 1 << slot;
+                kept.ids[slot] = old[at].id;
+            },
+        );
     }
 
     #[inline(always)]
