@@ -72,7 +72,9 @@ mod collide;
 pub(crate) mod convex;
 #[cfg(feature = "debug_render")]
 pub mod debug_render;
+#[cfg(feature = "dim2")]
 pub mod dim2;
+#[cfg(feature = "dim3")]
 pub mod dim3;
 pub(crate) mod generation;
 #[cfg(doc)]
@@ -85,7 +87,6 @@ pub mod partitioning;
 pub mod procedural;
 pub mod query;
 pub mod shape;
-#[doc(hidden)]
-pub mod tables;
+mod tables;
 pub mod transformation;
 pub mod world;

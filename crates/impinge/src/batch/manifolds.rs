@@ -4,6 +4,7 @@
 //! manifolds of those that are left are computed, boxes, balls, segments and capsules sorted by their kinds and eight at
 //! a time; the points are written down in the order of the pairs.
 
+use crate::tables::ByDimension;
 use core::ops::Range;
 
 use super::control::Progress;
@@ -76,7 +77,7 @@ fn update_all<N: Space<D>, const D: usize>(
             continue;
         };
         let mut members = SolidGroup { pairs: &mut *pairs, group, request };
-        if !(N::tables().update_group)(solids.each_ref(), &mut members) {
+        if !<N::Algorithms>::update_group(solids.each_ref(), &mut members) {
             members.update_one_by_one();
         }
     }
@@ -123,7 +124,7 @@ impl<'a, N: Space<D>, const D: usize> PairManifolds<'a, N, D> {
             self.composite = Some(contacts);
         } else {
             let pair: Pair<'_, N, D> = ordered.pair();
-            (N::tables().contacts)(&pair, request, &mut self.raw);
+            <N::Algorithms>::contacts(&pair, request, &mut self.raw);
         }
     }
 

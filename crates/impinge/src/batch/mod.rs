@@ -38,6 +38,7 @@
 
 mod columns;
 mod control;
+mod entries;
 mod error;
 mod manifolds;
 mod matrices;
@@ -48,7 +49,6 @@ mod poses;
 mod rays;
 mod rows;
 mod side;
-mod tables;
 mod tiles;
 mod within;
 
@@ -58,6 +58,7 @@ pub use columns::{
 };
 pub use control::Control;
 pub(crate) use control::Progress;
+pub(crate) use entries::BatchEntries;
 pub use error::{BatchError, MatrixError};
 pub(crate) use manifolds::{SolidGroup, update_group2, update_group3};
 pub use matrices::Matrices;
@@ -67,6 +68,5 @@ pub use poses::{AsPose, OnePose, PoseSource};
 pub use rays::RayColumns;
 pub use rows::ManifoldRows;
 pub use side::{Shapes, Side};
-pub(crate) use tables::BatchTables;
 pub use tiles::{TileCut, TileRows, Tiles, pairs_in_tile, tiles};
 pub use within::{boxes, pairs_within, pairs_within_one};

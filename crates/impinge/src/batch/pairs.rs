@@ -1,5 +1,9 @@
 //! Pairs of placed shapes, element by element.
 
+use super::entries;
+use crate::collide::mesh::contact_in_world;
+use crate::collide::separation::{distance_in_world, touching_in_world};
+use crate::query::witness_in_world;
 use core::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -83,7 +87,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
     pub fn distances(&self, control: &Control<'_>, out: &mut [N]) -> Result<(), BatchError> {
-        (N::tables().batch.distances)(self, control, out)
+        entries::distances(self, control, out)
     }
 
     /// The nearest points of each pair that is at most `max_distance` apart: see
@@ -100,7 +104,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         control: &Control<'_>,
         out: ClosestColumns<'_, N, D>,
     ) -> Result<(), BatchError> {
-        (N::tables().batch.closest_points)(self, max_distance, control, out)
+        entries::closest_points(self, max_distance, control, out)
     }
 
     /// The nearest or deepest points of each pair that is at most `max_distance` apart, with the parts and features
@@ -114,7 +118,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         control: &Control<'_>,
         out: WitnessColumns<'_, N, D>,
     ) -> Result<(), BatchError> {
-        (N::tables().batch.witnesses)(self, max_distance, control, out)
+        entries::witnesses(self, max_distance, control, out)
     }
 
     /// Whether the solids of each pair touch or overlap, are at most `margin` apart, or neither: see
@@ -128,7 +132,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         control: &Control<'_>,
         out: &mut [Proximity],
     ) -> Result<(), BatchError> {
-        (N::tables().batch.proximities)(self, margin, control, out)
+        entries::proximities(self, margin, control, out)
     }
 
     /// The deepest contact of each pair that overlaps, touches, or is at most `prediction` apart: see
@@ -142,7 +146,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         control: &Control<'_>,
         out: ContactColumns<'_, N, D>,
     ) -> Result<(), BatchError> {
-        (N::tables().batch.contacts)(self, prediction, control, out)
+        entries::contacts(self, prediction, control, out)
     }
 
     /// When the solids of each pair first touch if they move with constant velocities and do not turn: see
@@ -161,7 +165,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         control: &Control<'_>,
         out: ImpactColumns<'_, N, D>,
     ) -> Result<(), BatchError> {
-        (N::tables().batch.impacts)(self, velocities, options, control, out)
+        entries::impacts(self, velocities, options, control, out)
     }
 
     /// The contact points of each pair, row by row: those that a new
@@ -181,7 +185,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         control: &Control<'_>,
         out: &mut ManifoldRows<N, D>,
     ) -> Result<(), BatchError> {
-        (N::tables().batch.manifolds)(self, (prediction, max_points), control, out)
+        entries::manifolds(self, (prediction, max_points), control, out)
     }
 
     /// The pair whose solids are nearest to each other, and their distance; of several the one of least index, and
@@ -197,7 +201,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         max_distance: N,
         control: &Control<'_>,
     ) -> Result<Option<(usize, N)>, BatchError> {
-        (N::tables().batch.nearest)(self, max_distance, control)
+        entries::nearest(self, max_distance, control)
     }
 
     /// Both sides, ready to be asked. Each is made where it stays: `map` over both copies them several times.
@@ -235,7 +239,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
         if self.len == 1 {
             out.fill(none);
             return self.alone(limit, control, out, |placed1, placed2, out| {
-                let found = (N::tables().distance_in_world)(placed1, placed2, limit);
+                let found = distance_in_world(placed1, placed2, limit);
                 out[0] = found.map_or(none, &answer);
             });
         }
@@ -319,7 +323,7 @@ pub(super) fn closest_points<N: Space<D>, const D: usize>(
         None => out.put(slot, None),
         Some(PairAnswer::Convex(found)) => out.put(slot, Some(found)),
         Some(PairAnswer::Alone([one, other])) => {
-            out.put(slot, (N::tables().touching_in_world)(one, other, limit).as_ref());
+            out.put(slot, touching_in_world(one, other, limit).as_ref());
         }
     })
 }
@@ -340,7 +344,7 @@ pub(super) fn witnesses<N: Space<D>, const D: usize>(
         None => out.put(slot, None),
         Some(PairAnswer::Convex(found)) => out.put(slot, Witness::of_separation(found).as_ref()),
         Some(PairAnswer::Alone([one, other])) => {
-            out.put(slot, (N::tables().witness_in_world)(one, other, limit, false).as_ref());
+            out.put(slot, witness_in_world(one, other, limit, false).as_ref());
         }
     })
 }
@@ -367,7 +371,7 @@ pub(super) fn contacts<N: Space<D>, const D: usize>(
         None => out.put(slot, None),
         Some(PairAnswer::Convex(found)) => out.put(slot, Contact::of_separation(found).as_ref()),
         Some(PairAnswer::Alone([one, other])) => {
-            let found = (N::tables().contact_in_world)(one, other, prediction);
+            let found = contact_in_world(one, other, prediction);
             let contact = found.as_ref().and_then(Contact::of_separation);
             out.put(slot, contact.as_ref());
         }

@@ -1,5 +1,7 @@
 //! The pairs of a chunk that are near enough, placed: those of convex solids are found together.
 
+use crate::collide::separation::distance_in_world;
+use crate::tables::ByDimension;
 use core::ops::Range;
 
 use super::side::{PlacedSide, PreparedSide, pair_at};
@@ -74,12 +76,12 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
     /// shapes touch or overlap.
     pub(super) fn distances(&self, mut put: impl FnMut(usize, N)) {
         let mut convex = self.convex(|slot, [placed1, placed2]| {
-            if let Some(found) = (N::tables().distance_in_world)(placed1, placed2, self.limit) {
+            if let Some(found) = distance_in_world(placed1, placed2, self.limit) {
                 put(slot, found);
             }
         });
         let mut found = vec![None; self.slots.len()];
-        (N::tables().distances)(&mut convex, self.limit, &mut found);
+        <N::Algorithms>::distances(&mut convex, self.limit, &mut found);
         for (&slot, found) in self.slots.iter().zip(found) {
             if let Some(distance) = found {
                 put(slot, distance);
@@ -91,7 +93,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPairs<'a, N, D> {
     pub(super) fn separations(&self, mut put: impl FnMut(usize, PairAnswer<'_, 'a, N, D>)) {
         let mut convex = self.convex(|slot, placed| put(slot, PairAnswer::Alone(placed)));
         let mut found = vec![None; self.slots.len()];
-        (N::tables().separations)(&mut convex, self.limit, &mut found);
+        <N::Algorithms>::separations(&mut convex, self.limit, &mut found);
         for ConvexPair { slot: index, swapped, .. } in convex {
             if let Some(found) = &found[index] {
                 let first = self.sides[usize::from(swapped)].placed(index);

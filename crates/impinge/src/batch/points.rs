@@ -2,6 +2,7 @@
 
 use super::columns::AnswerColumns;
 use super::control::Progress;
+use super::entries;
 use super::side::{PreparedSide, common_length, index_in};
 use super::{BatchError, Control, ProjectionColumns, Side};
 use crate::math::{Point, Pose, Real, Space};
@@ -74,7 +75,7 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
         control: &Control<'_>,
         out: ProjectionColumns<'_, N, D>,
     ) -> Result<(), BatchError> {
-        (N::tables().batch.project)(self, solid, control, out)
+        entries::project(self, solid, control, out)
     }
 
     /// How far each point is from the boundary of the shape, negative inside: see [`PointQuery::distance_to_point`].
@@ -82,7 +83,7 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
     pub fn signed_distances(&self, control: &Control<'_>, out: &mut [N]) -> Result<(), BatchError> {
-        (N::tables().batch.signed_distances)(self, control, out)
+        entries::signed_distances(self, control, out)
     }
 
     /// Whether each point lies in the shape or on its boundary: see [`PointQuery::contains_point`].
@@ -90,7 +91,7 @@ impl<'a, N: Space<D>, const D: usize> PointBatch<'a, N, D> {
     /// # Errors
     /// [`BatchError::Length`] if `out` is not as long as the batch, [`BatchError::Cancelled`].
     pub fn contains(&self, control: &Control<'_>, out: &mut [bool]) -> Result<(), BatchError> {
-        (N::tables().batch.contains)(self, control, out)
+        entries::contains(self, control, out)
     }
 
     /// Calls with each question and the slot of its answer in the columns of a chunk; without a question where the

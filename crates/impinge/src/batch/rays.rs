@@ -2,6 +2,7 @@
 
 use super::columns::AnswerColumns;
 use super::control::Progress;
+use super::entries;
 use super::side::{PreparedSide, common_length, index_in};
 use super::{BatchError, Control, HitColumns, Side};
 use crate::bounding_volume::Ray;
@@ -85,7 +86,7 @@ impl<'a, N: Space<D>, const D: usize> RayColumns<'a, N, D> {
     /// # Errors
     /// [`BatchError::Length`] if a column is neither empty nor as long as the batch, [`BatchError::Cancelled`].
     pub fn cast(&self, control: &Control<'_>, out: HitColumns<'_, N, D>) -> Result<(), BatchError> {
-        (N::tables().batch.cast)(self, control, out)
+        entries::cast(self, control, out)
     }
 
     #[inline]

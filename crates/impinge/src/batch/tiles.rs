@@ -17,11 +17,12 @@
 //! A subtree with n tiles has n - 1 cuts, of which its first ⌊n/2⌋ tiles take the next ⌊n/2⌋ - 1: the cuts in this
 //! order, and the clearance, are all that a [`Tiles`] is.
 
+use super::entries;
 use super::within::{half_margin, is_distance};
 use super::{BatchError, Control, Side};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::math::order::order_of;
-use crate::math::{Point, Real, Space, max};
+use crate::math::{Mapped, Point, Real, Space, max};
 
 /// A plane across an axis: what is less than `at` there is below it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,9 +122,9 @@ pub fn pairs_in_tile<N: Space<D>, const D: usize>(
     if tile >= tiles.number() {
         return Err(BatchError::NoTile { tile, tiles: tiles.number() });
     }
-    let pairs = (N::tables().batch.pairs_in_tile)(side, tiles, tile, control)?;
+    let pairs = entries::pairs_in_tile(side, tiles, tile, control)?;
     let named = pairs.into_iter().map(|pair| {
-        let [one, other] = pair.map(|element| ids[element as usize]);
+        let [one, other] = pair.mapped(|element| ids[element as usize]);
         [one.min(other), one.max(other)]
     });
     let mut named: Vec<[u64; 2]> = named.collect();
@@ -245,7 +246,7 @@ impl<N: Real, const D: usize> Tiles<N, D> {
 
     /// The tile that a pair with these boxes belongs to.
     pub(super) fn owner_of_pair(&self, box1: &Aabb<N, D>, box2: &Aabb<N, D>) -> u32 {
-        let [low1, low2] = [box1, box2].map(|aabb| *self.grown(aabb).mins());
+        let [low1, low2] = [box1, box2].mapped(|aabb| *self.grown(aabb).mins());
         self.owner(&Point::from(low1.coords.zip_map(&low2.coords, max)))
     }
 
@@ -379,8 +380,8 @@ impl<N: Real> Faces<N> {
         };
         let even = inside.partition_point(is_light);
         let cuts = [Some(&low), inside.first(), inside.get(even.wrapping_sub(1)), inside.get(even)];
-        let cuts =
-            cuts.map(|face| face.copied().filter(|face| face.is_finite_number() && *face <= high));
+        let cuts = cuts
+            .mapped(|face| face.copied().filter(|face| face.is_finite_number() && *face <= high));
         cuts.into_iter().flatten()
     }
 

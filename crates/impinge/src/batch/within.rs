@@ -14,6 +14,7 @@
 //! by 2¹⁰ rounding errors of the reach of its own solid, and the volume by as many of the distance, before anything
 //! is rejected.
 
+use super::entries;
 use core::ops::Range;
 
 use super::control::Progress;
@@ -22,7 +23,7 @@ use super::{BatchError, Control, Side, Tiles};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::Placing;
 use crate::collide::parts::bounds::enclosing;
-use crate::math::{Real, Space, max};
+use crate::math::{Mapped, Real, Space, max};
 use crate::partitioning::BoxTree;
 use crate::query::distance_within;
 
@@ -62,7 +63,7 @@ pub fn pairs_within<N: Space<D>, const D: usize>(
     distance: N,
     control: &Control<'_>,
 ) -> Result<Vec<[u32; 2]>, BatchError> {
-    (N::tables().batch.pairs_within)(side1, Some(side2), distance, control)
+    entries::pairs_within(side1, Some(side2), distance, control)
 }
 
 /// The pairs `[i, j]`, `i < j`, of elements of one side that touch, overlap, or are at most `distance` apart,
@@ -86,7 +87,7 @@ pub fn pairs_within_one<N: Space<D>, const D: usize>(
     distance: N,
     control: &Control<'_>,
 ) -> Result<Vec<[u32; 2]>, BatchError> {
-    (N::tables().batch.pairs_within)(side, None, distance, control)
+    entries::pairs_within(side, None, distance, control)
 }
 
 /// The box of each element of a side, grown by the rounding errors of its pairs: what [`tiles()`](super::tiles())
@@ -114,7 +115,7 @@ pub fn boxes<N: Space<D>, const D: usize>(
     side: &Side<'_, N, D>,
     control: &Control<'_>,
 ) -> Result<Vec<Option<Aabb<N, D>>>, BatchError> {
-    (N::tables().batch.boxes)(side, control)
+    entries::boxes(side, control)
 }
 
 /// The elements of a side and their boxes.
@@ -159,7 +160,7 @@ pub(super) fn pairs_of_tile<N: Space<D>, const D: usize>(
 ) -> Result<Vec<[u32; 2]>, BatchError> {
     let boxed = BoxedSide::new(side, &Control::new())?;
     let is_own = |walker: u32, found: u32| {
-        let boxes = [walker, found].map(|element| &boxed.boxes[element as usize]);
+        let boxes = [walker, found].mapped(|element| &boxed.boxes[element as usize]);
         let [Some(box1), Some(box2)] = boxes else { return false };
         tiles.owner_of_pair(box1, box2) == tile
     };

@@ -1,5 +1,6 @@
 //! The default broad phase: the pair finder, with handles and the user's data.
 
+use crate::tables::entries;
 use core::fmt::{self, Debug};
 
 use super::error::or_panic;
@@ -266,8 +267,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         callback: &mut dyn FnMut(&T, &T, bool),
     ) {
         let proxies = &self.proxies;
-        let find_pairs = N::tables().find_pairs;
-        find_pairs(
+        entries::find_pairs(
             &mut self.finder,
             &mut |a, b| filter(data_of(proxies, a), data_of(proxies, b)),
             &mut |a, b, started| callback(data_of(proxies, a), data_of(proxies, b), started),

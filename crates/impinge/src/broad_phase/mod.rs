@@ -24,7 +24,7 @@ mod rest;
 mod search;
 mod sieve;
 
-#[cfg(all(test, feature = "f64"))]
+#[cfg(test)]
 mod tests;
 
 pub use crate::bvh::{Bounds, Lanes};

@@ -1,6 +1,7 @@
 //! Sixteen boxes side by side.
 
 use super::Bounds;
+use crate::math::filled;
 
 /// Boxes in a block.
 pub(crate) const LANES: usize = 16;
@@ -26,10 +27,7 @@ impl<const D: usize> Block<D> {
     #[inline]
     #[must_use]
     pub(crate) fn lane(&self, lane: usize) -> Bounds<D> {
-        Bounds {
-            lo: core::array::from_fn(|axis| self.lo[axis][lane]),
-            hi: core::array::from_fn(|axis| self.hi[axis][lane]),
-        }
+        Bounds { lo: filled(|axis| self.lo[axis][lane]), hi: filled(|axis| self.hi[axis][lane]) }
     }
 
     /// The lane whose box has its middle nearest to a place, the first of several; `None` if none has a finite middle, or

@@ -6,7 +6,7 @@
 
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
-use crate::math::{Point, Real, Vector, max, min, unit};
+use crate::math::{Point, Real, Vector, filled, max, min, unit};
 
 /// A slab is of use if it is so many times thinner than the box along its normal.
 const THINNER: f64 = 4.0;
@@ -42,7 +42,7 @@ impl<const D: usize> BlockSlab<D> {
         reach: impl Fn(&Vector<N, D>) -> N,
     ) -> Option<Self> {
         let (across, _) = unit(sum)?;
-        let across = core::array::from_fn(|axis| across[axis].as_f32());
+        let across = filled(|axis| across[axis].as_f32());
         // The planes lie across the rounded direction.
         let normal = Vector::from_fn(|axis, _| N::lit(f64::from(across[axis])));
         let (low, high) = (-reach(&-normal), reach(&normal));

@@ -1,7 +1,7 @@
 //! The boxes that trees hold: `f32`, rounded outwards.
 
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Vector};
+use crate::math::{Mapped, Point, Real, Vector, filled};
 
 /// A box of the tree: the points with `lo ≤ x ≤ hi` on every axis.
 ///
@@ -27,8 +27,8 @@ impl<const D: usize> Bounds<D> {
     #[must_use]
     pub fn enclosing<N: Real>(aabb: &Aabb<N, D>) -> Self {
         Self {
-            lo: core::array::from_fn(|axis| aabb.mins()[axis].as_f32_below()),
-            hi: core::array::from_fn(|axis| aabb.maxs()[axis].as_f32_above()),
+            lo: filled(|axis| aabb.mins()[axis].as_f32_below()),
+            hi: filled(|axis| aabb.maxs()[axis].as_f32_above()),
         }
     }
 
@@ -36,15 +36,15 @@ impl<const D: usize> Bounds<D> {
     #[must_use]
     pub fn enclosing_point<N: Real>(point: &Point<N, D>) -> Self {
         Self {
-            lo: core::array::from_fn(|axis| point[axis].as_f32_below()),
-            hi: core::array::from_fn(|axis| point[axis].as_f32_above()),
+            lo: filled(|axis| point[axis].as_f32_below()),
+            hi: filled(|axis| point[axis].as_f32_above()),
         }
     }
 
     /// The box as one of `N`s; `None` if it is empty or nowhere.
     #[cfg(feature = "debug_render")]
     pub(crate) fn to_aabb<N: Real>(self) -> Option<Aabb<N, D>> {
-        let [lo, hi] = [self.lo, self.hi].map(|side| side.map(|x| N::lit(f64::from(x))));
+        let [lo, hi] = [self.lo, self.hi].mapped(|side| side.mapped(|x| N::lit(f64::from(x))));
         Aabb::try_new(lo.into(), hi.into()).ok()
     }
 
@@ -76,8 +76,8 @@ impl<const D: usize> Bounds<D> {
         let smaller = |a: f32, b: f32| if a < b { a } else { b };
         let larger = |a: f32, b: f32| if a > b { a } else { b };
         Self {
-            lo: core::array::from_fn(|axis| smaller(self.lo[axis], other.lo[axis])),
-            hi: core::array::from_fn(|axis| larger(self.hi[axis], other.hi[axis])),
+            lo: filled(|axis| smaller(self.lo[axis], other.lo[axis])),
+            hi: filled(|axis| larger(self.hi[axis], other.hi[axis])),
         }
     }
 
@@ -112,7 +112,7 @@ impl<const D: usize> Bounds<D> {
         if self.lo.iter().zip(&self.hi).any(|(lo, hi)| lo.is_nan() || hi.is_nan() || lo > hi) {
             return Self::EMPTY;
         }
-        Self { lo: self.lo.map(above), hi: self.hi.map(below) }
+        Self { lo: self.lo.mapped(above), hi: self.hi.mapped(below) }
     }
 
     /// Half the surface (in 2D half the perimeter): what a search pays for a node, up to a
@@ -149,7 +149,7 @@ impl<const D: usize> Bounds<D> {
     #[inline]
     #[must_use]
     pub fn center(&self) -> [f32; D] {
-        core::array::from_fn(|axis| self.lo[axis] * 0.5 + self.hi[axis] * 0.5)
+        filled(|axis| self.lo[axis] * 0.5 + self.hi[axis] * 0.5)
     }
 }
 

@@ -1,7 +1,7 @@
 //! How far the objects of a tree reach along a direction.
 
 use super::{Bounds, LANES, Tree};
-use crate::math::{Real, Vector, max};
+use crate::math::{Real, Vector, filled, max};
 
 /// What is sought, and what was found so far.
 struct Reach<'a, N: Real, const D: usize> {
@@ -38,7 +38,7 @@ impl<const D: usize> Tree<D> {
     /// Goes down at most as many layers as there are, which is at most eight.
     fn open<N: Real>(&self, layer: usize, block: usize, reach: &mut Reach<'_, N, D>) {
         let lanes = &self.layers[layer].blocks[block];
-        let mut farthest: [(N, usize); LANES] = core::array::from_fn(|lane| {
+        let mut farthest: [(N, usize); LANES] = filled(|lane| {
             let bounds = lanes.lane(lane);
             let far = bounds.reach(&reach.direction);
             let far = if far.partial_cmp(&far).is_some() { far } else { -N::INFINITY };

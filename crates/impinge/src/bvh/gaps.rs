@@ -3,7 +3,7 @@
 use super::kernel::{Scalar, WideBlock, low_half};
 use super::{Block, Bounds, LANES};
 use crate::bounding_volume::Aabb;
-use crate::math::{Real, f32_above, f32_below};
+use crate::math::{Mapped, Real, f32_above, f32_below};
 use fearless_simd::{Select, Simd, SimdBase, SimdMask, f32x16, mask32x16};
 
 /// Coordinates from here on are too large for differences in `f32`: 2 to the power of 125.
@@ -53,8 +53,8 @@ impl<const D: usize> Gaps<D> {
     pub(super) fn within<N: Real>(mut self, depth: N) -> Self {
         let depth = depth.as_f64();
         if depth > 0.0 {
-            self.lo = self.lo.map(|lo| f32_below(f64::from(lo) + depth));
-            self.hi = self.hi.map(|hi| f32_above(f64::from(hi) - depth));
+            self.lo = self.lo.mapped(|lo| f32_below(f64::from(lo) + depth));
+            self.hi = self.hi.mapped(|hi| f32_above(f64::from(hi) - depth));
         }
         self
     }
@@ -184,7 +184,7 @@ mod tests {
         with_kernel!(lanes, kernel => {
             let mask = kernel.apart(block, gaps, limit, &mut keys);
             let least = if mask == 0 { LANES } else { kernel.least(&keys, mask) };
-            (mask, keys.map(f32::to_bits), least)
+            (mask, keys.mapped(f32::to_bits), least)
         })
     }
 
@@ -195,12 +195,12 @@ mod tests {
             let largest = [1.0, 1e18, 1e37, f32::MAX][round % 4];
             let mut block = Block::<3>::EMPTY;
             for lane in 0..LANES - 2 {
-                let lo = [(); 3].map(|()| number(state, largest));
-                let hi = lo.map(|x| x.max(number(state, largest)));
+                let lo = [(); 3].mapped(|()| number(state, largest));
+                let hi = lo.mapped(|x| x.max(number(state, largest)));
                 block.set_lane(lane, &Bounds { lo, hi });
             }
-            let corner = Point::<f32, 3>::from([(); 3].map(|()| number(state, largest)));
-            let extent = Vector::<f32, 3>::from([(); 3].map(|()| number(state, 1.0).abs()));
+            let corner = Point::<f32, 3>::from([(); 3].mapped(|()| number(state, largest)));
+            let extent = Vector::<f32, 3>::from([(); 3].mapped(|()| number(state, 1.0).abs()));
             let unbounded = if round % 16 == 5 { f32::INFINITY } else { 0.0 };
             let end = corner + extent + Vector::<f32, 3>::new(0.0, unbounded, 0.0);
             let Ok(aabb) = Aabb::try_new(corner, end) else { continue };

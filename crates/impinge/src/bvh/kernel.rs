@@ -4,6 +4,7 @@
 //! machine has. Only comparisons, minima and maxima are used, so equality is exact. Callers choose
 //! once per batch with `with_kernel!`, which compiles its body for every instruction set.
 
+use crate::math::filled;
 use fearless_simd::{Simd, SimdBase, SimdMask, f32x16, mask32x16, u32x16};
 
 use super::gaps::Gaps;
@@ -279,11 +280,11 @@ impl<S: Simd> Kernel for WideBlock<S> {
     fn bounds<const D: usize>(self, block: &Block<D>) -> Bounds<D> {
         let simd = self.0;
         Bounds {
-            lo: core::array::from_fn(
+            lo: filled(
                 #[inline(always)]
                 |axis| f32x16::load_array_ref(simd, &block.lo[axis]).reduce_min(),
             ),
-            hi: core::array::from_fn(
+            hi: filled(
                 #[inline(always)]
                 |axis| f32x16::load_array_ref(simd, &block.hi[axis]).reduce_max(),
             ),

@@ -53,7 +53,7 @@ mod triangles;
 mod validate;
 mod visit;
 
-#[cfg(all(test, feature = "f64"))]
+#[cfg(test)]
 mod tests;
 
 pub(crate) use block::{Block, LANES};

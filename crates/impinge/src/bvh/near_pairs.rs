@@ -17,7 +17,7 @@ use super::near_first::Open;
 use super::tree::small;
 use super::{Bounds, LANES, NONE, Tree};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Vector, max, unit};
+use crate::math::{Mapped, Point, Real, Vector, max, unit};
 
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 64;
@@ -102,7 +102,7 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
     }
     debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
     let queue = BinaryHeap::with_capacity(EXPECTED);
-    let (distance, layers) = (N::ZERO.bits(), trees.map(Tree::top_layer));
+    let (distance, layers) = (N::ZERO.bits(), trees.mapped(Tree::top_layer));
     let whole = BlockPair { distance, layers, blocks: [0, 0], are_apart: false, is_rough: true };
     PairSearch { trees, queue, question }.run(whole);
 }
@@ -168,7 +168,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     }
 
     fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
-        let reaches = [0, 1].map(|which| self.slab_box(which, pair).reach(&toward[which]));
+        let reaches = [0, 1].mapped(|which| self.slab_box(which, pair).reach(&toward[which]));
         self.question.gap(toward, reaches)
     }
 
@@ -185,12 +185,12 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         if gap > self.question.limit() {
             return gap;
         }
-        let boxes = [0, 1].map(|which| self.slab_box(which, pair));
-        let between = self.question.between(boxes.map(|own| own.bounds.as_aabb().center()));
+        let boxes = [0, 1].mapped(|which| self.slab_box(which, pair));
+        let between = self.question.between(boxes.mapped(|own| own.bounds.as_aabb().center()));
         let toward = if pair.are_apart {
             [between, None]
         } else {
-            [0, 1].map(|which| {
+            [0, 1].mapped(|which| {
                 let across = unit(&boxes[which].slab?.across::<N>())?.0;
                 let is_toward = across.dot(&between.as_ref()?[which]) > N::ZERO;
                 self.question.toward(which, &if is_toward { across } else { -across })
@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     /// Holds what is in two blocks, or in one of them, against each other: visits objects, and puts pairs of blocks
     /// into the queue.
     fn open(&mut self, pair: &BlockPair) {
-        let widths = [0, 1].map(|which| self.bounds(which, pair).half_surface());
+        let widths = [0, 1].mapped(|which| self.bounds(which, pair).half_surface());
         let wider = usize::from(widths[1] >= widths[0]);
         match pair.layers {
             [0, 0] => self.meet(1 - wider, pair),

@@ -12,7 +12,7 @@ use super::near_first::Open;
 use super::tree::small;
 use super::{LANES, Tree};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Vector, max};
+use crate::math::{Mapped, Point, Real, Vector, filled, max};
 
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 128;
@@ -160,10 +160,10 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
 
     /// The gaps that a direction leaves to what is in a block, or less.
     fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, reach: N) -> [N; LANES] {
-        let along = core::array::from_fn(|axis| along[axis].as_f32());
+        let along = filled(|axis| along[axis].as_f32());
         let reach = reach + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
         let block = &self.tree.layers[layer].blocks[block as usize];
-        block.lowest_along(&along).map(|lowest| {
+        block.lowest_along(&along).mapped(|lowest| {
             let is_known = lowest.is_finite();
             if is_known { N::lit(lowest.into()) - reach } else { -N::INFINITY }
         })
@@ -201,7 +201,7 @@ fn rank_of<N: Real>(value: N) -> i64 {
     if bits < 0 { bits ^ i64::MAX } else { bits }
 }
 
-#[cfg(all(test, feature = "f64"))]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::bvh::{Bounds, Lanes};

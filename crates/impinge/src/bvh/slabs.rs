@@ -3,7 +3,7 @@
 use super::kernel::{Scalar, WideBlock, low_half};
 use super::{Block, LANES};
 use crate::bounding_volume::Aabb;
-use crate::math::{Real, Vector, max_component};
+use crate::math::{Real, Vector, filled, max_component};
 use fearless_simd::{Simd, SimdBase, f32x16};
 
 /// Slower than this, in units of the fastest component, counts as this: on the way past a tree that
@@ -49,9 +49,9 @@ impl<const D: usize> Slabs<D> {
         let high = |axis: usize| moving.maxs()[axis].as_f32_above() + pad;
         let is_back = |axis: usize| direction[axis] < 0.0;
         Self {
-            front: core::array::from_fn(|axis| if is_back(axis) { low(axis) } else { high(axis) }),
-            back: core::array::from_fn(|axis| if is_back(axis) { high(axis) } else { low(axis) }),
-            inverse: core::array::from_fn(|axis| {
+            front: filled(|axis| if is_back(axis) { low(axis) } else { high(axis) }),
+            back: filled(|axis| if is_back(axis) { high(axis) } else { low(axis) }),
+            inverse: filled(|axis| {
                 let speed = f32::max(direction[axis].abs(), SLOWEST);
                 if is_back(axis) { -1.0 / speed } else { 1.0 / speed }
             }),

@@ -7,6 +7,7 @@
 
 use super::tree::small;
 use super::{Bounds, LANES, Lanes, NONE, Tree};
+use crate::math::filled;
 
 /// Bins along each axis.
 const BINS: usize = 16;
@@ -114,7 +115,7 @@ fn best_cut<const D: usize>(
     let step = items.len().div_ceil(SAMPLE);
     let mut middles = Bounds::<D>::EMPTY;
     for item in items.iter().step_by(step) {
-        let middle = core::array::from_fn(|axis| item.middle(axis));
+        let middle = filled(|axis| item.middle(axis));
         middles = middles.merged(&Bounds { lo: middle, hi: middle });
     }
     let spread = |axis: usize| middles.hi[axis] * 0.5 - middles.lo[axis] * 0.5;

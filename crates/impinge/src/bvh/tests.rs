@@ -2,7 +2,7 @@
 
 use super::{Bounds, Changes, Frontier, Joiner, Keys, Lanes, Tree};
 use crate::bounding_volume::Aabb;
-use crate::math::Point;
+use crate::math::{Point, filled};
 use crate::pairs::{pack, unpack};
 
 /// Numbers from a linear congruential generator, below `bound`.
@@ -17,18 +17,17 @@ fn small_float(value: u32) -> f32 {
 
 /// A box of up to two units on a grid of halves.
 fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D> {
-    let lo: [f32; D] = core::array::from_fn(|_| small_float(next(state, 2 * side)) / 2.0);
+    let lo: [f32; D] = filled(|_| small_float(next(state, 2 * side)) / 2.0);
     Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
 }
 
 /// A box as large, up to `reach` halves away along each axis.
 fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, reach: u32) -> Bounds<D> {
-    let shift: [f32; D] = core::array::from_fn(|_| {
-        small_float(next(state, 2 * reach + 1)) / 2.0 - small_float(reach) / 2.0
-    });
+    let shift: [f32; D] =
+        filled(|_| small_float(next(state, 2 * reach + 1)) / 2.0 - small_float(reach) / 2.0);
     Bounds {
-        lo: core::array::from_fn(|axis| old.lo[axis] + shift[axis]),
-        hi: core::array::from_fn(|axis| old.hi[axis] + shift[axis]),
+        lo: filled(|axis| old.lo[axis] + shift[axis]),
+        hi: filled(|axis| old.hi[axis] + shift[axis]),
     }
 }
 

@@ -4,7 +4,7 @@ use super::block_slabs::BlockSlab;
 use super::order::Load;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
-use crate::math::{Point, Real};
+use crate::math::{Point, Real, filled};
 use crate::memory::Look;
 
 /// No id, or no slot.
@@ -177,7 +177,7 @@ impl<const D: usize> Tree<D> {
     /// The slot of an object that is likely to be near a point: in each block the child whose middle is nearest comes next,
     /// so that each layer is seen once. `None` where nothing is finite, or squares of distances are too large for `f32`.
     pub(super) fn slot_near<N: Real>(&self, point: &Point<N, D>) -> Option<u32> {
-        let place = core::array::from_fn(|axis| point[axis].as_f32());
+        let place = filled(|axis| point[axis].as_f32());
         self.layers.iter().rev().try_fold(0, |at, layer| {
             let lane = layer.blocks[at as usize].nearest_lane(&place)?;
             Some(at * small(LANES) + small(lane))

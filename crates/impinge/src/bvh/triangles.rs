@@ -7,7 +7,7 @@
 use super::LANES;
 use super::kernel::{Scalar, WideBlock, low_half};
 use crate::bounding_volume::{Aabb, Ray};
-use crate::math::{Real, max_component};
+use crate::math::{Mapped, Real, max_component};
 use fearless_simd::{Simd, SimdBase, f32x16};
 
 /// Sixteen triangles in 3D as a structure of arrays: by corner, then by axis, rounded to nearest.
@@ -44,7 +44,7 @@ impl Triangles {
     /// The triangle in a lane.
     #[inline]
     pub(crate) fn lane(&self, lane: usize) -> [[f32; 3]; 3] {
-        self.corners.each_ref().map(|corner| corner.each_ref().map(|axis| axis[lane]))
+        self.corners.each_ref().mapped(|corner| corner.each_ref().mapped(|axis| axis[lane]))
     }
 }
 
@@ -81,7 +81,7 @@ impl ShearedLine {
         let along = ray.dir.iamax();
         let axes = [(along + 1) % 3, (along + 2) % 3, along];
         let unit = max_component(&ray.dir).power_of_two_below();
-        let origin = axes.map(|axis| ray.origin[axis].as_f32());
+        let origin = axes.mapped(|axis| ray.origin[axis].as_f32());
         let share = |axis: usize| (ray.dir[axis] / ray.dir[along]).as_f32();
         let reach = max_component(&ray.origin.coords).as_f32();
         let blur = max_component(&(around.maxs() - around.mins())).as_f32();
@@ -107,7 +107,7 @@ impl Scalar {
         let smaller = |a: f32, b: f32| if a < b { a } else { b };
         let mut mask = 0;
         for lane in 0..LANES {
-            let seen = triangles.lane(lane).map(|corner| {
+            let seen = triangles.lane(lane).mapped(|corner| {
                 let at = |k: usize| corner[line.axes[k]] - line.origin[k];
                 let depth = at(2);
                 [at(0) - line.shear[0] * depth, at(1) - line.shear[1] * depth, depth]
@@ -122,7 +122,7 @@ impl Scalar {
             let margin = (width + slack) * slack + f32::MIN_POSITIVE;
             let most = larger(larger(areas[0], areas[1]), areas[2]);
             let least = smaller(smaller(areas[0], areas[1]), areas[2]);
-            let times = seen.map(|corner| corner[2] * line.inverse);
+            let times = seen.mapped(|corner| corner[2] * line.inverse);
             let first = smaller(smaller(times[0], times[1]), times[2]);
             let last = larger(larger(times[0], times[1]), times[2]);
             let beside = (most > margin) & (least < -margin);

@@ -10,10 +10,10 @@
 //! a joint's rotation in its parent is A + sin θ B + cos θ C with constant matrices.
 
 use super::joint::{Frame, JointMotion};
-use crate::math::lanes::{bits, by_axis, load, plus};
+use crate::math::lanes::{bits, load, plus};
 use crate::math::simd::Simd;
 use crate::math::trigonometry::sine_cosine;
-use crate::math::{Matrix, Pose, Real, Vector, Wide};
+use crate::math::{Matrix, Pose, Real, Vector, Wide, filled};
 
 /// How many configurations are treated at once.
 pub(super) const LANES: usize = 8;
@@ -96,7 +96,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         [sine, cosine]: &[V; 2],
     ) -> [V; D] {
         let all = |matrix: &Matrix<N, D>, row: usize| V::all(simd, matrix[(row, column)]);
-        by_axis(
+        filled(
             #[inline(always)]
             |row| match &self.rotation {
                 Swing::Slide(turned, _) => all(turned, row),
@@ -111,7 +111,7 @@ impl<N: Real, const D: usize> Node<N, D> {
     /// Where it is on its parent.
     #[inline(always)]
     fn place<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
-        by_axis(
+        filled(
             #[inline(always)]
             |row| {
                 let origin = V::all(simd, self.origin[row]);
@@ -147,7 +147,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
     /// A local direction in each lane, in the outer frame.
     #[inline(always)]
     fn vector<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, local: &[V; D]) -> [V; D] {
-        by_axis(
+        filled(
             #[inline(always)]
             |row| {
                 let mut sum = V::load(simd, &self.rotation[0][row]) * local[0];
@@ -173,7 +173,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         lane: usize,
         local: &[V; D],
     ) -> [V; D] {
-        by_axis(
+        filled(
             #[inline(always)]
             |row| {
                 let mut sum = V::all(simd, self.rotation[0][row][lane]) * local[0];

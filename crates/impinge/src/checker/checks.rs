@@ -1,5 +1,6 @@
 //! The checker.
 
+use super::entries;
 use super::filter::{Other, RobotFilter, Surroundings};
 use super::frames::OnNode;
 use super::rows::RowsOf;
@@ -89,9 +90,8 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         pairs.sort_unstable();
         pairs.dedup();
         let places = bodies.iter().map(|body| tree.frames[body.frame].then(&body.pose)).collect();
-        let tables = &N::tables().checker;
-        let robot = (tables.robot)(&tree, &bodies, &pairs);
-        let surroundings = (tables.surroundings)(&tree, &robot, &[], &[]);
+        let robot = entries::robot(&tree, &bodies, &pairs);
+        let surroundings = entries::surroundings(&tree, &robot, &[], &[]);
         Ok(Self {
             tree,
             bodies,
@@ -127,8 +127,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
             (body as usize) < self.bodies.len() && (obstacle as usize) < obstacles.len()
         };
         check_pairs("ignored", ignored, is_pair)?;
-        let tables = &N::tables().checker;
-        self.surroundings = (tables.surroundings)(&self.tree, &self.robot, &obstacles, ignored);
+        self.surroundings = entries::surroundings(&self.tree, &self.robot, &obstacles, ignored);
         self.obstacles = obstacles;
         self.ignored = ignored.to_vec();
         self.ignored.sort_unstable();
@@ -175,7 +174,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         if poses.len() != needed {
             return Err(BatchError::Length { argument: "poses", given: poses.len(), needed });
         }
-        (N::tables().checker.place)(
+        entries::place(
             (&self.tree, &self.places),
             configurations,
             control,
@@ -201,7 +200,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         out: &mut [bool],
     ) -> Result<(), BatchError> {
         self.check("out", configurations, out.len())?;
-        (N::tables().checker.are_free)(self, (configurations, clearance), control, out)
+        entries::are_free(self, (configurations, clearance), control, out)
     }
 
     /// The first pair of each configuration that is not farther apart than `clearance`; [`NO_PAIR`] if it is free.
@@ -216,7 +215,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         out: &mut [[u32; 2]],
     ) -> Result<(), BatchError> {
         self.check("out", configurations, out.len())?;
-        (N::tables().checker.first_pairs)(self, (configurations, clearance), control, out)
+        entries::first_pairs(self, (configurations, clearance), control, out)
     }
 
     /// The distance of the nearest pair of each configuration up to `limit`, and that pair: of several the first.
@@ -237,7 +236,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         let count = out.distance.len().max(out.pair.len());
         out.check(count)?;
         self.check("distance", configurations, count)?;
-        (N::tables().checker.nearest)(self, (configurations, limit, count), control, out)
+        entries::nearest(self, (configurations, limit, count), control, out)
     }
 
     /// There are as many configurations as slots.

@@ -1,5 +1,6 @@
 //! A tree of frames, and where they are.
 
+use super::entries;
 use core::ops::Range;
 
 use super::CheckerError;
@@ -148,7 +149,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
             return Err(BatchError::Length { argument: "poses", given: poses.len(), needed });
         }
         let rows = RowsOf::new(poses, self.len());
-        (N::tables().checker.place)((self, &self.frames), configurations, control, rows)
+        entries::place((self, &self.frames), configurations, control, rows)
     }
 
     /// How many configurations these are; without columns as many as are wanted.

@@ -27,20 +27,20 @@ mod body;
 mod chain;
 mod checks;
 mod columns;
+mod entries;
 mod error;
 mod exact;
 mod filter;
 mod frames;
 mod joint;
 mod rows;
-mod tables;
 #[cfg(test)]
 mod tests;
 
 pub use body::{Body, Obstacle};
 pub use checks::{Checker, NO_PAIR};
 pub use columns::NearestColumns;
+pub(crate) use entries::CheckerEntries;
 pub use error::CheckerError;
 pub use frames::FrameTree;
 pub use joint::{Frame, Joint};
-pub(crate) use tables::CheckerTables;

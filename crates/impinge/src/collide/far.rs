@@ -10,7 +10,7 @@
 //! that are rejected are farther from each other than the limit by 2⁻⁸ of that distance, which is
 //! 2¹⁵ rounding errors of `f32`.
 
-use crate::math::{Pose, Real, Vector, max, max_component, min};
+use crate::math::{Mapped, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Geometry, Kind, Shape};
 
 /// By how much the square of a distance must exceed that of the lengths it is held against.
@@ -37,7 +37,7 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
     /// what is one.
     #[inline]
     pub(crate) fn is_known_beyond(&self, limit: N) -> Option<bool> {
-        if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.map(|shape| shape.0) {
+        if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.mapped(|shape| shape.0) {
             let extents = one.radius() + other.radius();
             return Some(exceeds(self.between.norm_squared(), reach(extents, limit)));
         }
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn reaches_are_those_of_the_nearer_bound() {
         let half = Vector::<f64, 3>::new(1.0, 2.0, 2.0);
-        let corners = [[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]].map(Point::<f64, 3>::from);
+        let corners = [[0.0; 3], [3.0, 0.0, 0.0], [3.0, 4.0, 0.0]].mapped(Point::<f64, 3>::from);
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
         let plane = Plane::<f64, 3>::new(Vector::<f64, 3>::y_axis());
         assert_eq!(ReachBounds::of(&Cuboid::new(half)).reach(), 3.0, "its corner");

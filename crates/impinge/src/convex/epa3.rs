@@ -18,7 +18,7 @@ use super::polish::{lowest, polish};
 use super::side::better;
 use super::simplex::Simplex;
 use super::witness::{Mix, locate, placed, settle};
-use crate::math::{Real, Vector, cross, max, orthonormal_basis, unit};
+use crate::math::{Mapped, Real, Vector, cross, max, orthonormal_basis, unit};
 
 /// Cap on the local searches where the hull ends without an answer, and the cosine of the angle within
 /// which one does for another.
@@ -169,7 +169,7 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             if face.settled {
                 break;
             }
-            let corners = face.corners.map(|corner| *hull.vertex(corner));
+            let corners = face.corners.mapped(|corner| *hull.vertex(corner));
             let before = best.height;
             if let Some(mix) = polish(difference, &mut best, &corners) {
                 return placed(&best, &mix, N::HALF);
@@ -275,7 +275,7 @@ impl<N: Real> Summit<N> {
         face: &EpaFace<N>,
         mut top: SupportCandidate<N, 3>,
     ) -> Option<Self> {
-        let corners = face.corners.map(|corner| *hull.vertex(corner));
+        let corners = face.corners.mapped(|corner| *hull.vertex(corner));
         let mix = polish(difference, &mut top, &corners)?;
         let is_close = -top.normal.dot(&face.outward) >= N::lit(SAME_SUMMIT);
         is_close.then_some(Self { top, mix })

@@ -8,7 +8,7 @@
 use smallvec::SmallVec;
 
 use super::difference::{Vertex, noise};
-use crate::math::{Real, Vector, cross, max, unit};
+use crate::math::{Mapped, Real, Vector, cross, max, unit};
 
 /// A triangle, counter-clockwise seen from outside.
 #[derive(Clone, Copy)]
@@ -36,7 +36,7 @@ pub(super) struct Hull<N: Real> {
 impl<N: Real> Hull<N> {
     /// A tetrahedron, its corners in any order.
     pub(super) fn new(corners: [Vertex<N, 3>; 4]) -> Self {
-        let [a, b, c, d] = corners.map(|corner| corner.point);
+        let [a, b, c, d] = corners.mapped(|corner| corner.point);
         let volume = cross(&(b - a), &(c - a)).dot(&(d - a));
         let mut vertices = SmallVec::from_slice(&corners);
         if volume > N::ZERO {
@@ -154,7 +154,7 @@ impl<N: Real> Hull<N> {
     }
 
     fn face_of(&self, corners: [u16; 3]) -> EpaFace<N> {
-        let [a, b, c] = corners.map(|corner| self.vertex(corner).point);
+        let [a, b, c] = corners.mapped(|corner| self.vertex(corner).point);
         let (e, f) = (b - a, c - a);
         let normal = cross(&e, &f);
         let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());

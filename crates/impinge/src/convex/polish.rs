@@ -16,7 +16,7 @@ use super::candidate::SupportCandidate;
 use super::difference::{Branch, Difference, Vertex, noise, tolerance};
 use super::simplex::Simplicial;
 use super::witness::Mix;
-use crate::math::{Real, Vector, max, min, unit};
+use crate::math::{Mapped, Real, Vector, max, min, unit};
 
 /// Cap on the steps; a normal with a quarter of its digits takes two, and one for each point that turns
 /// out to be active or not to be. Along a ring of normals that are about as good, as of solids whose axes
@@ -151,7 +151,7 @@ fn keep_extreme<N: Simplicial<D>, const D: usize>(
     let extent = |branch: &Branch<N, D>| {
         if branch.is_second { -normal.dot(&branch.on) } else { normal.dot(&branch.on) }
     };
-    let most = [0, 1].map(|index: usize| {
+    let most = [0, 1].mapped(|index: usize| {
         sides[index].branches.iter().fold(-N::MAX, |most, branch| max(extent(branch), most))
     });
     let lag = |branch: &Branch<N, D>| most[usize::from(branch.is_second)] - extent(branch);

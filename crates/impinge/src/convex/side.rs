@@ -13,7 +13,7 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::polish::polish;
 use super::witness::Mix;
-use crate::math::{Real, Vector, cross, unit};
+use crate::math::{Mapped, Real, Vector, cross, filled, unit};
 
 /// As many normals of a ring are looked at first.
 const SAMPLES: usize = 16;
@@ -117,7 +117,7 @@ impl<N: Real> NormalRing<N> {
     /// The angles of the highest samples that are no lower than those beside them.
     fn tops(&self, difference: &dyn Difference<N, 3>) -> SmallVec<[N; TOPS]> {
         let mut next = N::ZERO;
-        let samples: [(N, N); SAMPLES] = core::array::from_fn(|_| {
+        let samples: [(N, N); SAMPLES] = filled(|_| {
             let angle = next;
             next += N::lit(PITCH);
             (angle, self.height(difference, angle))
@@ -144,7 +144,7 @@ impl<N: Real> NormalRing<N> {
             [high - share, low + share]
         };
         let [mut left, mut right] = inner(low, high);
-        let mut heights = [left, right].map(|angle| self.height(difference, angle));
+        let mut heights = [left, right].mapped(|angle| self.height(difference, angle));
         for _ in 0..STEPS {
             if heights[0] >= heights[1] {
                 high = right;

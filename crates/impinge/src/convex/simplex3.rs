@@ -3,7 +3,7 @@
 use super::difference::{Difference, noise};
 use super::simplex::{NearestOfSimplex, Simplex, Simplicial, nearest_on_segment};
 use super::{Separation, epa3};
-use crate::math::{Real, Vector, cross, max};
+use crate::math::{Mapped, Real, Vector, cross, max};
 
 impl<N: Real> Simplicial<3> for N {
     fn nearest(points: &[Vector<N, 3>]) -> NearestOfSimplex<N, 3> {
@@ -97,7 +97,7 @@ fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> NearestOfSimplex<
             best = Some(found.or_nearer(best));
         }
     }
-    best.unwrap_or_else(|| NearestOfSimplex::enclosed(parts.map(|part| part / volume)))
+    best.unwrap_or_else(|| NearestOfSimplex::enclosed(parts.mapped(|part| part / volume)))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Space, Vector, centroid, max};
 use crate::query::{ClosestPoints, Contact, Impact, RayIntersection};
 use crate::shape::ShapeHandle;
+use crate::tables::ByDimension;
 
 /// A shape that moves along a straight line and does not turn, as it was asked about.
 ///
@@ -96,7 +97,7 @@ impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
         let between =
             |contact: &Contact<N, D>| contact.world1 + (contact.world2 - contact.world1) * N::HALF;
         let mut points: Vec<_> = contacts.iter().map(between).collect();
-        let (middle, axes) = (centroid(&points), (N::tables().tangents)(&first.normal));
+        let (middle, axes) = (centroid(&points), <N::Algorithms>::tangents(&first.normal));
         let angle = |point: &Point<N, D>| {
             let [x, y] = axes.map(|axis| axis.dot(&(point - middle)));
             diamond_angle(x, y)

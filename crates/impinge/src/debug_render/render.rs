@@ -2,6 +2,7 @@
 
 use super::{Color, ShapeMesh};
 use crate::math::{Point, Space, Vector, unit};
+use crate::tables::ByDimension;
 
 /// What a line, point or text belongs to, so that a back end can have layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -71,7 +72,7 @@ pub trait DebugRender<N: Space<D>, const D: usize> {
         self.line([*from, *to], color, what);
         let along = to - from;
         let Some((direction, length)) = unit(&along) else { return };
-        for side in (N::tables().tangents)(&direction) {
+        for side in <N::Algorithms>::tangents(&direction) {
             let wing = side * (length * N::lit(0.1));
             let root = to - along * N::lit(0.2);
             if wing != Vector::<N, D>::zeros() {

@@ -1,10 +1,12 @@
 //! A mesh as it grows, and what the shapes of both dimensions have in common.
 
+use crate::tables::ByDimension;
+use crate::tables::entries;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{MeshOptions, ShapeMesh};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Pose, Real, Space};
+use crate::math::{Point, Pose, Real, Space, filled};
 use crate::shape::{CompositeShape, Geometry, Kind, Plane};
 
 /// How many marks there are from the middle of a half-space's square to its side.
@@ -50,7 +52,7 @@ impl<N: Real, const D: usize> Sketch<N, D> {
         let point = self.pose.point(local).map(|x| x + N::ZERO);
         let is_finite = point.iter().all(|x| x.is_finite_number());
         let next = u32::try_from(self.mesh.vertices.len()).ok().filter(|_| is_finite)?;
-        let bits = core::array::from_fn(|axis| point[axis].bits());
+        let bits = filled(|axis| point[axis].bits());
         let number = *self.numbers.entry(bits).or_insert(next);
         if number == next {
             self.mesh.vertices.push(point);
@@ -98,14 +100,14 @@ impl<N: Space<D>, const D: usize> Sketch<N, D> {
             Kind::Segment(segment) => self.line([segment.a(), segment.b()]),
             Kind::Plane(plane) => self.half_space(plane),
             Kind::Composite(composite) => self.composite(composite),
-            solid => (N::tables().sketch)(solid, self),
+            solid => entries::sketch(solid, self),
         }
     }
 
     /// A square around the origin, in 2D the line that it is there, with marks into the solid.
     fn half_space(&mut self, plane: &Plane<N, D>) {
         let extent = self.options.half_space_extent;
-        let [u, v] = (N::tables().tangents)(plane.normal()).map(|tangent| tangent * extent);
+        let [u, v] = <N::Algorithms>::tangents(plane.normal()).map(|tangent| tangent * extent);
         // Counter-clockwise seen from outside; in 2D the second tangent is zero, and so are two sides.
         let corners = [u + v, v - u, -u - v, u - v].map(Point::from);
         self.ring(&corners);

@@ -6,6 +6,7 @@ use crate::bounding_volume::Aabb;
 use crate::collide::Placed;
 use crate::math::{Point, Space};
 use crate::query::Proximity;
+use crate::tables::entries;
 use crate::world::{CollisionObject, CollisionWorld};
 
 impl<N: Space<D>, const D: usize> DebugDrawing<N, D> {
@@ -101,7 +102,7 @@ fn ends_between<N: Space<D>, const D: usize, T>(
         let shape = object.shape().geometry();
         Placed { pose: shape.pose_at(object.position()), shape }
     });
-    match (N::tables().touching_in_world)(&placed1, &placed2, N::INFINITY) {
+    match entries::touching_in_world(&placed1, &placed2, N::INFINITY) {
         Some(found) if found.distance > N::ZERO => [found.point1, found.point2],
         _ => objects.map(|object| Point::from(N::translation(object.position()))),
     }

@@ -3,13 +3,13 @@
 //! Each operation is a function that is called. Were it inlined, a kernel of a thousand operations would become
 //! functions of thousands of loops, which compilers do not get through.
 
-use core::array::from_fn;
+use crate::math::filled;
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
 };
 
-use super::Real;
 use super::na::ComplexField;
+use super::na::RealField;
 use super::simd::{Simd, SimdMask, Wide};
 
 /// How many numbers a vector has.
@@ -31,31 +31,38 @@ pub struct Bits(u8);
 
 impl Simd for Arrays {
     type F32x8 = Array<f32>;
-    #[cfg(feature = "f64")]
     type F64x8 = Array<f64>;
 }
 
 #[inline(never)]
-fn each<N: Real>(a: &Array<N>, operation: impl Fn(N) -> N) -> Array<N> {
+fn each<N: RealField + Copy>(a: &Array<N>, operation: impl Fn(N) -> N) -> Array<N> {
     Array(a.0.map(operation))
 }
 
 #[inline(never)]
-fn both<N: Real>(a: &Array<N>, b: &Array<N>, operation: impl Fn(N, N) -> N) -> Array<N> {
-    Array(from_fn(|lane| operation(a.0[lane], b.0[lane])))
+fn both<N: RealField + Copy>(
+    a: &Array<N>,
+    b: &Array<N>,
+    operation: impl Fn(N, N) -> N,
+) -> Array<N> {
+    Array(filled(|lane| operation(a.0[lane], b.0[lane])))
 }
 
 #[inline(never)]
-fn compared<N: Real>(a: &Array<N>, b: &Array<N>, holds: impl Fn(&N, &N) -> bool) -> Bits {
+fn compared<N: RealField + Copy>(
+    a: &Array<N>,
+    b: &Array<N>,
+    holds: impl Fn(&N, &N) -> bool,
+) -> Bits {
     Bits((0..LANES).fold(0, |bits, lane| bits | u8::from(holds(&a.0[lane], &b.0[lane])) << lane))
 }
 
 #[inline(never)]
-fn selected<N: Real>(mask: Bits, one: &Array<N>, other: &Array<N>) -> Array<N> {
-    Array(from_fn(|lane| if mask.0 >> lane & 1 == 1 { one.0[lane] } else { other.0[lane] }))
+fn selected<N: RealField + Copy>(mask: Bits, one: &Array<N>, other: &Array<N>) -> Array<N> {
+    Array(filled(|lane| if mask.0 >> lane & 1 == 1 { one.0[lane] } else { other.0[lane] }))
 }
 
-impl<N: Real> Add for Array<N> {
+impl<N: RealField + Copy> Add for Array<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -64,14 +71,14 @@ impl<N: Real> Add for Array<N> {
     }
 }
 
-impl<N: Real> AddAssign for Array<N> {
+impl<N: RealField + Copy> AddAssign for Array<N> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl<N: Real> Sub for Array<N> {
+impl<N: RealField + Copy> Sub for Array<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -80,7 +87,7 @@ impl<N: Real> Sub for Array<N> {
     }
 }
 
-impl<N: Real> Mul for Array<N> {
+impl<N: RealField + Copy> Mul for Array<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -89,7 +96,7 @@ impl<N: Real> Mul for Array<N> {
     }
 }
 
-impl<N: Real> Div for Array<N> {
+impl<N: RealField + Copy> Div for Array<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -98,7 +105,7 @@ impl<N: Real> Div for Array<N> {
     }
 }
 
-impl<N: Real> Neg for Array<N> {
+impl<N: RealField + Copy> Neg for Array<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -107,7 +114,7 @@ impl<N: Real> Neg for Array<N> {
     }
 }
 
-impl<N: Real, S: Simd> Wide<S> for Array<N> {
+impl<N: RealField + Copy, S: Simd> Wide<S> for Array<N> {
     type Scalar = N;
     type Mask = Bits;
 
@@ -118,7 +125,7 @@ impl<N: Real, S: Simd> Wide<S> for Array<N> {
 
     #[inline(always)]
     fn load(_: S, numbers: &[N]) -> Self {
-        let mut all = [N::ZERO; LANES];
+        let mut all = [N::zero(); LANES];
         all.copy_from_slice(numbers);
         Self(all)
     }

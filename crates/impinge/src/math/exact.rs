@@ -6,6 +6,7 @@
 //! Exact while no product underflows, which for coordinates scaled to 1 takes differences below
 //! 1e-90; then the sign may be lost, never the program.
 
+use crate::math::Mapped;
 use smallvec::SmallVec;
 
 use super::outward::sum_and_error;
@@ -108,7 +109,7 @@ fn product_difference(a: f64, b: f64, c: f64, d: f64) -> f64 {
 /// The vector out of the side from which the triangle is seen counter-clockwise, as long as twice
 /// the area: right to the last digits for slivers too.
 pub(crate) fn area_vector(a: &P3, b: &P3, c: &P3) -> Vector<f64, 3> {
-    let two_sums = |p: &P3| [0, 1, 2].map(|axis| sum_and_error(p[axis], -a[axis]));
+    let two_sums = |p: &P3| [0, 1, 2].mapped(|axis| sum_and_error(p[axis], -a[axis]));
     let (u, v) = (two_sums(b), two_sums(c));
     Vector::<f64, 3>::from_fn(|axis, _| {
         let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -171,7 +172,7 @@ mod tests {
 
     #[test]
     fn volumes_are_positive_in_front() {
-        let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(P3::from);
+        let [a, b, c] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].mapped(P3::from);
         assert_eq!(volume(&a, &b, &c, &P3::new(0.25, 0.25, 3.0)), 3.0, "above");
         assert_eq!(volume(&a, &b, &c, &P3::new(7.0, -4.0, 0.0)), 0.0, "in 2D");
         assert_eq!(volume_exact([&a, &b, &c], &P3::new(0.25, 0.25, 3.0)), 3.0, "exactly");
@@ -196,7 +197,7 @@ mod tests {
     fn exact_volumes_of_a_thin_tetrahedron() {
         // Three points with coordinates whose differences need more than 53 bits.
         let far = 1.0 + f64::EPSILON;
-        let [a, b, c] = [[1e-20, 0.0, far], [far, 1e-20, 0.0], [0.0, far, 1e-20]].map(P3::from);
+        let [a, b, c] = [[1e-20, 0.0, far], [far, 1e-20, 0.0], [0.0, far, 1e-20]].mapped(P3::from);
         let inside = P3::from((a.coords + b.coords + c.coords) / 3.0);
         for (x, expected) in [(inside.x + 1e-15, 1.0), (inside.x - 1e-15, -1.0)] {
             let q = P3::new(x, inside.y, inside.z);

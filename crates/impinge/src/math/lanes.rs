@@ -5,6 +5,7 @@
 
 use super::simd::{Simd, SimdMask};
 use super::{Pose, Real, Vector, Wide, max};
+use crate::math::filled;
 
 /// Runs `$body` with `$simd` bound to the vectors of a [`Level`](super::simd::Level), or to arrays.
 ///
@@ -71,23 +72,13 @@ pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V)
     max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)))
 }
 
-/// What there is for each axis.
-#[inline(always)]
-pub(crate) fn by_axis<T: Copy, const D: usize>(of: impl Fn(usize) -> T) -> [T; D] {
-    let mut all = [of(0); D];
-    for (axis, one) in all.iter_mut().enumerate().skip(1) {
-        *one = of(axis);
-    }
-    all
-}
-
 /// The same vector in all lanes.
 #[inline(always)]
 pub(crate) fn spread<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     v: &Vector<N, D>,
 ) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| V::all(simd, v[axis]),
     )
@@ -99,7 +90,7 @@ pub(crate) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, con
     simd: S,
     block: &[[N; L]; D],
 ) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| V::load(simd, &block[axis]),
     )
@@ -108,7 +99,7 @@ pub(crate) fn load<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, con
 /// The difference.
 #[inline(always)]
 pub(crate) fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| a[axis] - b[axis],
     )
@@ -117,7 +108,7 @@ pub(crate) fn minus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D])
 /// The sum.
 #[inline(always)]
 pub(crate) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| a[axis] + b[axis],
     )
@@ -126,7 +117,7 @@ pub(crate) fn plus<S: Simd, V: Wide<S>, const D: usize>(a: &[V; D], b: &[V; D]) 
 /// A multiple in each lane.
 #[inline(always)]
 pub(crate) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| v[axis] * factor,
     )
@@ -135,7 +126,7 @@ pub(crate) fn times<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], factor: V) 
 /// The opposite.
 #[inline(always)]
 pub(crate) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| -v[axis],
     )
@@ -144,7 +135,7 @@ pub(crate) fn negated<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D]) -> [V; D]
 /// A fraction in each lane.
 #[inline(always)]
 pub(crate) fn over<S: Simd, V: Wide<S>, const D: usize>(v: &[V; D], divisor: V) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| v[axis] / divisor,
     )
@@ -178,7 +169,7 @@ pub(crate) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
     axes: &[[V; D]; D],
     vector: &[V; D],
 ) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| dot(&axes[axis], vector),
     )
@@ -191,7 +182,7 @@ pub(crate) fn either<S: Simd, V: Wide<S>, const D: usize>(
     one: &[V; D],
     other: &[V; D],
 ) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| is.select(one[axis], other[axis]),
     )
@@ -223,10 +214,10 @@ impl<V, const D: usize> LanePose<V, D> {
     where
         V: Wide<S, Scalar = N>,
     {
-        let rotation = by_axis(
+        let rotation = filled(
             #[inline(always)]
             |column| {
-                by_axis(
+                filled(
                     #[inline(always)]
                     |row| V::all(simd, pose.rotation[(row, column)]),
                 )
@@ -241,10 +232,10 @@ impl<V, const D: usize> LanePose<V, D> {
     where
         V: Wide<S>,
     {
-        by_axis(
+        filled(
             #[inline(always)]
             |row| {
-                let terms: [V; D] = by_axis(
+                let terms: [V; D] = filled(
                     #[inline(always)]
                     |column| self.rotation[column][row] * local[column],
                 );

@@ -10,6 +10,7 @@
 pub(crate) mod arrays;
 pub(crate) mod eigen;
 pub(crate) mod exact;
+pub(crate) mod filled;
 #[cfg(any(
     all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
     all(target_arch = "aarch64", target_feature = "neon"),
@@ -32,6 +33,7 @@ mod vector;
 pub use nalgebra as na;
 pub use nalgebra::{AbstractRotation, Isometry, Isometry2, Isometry3, Unit};
 
+pub(crate) use filled::{Mapped, filled};
 pub use pose::Pose;
 pub use real::Real;
 pub(crate) use real::{f32_above, f32_below, f64_power_of_two_below};

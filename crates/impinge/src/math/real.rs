@@ -5,7 +5,7 @@ use super::na::{RealField, Scalar};
 use super::simd::Eight;
 use crate::tables::Compiled;
 
-/// A floating-point scalar of the library: `f32` or `f64`.
+/// A floating-point scalar of the library: `f32` or, with the feature `f64`, `f64`.
 ///
 /// Sealed: the kernels are compiled in this crate for these two types and no other.
 #[diagnostic::on_unimplemented(
@@ -13,7 +13,7 @@ use crate::tables::Compiled;
     label = "neither `f32` nor `f64`",
     note = "scalars are `f32` and, with the feature `f64`, `f64`; generic code asks for `N: Real`"
 )]
-pub trait Real: RealField + Scalar + Copy + Default + Compiled + Eight {
+pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> + Eight {
     /// 0.
     const ZERO: Self;
     /// 1/2.
@@ -110,49 +110,7 @@ impl Real for f32 {
     }
 }
 
-#[cfg(feature = "f64")]
-impl Real for f64 {
-    const ZERO: Self = 0.0;
-    const HALF: Self = 0.5;
-    const ONE: Self = 1.0;
-    const TWO: Self = 2.0;
-    const EPSILON: Self = Self::EPSILON;
-    const MAX: Self = Self::MAX;
-    const MIN_POSITIVE: Self = Self::MIN_POSITIVE;
-    const INFINITY: Self = Self::INFINITY;
-    const QUARTER_TURN: [Self; 3] =
-        [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
-
-    #[inline]
-    fn lit(value: f64) -> Self {
-        value
-    }
-
-    fn as_f64(self) -> f64 {
-        self
-    }
-
-    #[inline]
-    fn bits(self) -> u64 {
-        self.to_bits()
-    }
-
-    #[inline]
-    fn power_of_two_below(self) -> Self {
-        f64_power_of_two_below(self)
-    }
-
-    #[inline]
-    fn is_finite_number(self) -> bool {
-        self.is_finite()
-    }
-
-    fn sine_cosine(self) -> (Self, Self) {
-        libm::sincos(self)
-    }
-}
-
-/// [`Real::power_of_two_below`] of a double, which without the feature `f64` is no scalar of the library.
+/// [`Real::power_of_two_below`] of a double, which need not be a scalar of the library.
 #[inline]
 pub(crate) fn f64_power_of_two_below(value: f64) -> f64 {
     let power = f64::from_bits(value.to_bits() & 0x7ff0_0000_0000_0000);
@@ -183,7 +141,7 @@ pub(crate) fn f32_above(x: f64) -> f32 {
     0.0 - f32_below(-x)
 }
 
-#[cfg(all(test, feature = "f64"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

@@ -102,7 +102,6 @@ impl Eight for f32 {
     type Lanes<S: Simd> = S::F32x8;
 }
 
-#[cfg(feature = "f64")]
 impl Eight for f64 {
     type Lanes<S: Simd> = S::F64x8;
 }
@@ -113,7 +112,6 @@ pub trait Simd: Copy {
     /// Eight `f32`.
     type F32x8: Wide<Self, Scalar = f32>;
     /// Eight `f64`.
-    #[cfg(feature = "f64")]
     type F64x8: Wide<Self, Scalar = f64>;
 }
 
@@ -203,7 +201,6 @@ pub trait Wide<S: Simd>:
 #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
 impl Simd for fearless_simd::Avx2 {
     type F32x8 = fearless_simd::f32x8<Self>;
-    #[cfg(feature = "f64")]
     type F64x8 = Halves<fearless_simd::f64x4<Self>>;
 }
 
@@ -212,21 +209,18 @@ impl Simd for fearless_simd::Avx2 {
 #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
 impl Simd for fearless_simd::Sse2 {
     type F32x8 = Halves<fearless_simd::f32x4<Self>>;
-    #[cfg(feature = "f64")]
     type F64x8 = super::arrays::Array<f64>;
 }
 
 #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
 impl Simd for fearless_simd::Neon {
     type F32x8 = Halves<fearless_simd::f32x4<Self>>;
-    #[cfg(feature = "f64")]
     type F64x8 = Halves<Halves<fearless_simd::f64x2<Self>>>;
 }
 
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 impl Simd for fearless_simd::WasmSimd128 {
     type F32x8 = Halves<fearless_simd::f32x4<Self>>;
-    #[cfg(feature = "f64")]
     type F64x8 = Halves<Halves<fearless_simd::f64x2<Self>>>;
 }
 

@@ -2,7 +2,7 @@
 
 use super::na::{Rotation2, Rotation3, UnitComplex, UnitQuaternion};
 use super::{Isometry2, Isometry3, Matrix, Pose, Real, Vector};
-use crate::tables::{MassKernel, Tables};
+use crate::tables::{ByDimension, Compiled, Here};
 use core::fmt::Debug;
 
 /// The scalar `Self` in `D` dimensions: implemented for every [`Real`] with `D` = 2 and `D` = 3.
@@ -16,9 +16,13 @@ use core::fmt::Debug;
     note = "code for one dimension uses the types of `dim2` or `dim3` and asks for `N: Real`; code for both asks \
             for `N: Space<D>`"
 )]
-pub trait Space<const D: usize>: Real {
+pub trait Space<const D: usize>: Real + Compiled<D> {
     /// The user's type of a pose: nalgebra's `Isometry2` or `Isometry3`.
     type Isometry: Copy + Debug + PartialEq + Send + Sync + 'static;
+
+    /// The algorithms that differ by dimension.
+    #[doc(hidden)]
+    type Algorithms: ByDimension<Self, D>;
 
     /// The pose that an isometry describes.
     fn pose(isometry: &Self::Isometry) -> Pose<Self, D>;
@@ -36,14 +40,6 @@ pub trait Space<const D: usize>: Real {
     /// The determinant of a matrix.
     #[doc(hidden)]
     fn determinant(matrix: &Matrix<Self, D>) -> Self;
-
-    /// The entry points compiled in this crate for this scalar and dimension.
-    #[doc(hidden)]
-    fn tables() -> &'static Tables<Self, D>;
-
-    /// What is integrated differently by dimension; compiled where it is used.
-    #[doc(hidden)]
-    fn mass_kernel() -> MassKernel<Self, D>;
 }
 
 impl<N: Real> From<Isometry2<N>> for Pose<N, 2> {
@@ -60,6 +56,7 @@ impl<N: Real> From<Isometry3<N>> for Pose<N, 3> {
 
 impl<N: Real> Space<2> for N {
     type Isometry = Isometry2<N>;
+    type Algorithms = Here;
 
     #[inline]
     fn pose(isometry: &Isometry2<N>) -> Pose<N, 2> {
@@ -86,19 +83,11 @@ impl<N: Real> Space<2> for N {
     fn determinant(matrix: &Matrix<N, 2>) -> N {
         matrix.determinant()
     }
-
-    #[inline]
-    fn tables() -> &'static Tables<N, 2> {
-        N::plane()
-    }
-
-    fn mass_kernel() -> MassKernel<N, 2> {
-        MassKernel::<N, 2>::in_plane()
-    }
 }
 
 impl<N: Real> Space<3> for N {
     type Isometry = Isometry3<N>;
+    type Algorithms = Here;
 
     #[inline]
     fn pose(isometry: &Isometry3<N>) -> Pose<N, 3> {
@@ -125,15 +114,6 @@ impl<N: Real> Space<3> for N {
     #[inline]
     fn determinant(matrix: &Matrix<N, 3>) -> N {
         matrix.determinant()
-    }
-
-    #[inline]
-    fn tables() -> &'static Tables<N, 3> {
-        N::space()
-    }
-
-    fn mass_kernel() -> MassKernel<N, 3> {
-        MassKernel::<N, 3>::in_space()
     }
 }
 

@@ -160,7 +160,6 @@ mod tests {
     #[test]
     fn errors_are_at_most_two_units() {
         agrees_with_the_software_library::<f32>();
-        #[cfg(feature = "f64")]
         agrees_with_the_software_library::<f64>();
     }
 

@@ -10,7 +10,7 @@ use super::entry::{ContactEntry, ContactView};
 use super::group::{Chosen, Rows};
 use super::reuse::Reference;
 use super::state::CompositeState;
-use crate::math::{Real, Space, max};
+use crate::math::{Mapped, Real, Space, max};
 use crate::query::ContactManifold;
 use crate::shape::{Geometry, Kind};
 
@@ -56,7 +56,7 @@ fn prefetch<N: Space<D>, const D: usize>(
 ) {
     let mut seen = N::ZERO;
     for &place in places {
-        let [one, other] = rows.keys[place].map(|index| solid(table.shape(index).geometry()));
+        let [one, other] = rows.keys[place].mapped(|index| solid(table.shape(index).geometry()));
         seen = max(seen, max(rows.states[place].state.prefetch(), max(one, other)));
     }
     core::hint::black_box(seen);

@@ -16,7 +16,7 @@ use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
 use super::update::PairChanges;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
 use crate::collide::ManifoldRequest;
-use crate::math::Space;
+use crate::math::{Mapped, Space};
 use crate::memory::Recent;
 use crate::pairs::PairTable;
 use crate::shape::Shape;
@@ -396,7 +396,7 @@ fn shapes<N: Space<D>, const D: usize>(
     table: &ObjectTable<N, D>,
     key: PairKey,
 ) -> [&dyn Shape<N, D>; 2] {
-    key.map(|object| table.shape(object).as_ref())
+    key.mapped(|object| table.shape(object).as_ref())
 }
 
 /// Where pairs without an algorithm are.

@@ -5,6 +5,7 @@ use super::traits::{ProximityAlgorithm, ProximityDetector, ProximityDispatcher};
 use crate::math::Space;
 use crate::query::Proximity;
 use crate::shape::Shape;
+use crate::tables::entries;
 
 /// The nearness of any two built-in solids.
 ///
@@ -55,7 +56,7 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
             None => Proximity::Disjoint,
             Some([pose1, pose2]) => {
                 let posed = Posed::new([&pose1, &pose2], [a, b]);
-                (N::tables().proximity)(&posed, margin)
+                entries::proximity(&posed, margin)
             }
         };
         true

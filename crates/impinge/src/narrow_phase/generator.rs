@@ -1,5 +1,6 @@
 //! The library's own contact algorithm as an object, for use alone.
 
+use crate::tables::entries;
 use core::fmt;
 
 use super::IdAllocator;
@@ -72,17 +73,16 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
 impl<N: Space<D>, const D: usize> PairManifoldGenerator<N, D> {
     /// Computes the contacts of two solids that may be within the prediction; `number` names the pair.
     fn refresh(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>, number: u64) {
-        let tables = N::tables();
         let mut old = core::mem::take(&mut self.manifolds);
         if posed.has_composite() {
             // The shapes are given anew at each call.
             self.composite.forget_shapes();
-            (tables.update_composites)(&mut self.composite, posed, request);
-            self.manifolds = (tables.composite_manifolds)(&self.composite, posed, number, old);
+            entries::update_composites(&mut self.composite, posed, request);
+            self.manifolds = entries::composite_manifolds(&self.composite, posed, number, old);
         } else {
-            (tables.update_contacts)(&mut self.state, posed, request);
+            entries::update_contacts(&mut self.state, posed, request);
             let manifold = old.pop().unwrap_or_default();
-            let manifold = (tables.public_manifold)(&self.state, posed, number, manifold);
+            let manifold = entries::public_manifold(&self.state, posed, number, manifold);
             old.clear();
             if !manifold.is_empty() {
                 old.push(manifold);

@@ -7,7 +7,7 @@ use super::group::PairKey;
 use super::substep::PairSolids;
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::collide::far::ReachBounds;
-use crate::math::{Pose, Real, Space};
+use crate::math::{Mapped, Pose, Real, Space};
 use crate::memory::Look;
 use crate::query::PlacedSolids;
 use crate::shape::{Geometry, ShapeHandle};
@@ -234,7 +234,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
 
     /// The skins of a pair.
     pub(super) fn skins_of(&self, key: PairKey) -> [N; 2] {
-        key.map(|object| self.skin(object))
+        key.mapped(|object| self.skin(object))
     }
 
     /// The distance of two solids up to which they have contacts, if it is `linear` beyond their skins.

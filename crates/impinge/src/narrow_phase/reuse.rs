@@ -18,7 +18,7 @@ use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
 use super::group::{PairKey, Rows};
 use super::state::KeptContacts;
-use crate::math::{Pose, Real, Space, max, min};
+use crate::math::{Mapped, Pose, Real, Space, max, min};
 
 /// A tolerance of motion is negative, infinite or NaN.
 ///
@@ -182,7 +182,7 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
         // Solids meet where both of them are: of one without end, or larger, only what is near the other
         // counts.
         let objects = home_first(key, is_swapped);
-        let [own, others] = objects.map(|object| self.table.bounds(object).reach());
+        let [own, others] = objects.mapped(|object| self.table.bounds(object).reach());
         reference.reach = min(own, reference.pose21.translation.norm() + others);
         reference.distances.clear();
         state.each_point(|_, distance, _| reference.distances.push(*distance));

@@ -4,6 +4,7 @@
 
 use super::ObjectTable;
 use super::group::PairKey;
+use crate::collide::far::are_beyond;
 use crate::collide::far::{Apart, ReachBounds};
 use crate::collide::pair::is_swapped;
 use crate::collide::parts::Between;
@@ -11,9 +12,11 @@ use crate::collide::{
     CompositeContacts, ManifoldRequest, Pair, PairQuestion, Placed, RawManifold, Solid, canonical,
     own_distance,
 };
-use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
+use crate::tables::ByDimension;
+use crate::tables::entries;
 
 /// Two solids placed in the world.
 #[derive(Clone, Copy)]
@@ -53,7 +56,7 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     /// The two solids, each for itself.
     fn placed(&self) -> [Placed<'a, N, D>; 2] {
         [(self.pose1, self.shape1), (self.pose2, self.shape2)]
-            .map(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
+            .mapped(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
     }
 
     /// The solids are certainly farther apart than `limit`.
@@ -90,7 +93,7 @@ pub(super) fn poses_within<N: Space<D>, const D: usize>(
 ) -> Option<[Pose<N, D>; 2]> {
     let shapes = [shapes[0].geometry(), shapes[1].geometry()];
     let between = N::translation(isometry2) - N::translation(isometry1);
-    let is_beyond = (N::tables().are_beyond)(&Apart { shapes, between }, limit);
+    let is_beyond = are_beyond(&Apart { shapes, between }, limit);
     (!is_beyond).then(|| [shapes[0].pose_at(isometry1), shapes[1].pose_at(isometry2)])
 }
 
@@ -213,7 +216,7 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
             return;
         }
         self.kept.turn(swapped, |raw| raw.flip(&pair.pose12));
-        (N::tables().contacts)(&pair, request, &mut self.kept.contacts);
+        <N::Algorithms>::contacts(&pair, request, &mut self.kept.contacts);
     }
 
     fn manifolds(
@@ -242,7 +245,7 @@ impl<N: Real, const D: usize> ContactState<N, D> {
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
     /// The solids are these from now on.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
-        let [one, other] = shapes.map(Shape::geometry);
+        let [one, other] = shapes.mapped(Shape::geometry);
         self.solids = Solid::of(one).zip(Solid::of(other)).map(<[_; 2]>::from);
     }
 
@@ -380,7 +383,7 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
         own_distance(&posed.canonical().0, margin)
     } else if posed.has_composite() {
         let [placed1, placed2] = posed.placed();
-        (N::tables().distance_in_world)(&placed1, &placed2, margin)
+        entries::distance_in_world(&placed1, &placed2, margin)
     } else if posed.are_beyond(margin) {
         None
     } else {
@@ -388,7 +391,7 @@ pub(crate) fn proximity_of<N: Space<D>, const D: usize>(
         if posed.have_boxes_beyond(&pair.pose12, swapped, margin) {
             None
         } else {
-            (N::tables().distance)(&pair, margin)
+            <N::Algorithms>::distance(&pair, margin)
         }
     };
     match found {

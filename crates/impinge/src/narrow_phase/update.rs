@@ -1,5 +1,7 @@
 //! The step: which pairs need a new query, and the batches that give it to them.
 
+use crate::tables::ByDimension;
+use crate::tables::entries;
 use smallvec::SmallVec;
 
 use super::ahead::update_due;
@@ -27,7 +29,7 @@ pub(super) type PairChanges = Vec<(PairKey, Change)>;
 impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     /// Brings all pairs up to date with the rows of the table and reports what changed.
     pub(crate) fn update_pairs(&mut self, table: &ObjectTable<N, D>, events: &mut Events) {
-        (N::tables().update_pairs)(self, table, events);
+        entries::update_pairs(self, table, events);
     }
 
     /// [`Self::update_pairs`], compiled in this crate.
@@ -268,7 +270,7 @@ fn compute_convex<N: Space<D>, const D: usize>(
     let is_done = solids.is_some_and(|[solid1, solid2]| {
         let changes = &mut *changes;
         let mut due = DueContacts { rows: rows.reborrow(), places, table, changes };
-        (N::tables().update_lanes)([solid1, solid2], &mut due)
+        <N::Algorithms>::update_lanes([solid1, solid2], &mut due)
     });
     if !is_done {
         places.iter().for_each(|&place| compute_contact(rows, table, place, changes));

@@ -1,5 +1,6 @@
 //! Reading pairs: what the world hands out for one pair, and all pairs in canonical order.
 
+use crate::tables::entries;
 use core::fmt;
 
 use super::composite_views::CompositeViews;
@@ -123,9 +124,8 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
         let posed = || self.table.posed(group.key(place));
         let entry = group.state(place);
         let skins = self.table.skins_of(group.key(place));
-        let make = |old| {
-            (N::tables().public_manifold)(&entry.state, &posed(), entry.number, old).grown(skins)
-        };
+        let make =
+            |old| entries::public_manifold(&entry.state, &posed(), entry.number, old).grown(skins);
         Some(group.view(place).manifolds(make))
     }
 
@@ -148,8 +148,7 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
         let entry = group.state(place);
         let skins = self.table.skins_of(group.key(place));
         let make = |old| {
-            let manifolds =
-                (N::tables().composite_manifolds)(&entry.state, &posed(), entry.number, old);
+            let manifolds = entries::composite_manifolds(&entry.state, &posed(), entry.number, old);
             manifolds.into_iter().map(|manifold| manifold.grown(skins)).collect()
         };
         group.view(place).manifolds(make)

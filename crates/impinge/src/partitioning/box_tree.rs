@@ -1,5 +1,6 @@
 //! The tree over a user's own boxes.
 
+use super::entries;
 use core::fmt;
 
 use super::boxes::{around, check, count, packed};
@@ -87,7 +88,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
 
     /// [`Self::try_from_boxes`] of boxes that are no longer needed.
     pub(crate) fn try_from_vec(boxes: Vec<Aabb<N, D>>) -> Result<Self, BoxTreeError> {
-        (N::tables().partitioning.build)(boxes)
+        entries::build(boxes)
     }
 
     /// Gives the boxes other places and sizes; see [`Self::try_refit`].
@@ -122,7 +123,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// # Errors
     /// As [`Self::try_from_boxes`], and if their number differs.
     pub fn try_refit(&mut self, boxes: &[Aabb<N, D>]) -> Result<(), BoxTreeError> {
-        (N::tables().partitioning.refit)(self, boxes)
+        entries::refit(self, boxes)
     }
 
     /// The boxes whose volume meets `aabb`, ascending.
@@ -189,7 +190,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     /// ```
     pub fn visit_ray(&self, ray: &Ray<N, D>, max_time: N, mut visit: impl FnMut(usize, N) -> N) {
         let mut found = |id: u32, time: N| visit(id as usize, time);
-        (N::tables().partitioning.by_time)(self, &Sweep::along(ray), max_time, &mut found);
+        entries::by_time(self, &Sweep::along(ray), max_time, &mut found);
     }
 
     /// Calls `visit` with the boxes that `aabb`, moving with `velocity`, touches at or before
@@ -230,7 +231,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     ) {
         let mut found = |id: u32, time: N| visit(id as usize, time);
         let sweep = Sweep { aabb: *aabb, velocity: *velocity };
-        (N::tables().partitioning.by_time)(self, &sweep, max_time, &mut found);
+        entries::by_time(self, &sweep, max_time, &mut found);
     }
 
     /// Calls `visit` with the boxes at most `max_distance` from the point and their distance: the
@@ -282,7 +283,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         mut visit: impl FnMut(usize, N) -> N,
     ) {
         let mut found = |id: u32, distance: N| visit(id as usize, distance);
-        (N::tables().partitioning.by_distance)(self, aabb, max_distance, &mut found);
+        entries::by_distance(self, aabb, max_distance, &mut found);
     }
 
     /// The box that the ray enters first, at or before `max_time`, and when; of several the one of
@@ -290,9 +291,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     #[must_use]
     pub fn first_hit(&self, ray: &Ray<N, D>, max_time: N) -> Option<(usize, N)> {
         let (mut first, sweep) = (Best::none(max_time), Sweep::along(ray));
-        (N::tables().partitioning.near_first)(self, &sweep, max_time, &mut |id, time| {
-            first.offer(id, time)
-        });
+        entries::near_first(self, &sweep, max_time, &mut |id, time| first.offer(id, time));
         first.of
     }
 
@@ -303,7 +302,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
         let mut nearest = Best::none(max_distance);
         let mut found = |id: u32, distance: N| nearest.offer(id, distance);
         let at = Aabb::at(*point);
-        (N::tables().partitioning.nearest_first)(self, &at, max_distance, &mut found);
+        entries::nearest_first(self, &at, max_distance, &mut found);
         nearest.of
     }
 
@@ -315,7 +314,7 @@ impl<N: Space<D>, const D: usize> BoxTree<N, D> {
     }
 
     fn each(&self, question: &Question<'_, N, D>, mut visit: impl FnMut(usize)) {
-        (N::tables().partitioning.each)(self, question, &mut |id| visit(id as usize));
+        entries::each(self, question, &mut |id| visit(id as usize));
     }
 }
 

@@ -10,12 +10,14 @@
 
 mod box_tree;
 mod boxes;
+pub(crate) mod entries;
 mod error;
 mod search;
 
 pub use box_tree::BoxTree;
 pub(crate) use box_tree::Question;
 pub(crate) use boxes::packed;
+pub(crate) use entries::SearchEntries;
 pub use error::BoxTreeError;
 use search::Best;
 pub(crate) use search::{Search, Sweep};

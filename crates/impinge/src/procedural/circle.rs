@@ -65,7 +65,6 @@ mod tests {
     #[test]
     fn directions_are_those_of_the_library() {
         check::<f32>();
-        #[cfg(feature = "f64")]
         check::<f64>();
     }
 

@@ -3,6 +3,7 @@
 use crate::collide::{AtIsometry, Placed};
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
 use crate::shape::Shape;
+use crate::tables::entries;
 
 /// The nearest points of two solids.
 ///
@@ -55,7 +56,7 @@ pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     let limit = max(max_distance, N::ZERO);
     let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
     let found = Placed::within(&one, &other, limit)
-        .and_then(|[placed1, placed2]| (N::tables().touching_in_world)(&placed1, &placed2, limit));
+        .and_then(|[placed1, placed2]| entries::touching_in_world(&placed1, &placed2, limit));
     match found {
         None => ClosestPoints::Disjoint,
         Some(found) if found.distance <= N::ZERO => ClosestPoints::Intersecting,

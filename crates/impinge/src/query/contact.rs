@@ -4,6 +4,7 @@ use crate::collide::{AtIsometry, Placed};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::Shape;
+use crate::tables::entries;
 
 /// Where two solids touch, overlap or come close, in the world frame.
 ///
@@ -83,7 +84,7 @@ pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
 ) -> Option<Contact<N, D>> {
     let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
     let [placed1, placed2] = Placed::within(&one, &other, prediction)?;
-    Contact::of_separation(&(N::tables().contact_in_world)(&placed1, &placed2, prediction)?)
+    Contact::of_separation(&entries::contact_in_world(&placed1, &placed2, prediction)?)
 }
 
 impl<N: Real, const D: usize> Contact<N, D> {

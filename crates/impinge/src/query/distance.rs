@@ -3,6 +3,7 @@
 use crate::collide::{AtIsometry, Placed, Placing};
 use crate::math::{AbstractRotation, Isometry, Space, max};
 use crate::shape::Shape;
+use crate::tables::entries;
 
 /// The distance between two solids: zero if they touch or overlap.
 ///
@@ -37,7 +38,7 @@ pub(crate) fn distance_between<'a, N: Space<D>, const D: usize>(
     one: &impl Placing<'a, N, D>,
     other: &impl Placing<'a, N, D>,
 ) -> N {
-    let found = (N::tables().distance_in_world)(&one.placed(), &other.placed(), N::INFINITY);
+    let found = entries::distance_in_world(&one.placed(), &other.placed(), N::INFINITY);
     found.map_or(N::INFINITY, |distance| max(distance, N::ZERO))
 }
 
@@ -49,6 +50,6 @@ pub(crate) fn distance_within<'a, N: Space<D>, const D: usize>(
     limit: N,
 ) -> Option<N> {
     let [placed1, placed2] = Placed::within(one, other, limit)?;
-    let found = (N::tables().distance_in_world)(&placed1, &placed2, limit)?;
+    let found = entries::distance_in_world(&placed1, &placed2, limit)?;
     Some(max(found, N::ZERO))
 }

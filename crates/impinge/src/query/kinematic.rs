@@ -12,7 +12,7 @@ use self::side::KinematicSide;
 use super::Contact;
 use crate::collide::{Pair, RawPoint};
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Unit, Vector, min, unit};
+use crate::math::{AbstractRotation, Isometry, Mapped, Point, Pose, Real, Unit, Vector, min, unit};
 use crate::shape::{FeatureId, Geometry};
 
 /// What the core of a solid looks like near a contact, in its local frame.
@@ -206,7 +206,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         shapes: [Geometry<'_, N, D>; 2],
     ) -> Self {
         Self {
-            turns: shapes.map(|shape| shape.turns()),
+            turns: shapes.mapped(|shape| shape.turns()),
             local1: pose1.point(&self.local1),
             local2: pose2.point(&self.local2),
             geometry1: self.geometry1.moved(pose1),
@@ -314,7 +314,7 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
             normal2,
             side1: KinematicSide::new(pair.first, *normal),
             side2: KinematicSide::new(pair.second, -normal2),
-            turns: [pair.first, pair.second].map(|kind| Geometry(kind).turns()),
+            turns: [pair.first, pair.second].mapped(|kind| Geometry(kind).turns()),
             rule: None,
         }
     }

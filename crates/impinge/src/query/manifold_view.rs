@@ -2,6 +2,7 @@
 //!
 //! A view has the contacts of the public manifold, to the bit.
 
+use crate::tables::entries;
 use core::fmt;
 
 use super::kinematic::KinematicSides;
@@ -286,7 +287,7 @@ impl<N: Space<D>, const D: usize> ManifoldView<'_, N, D> {
     /// If there is no contact of this index; the order is that of [`Self::contacts`].
     #[must_use]
     pub fn tracked_contact(&self, index: usize) -> TrackedContact<N, D> {
-        (N::tables().tracked_contact)(self, index)
+        entries::tracked_contact(self, index)
     }
 
     /// The manifold by itself: all contacts with their kinematics.

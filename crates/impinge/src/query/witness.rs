@@ -7,6 +7,8 @@ use crate::collide::{AtIsometry, Pair, Placed, Placing};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Shape};
+use crate::tables::ByDimension;
+use crate::tables::entries;
 
 /// What stands for features that are not asked for.
 const NO_FEATURES: [FeatureId; 2] = [FeatureId::Face(u32::MAX); 2];
@@ -115,7 +117,7 @@ pub(crate) fn witness_between<'a, N: Space<D>, const D: usize>(
     with_features: bool,
 ) -> Option<Witness<N, D>> {
     let [placed1, placed2] = Placed::within(one, other, max_distance)?;
-    (N::tables().witness_in_world)(&placed1, &placed2, max_distance, with_features)
+    entries::witness_in_world(&placed1, &placed2, max_distance, with_features)
 }
 
 /// See [`witness`].
@@ -182,7 +184,7 @@ fn features<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     found: &Separation<N, D>,
 ) -> [FeatureId; 2] {
-    if is_wanted { (N::tables().witness_features)(pair, found) } else { NO_FEATURES }
+    if is_wanted { <N::Algorithms>::witness_features(pair, found) } else { NO_FEATURES }
 }
 
 impl<N: Real, const D: usize> Witness<N, D> {

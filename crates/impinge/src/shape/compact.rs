@@ -3,7 +3,7 @@
 //!
 //! A query of a world reads the copy; the answer is that of the solid itself.
 
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, filled};
 use crate::shape::{Ball, Cuboid, Geometry, Kind, ShapeHandle};
 
 /// A copy of the numbers of a ball or a box, of which worlds have most; of any other shape only that it
@@ -20,7 +20,7 @@ impl<N: Real, const D: usize> Compact<N, D> {
         if let Some(ball) = shape.as_shape::<Ball<N>>() {
             numbers[0] = ball.radius();
         } else if let Some(cuboid) = shape.as_shape::<Cuboid<N, D>>() {
-            numbers = core::array::from_fn(|axis| cuboid.half_extents()[axis]);
+            numbers = filled(|axis| cuboid.half_extents()[axis]);
         }
         Self(numbers)
     }

@@ -3,7 +3,7 @@
 use super::hull_faces::{FaceRings, faces, redundant};
 use super::quickhull::{Facet, HullSurface, at, index_of};
 use super::span::{Scaled, first_four};
-use crate::math::{Point, Real, Vector};
+use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::{ConvexHull, ShapeError};
 
 /// A convex hull, in terms of the points it was made of.
@@ -103,13 +103,13 @@ struct Grown {
 
 impl Grown {
     fn of(scaled: &Scaled<3>) -> Result<Self, ShapeError> {
-        let first = first_four(scaled)?.map(index_of);
+        let first = first_four(scaled)?.mapped(index_of);
         let facets = HullSurface::grown(&scaled.points, first, 2.0 * scaled.unit);
         let mut facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
         let corners = facets.iter().flat_map(|facet| facet.corners);
         let (named, places) = numbered(scaled.points.len(), corners);
         for facet in &mut facets {
-            facet.corners = facet.corners.map(|corner| places[at(corner)]);
+            facet.corners = facet.corners.mapped(|corner| places[at(corner)]);
         }
         let points = named.iter().map(|&index| scaled.points[index]).collect();
         Ok(Self { named, vertices: Scaled { points, unit: scaled.unit }, facets })

@@ -5,7 +5,7 @@ use super::lattice::area_vector;
 use super::quickhull::{DOUBT, Facet, at};
 use super::span::{Scaled, direction, distance_from_segment, precedes};
 use crate::math::order::sort_keyed;
-use crate::math::{Point, Vector};
+use crate::math::{Mapped, Point, Vector};
 
 type P3 = Point<f64, 3>;
 
@@ -25,7 +25,7 @@ pub(super) fn redundant(facets: &[Facet], scaled: &Scaled<3>) -> Vec<u32> {
     let mut around = vec![(0, 0_u32); points.len()];
     for (index, facet) in (0..).zip(facets) {
         for side in 0..3 {
-            let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]].map(at);
+            let [from, to] = [facet.corners[side], facet.corners[(side + 1) % 3]].mapped(at);
             let beyond = facet.neighbors[side];
             let turns = index < beyond && !is_flat(facet, &facets[at(beyond)], scaled);
             around[from].1 += u32::from(turns);
@@ -121,7 +121,7 @@ impl FaceRings {
     /// Adds a face that has the normal of a facet. Points that came in `f32` are far coarser than the normal used so far.
     fn push(&mut self, scaled: &Scaled<3>, seed: &Facet, ring: &[u32]) {
         let points = &scaled.points;
-        let exact = || area_vector(seed.corners.map(|corner| &points[at(corner)]));
+        let exact = || area_vector(seed.corners.mapped(|corner| &points[at(corner)]));
         let is_coarse = scaled.unit > DOUBT;
         // Of zeros the positive one.
         let normal = if is_coarse { seed.normal.add_scalar(0.0) } else { exact().normalize() };
@@ -304,7 +304,7 @@ impl<'a> Merger<'a> {
         let (before, from, to, after) = (vertex(count - 1), vertex(0), vertex(1), vertex(2));
         let normal = &self.facets[at(seed)].normal;
         let turns_left = |corners: [u32; 3]| {
-            let [a, b, c] = corners.map(|corner| self.scaled.points[at(corner)]);
+            let [a, b, c] = corners.mapped(|corner| self.scaled.points[at(corner)]);
             // How far b lies outside the line from a to c, times its length.
             (b - a).cross(&(c - b)).dot(normal) >= -self.scaled.flat() * (c - a).norm()
         };

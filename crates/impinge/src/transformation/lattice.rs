@@ -4,7 +4,7 @@
 //! differences 125: it fits an `i128`. A volume has some 190, so its minors are cut in two. No product underflows, and the
 //! cost is the same for every input.
 
-use crate::math::{Point, Vector};
+use crate::math::{Mapped, Point, Vector, filled};
 
 type P2 = Point<f64, 2>;
 type P3 = Point<f64, 3>;
@@ -32,7 +32,7 @@ fn whole(x: f64) -> i64 {
 
 /// `p - q` in whole numbers.
 fn offset<const D: usize>(p: &Point<f64, D>, q: &Point<f64, D>) -> [i64; D] {
-    core::array::from_fn(|axis| whole(p[axis]) - whole(q[axis]))
+    filled(|axis| whole(p[axis]) - whole(q[axis]))
 }
 
 /// `a · d − b · c`.
@@ -71,7 +71,7 @@ fn exact_area(a: &P2, b: &P2, c: &P2) -> f64 {
 /// The vector out of the side from which the triangle is seen counter-clockwise, as long as twice its area: each coordinate
 /// is the nearest double to the exact one.
 pub(super) fn area_vector([a, b, c]: [&P3; 3]) -> Vector<f64, 3> {
-    Vector::from(minors(offset(b, a), offset(c, a)).map(area_of))
+    Vector::from(minors(offset(b, a), offset(c, a)).mapped(area_of))
 }
 
 /// Six times the volume of the tetrahedron, right to the last digits: positive if `q` lies on the side of the triangle from
@@ -136,7 +136,7 @@ mod tests {
         let mut flat = 0;
         for round in 0..4000 {
             let mut point = || P3::from(Vector::<f64, 3>::from_fn(|_, _| next()));
-            let [a, b, c, mut q] = [(); 4].map(|()| point());
+            let [a, b, c, mut q] = [(); 4].mapped(|()| point());
             if round % 2 == 0 {
                 // In the plane up to rounding, and exactly for some.
                 q = (a + (b - a) * 0.25 + (c - a) * 0.5).map(rounded);
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn volumes_of_the_largest_and_of_the_least() {
         let (far, step) = (2.0_f64.next_down(), 1.0 / PER_UNIT);
-        let corners = [[-far, -far, -far], [far, far, -far], [-far, far, far]].map(P3::from);
+        let corners = [[-far, -far, -far], [far, far, -far], [-far, far, far]].mapped(P3::from);
         let [a, b, c] = &corners;
         let found = volume([a, b, c], &P3::new(far, -far, far));
         assert_eq!(
@@ -165,7 +165,7 @@ mod tests {
             exact::volume(a, b, c, &P3::new(far, -far, far)).abs(),
             "as large as they come"
         );
-        let [a, b, c] = [[0.0, 0.0, 0.0], [step, 0.0, 0.0], [0.0, step, 0.0]].map(P3::from);
+        let [a, b, c] = [[0.0, 0.0, 0.0], [step, 0.0, 0.0], [0.0, step, 0.0]].mapped(P3::from);
         assert_eq!(
             volume([&a, &b, &c], &P3::new(1.0, 1.0, step)),
             step * step * step,

@@ -7,7 +7,7 @@
 
 use super::lattice::{area_vector, volume};
 use super::span::{distance_from_segment, larger, precedes};
-use crate::math::{Point, Vector};
+use crate::math::{Mapped, Point, Vector};
 
 type P3 = Point<f64, 3>;
 
@@ -41,7 +41,7 @@ pub(super) struct Facet {
 
 impl Facet {
     fn new(points: &[P3], corners: [u32; 3], neighbors: [u32; 3]) -> Self {
-        let places = corners.map(|corner| &points[at(corner)]);
+        let places = corners.mapped(|corner| &points[at(corner)]);
         let [a, b, c] = places;
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
@@ -69,7 +69,7 @@ impl Facet {
 
     #[cold]
     fn exact_height(&self, points: &[P3], point: &P3) -> f64 {
-        volume(self.corners.map(|corner| &points[at(corner)]), point) / self.doubled_area
+        volume(self.corners.mapped(|corner| &points[at(corner)]), point) / self.doubled_area
     }
 }
 
@@ -147,7 +147,7 @@ impl<'a> HullSurface<'a> {
     }
 
     fn start(&mut self, [a, b, c, d]: [u32; 4]) -> Option<()> {
-        let [e, f, g] = [a, b, c].map(|corner| &self.points[at(corner)]);
+        let [e, f, g] = [a, b, c].mapped(|corner| &self.points[at(corner)]);
         let height = volume([e, f, g], &self.points[at(d)]);
         if height == 0.0 {
             return None;
@@ -215,7 +215,7 @@ impl<'a> HullSurface<'a> {
         let tied =
             self.waiting_at(facet).filter(|&(_, height)| height >= top - 0.25 * self.tolerance);
         let later = |best: u32, point: u32| {
-            let [b, p] = [best, point].map(|index| &self.points[at(index)]);
+            let [b, p] = [best, point].mapped(|index| &self.points[at(index)]);
             if precedes(b, p) || (b == p && point < best) { point } else { best }
         };
         tied.map(|(point, _)| point).reduce(later)
@@ -336,7 +336,7 @@ impl<'a> HullSurface<'a> {
     /// How far a point in front of a facet is from it.
     fn distance(&self, facet: u32, point: u32) -> f64 {
         let facet = &self.facets[at(facet)];
-        let [a, b, c] = facet.corners.map(|corner| &self.points[at(corner)]);
+        let [a, b, c] = facet.corners.mapped(|corner| &self.points[at(corner)]);
         let place = &self.points[at(point)];
         let sides = [(a, b), (b, c), (c, a)];
         let is_inside = |(from, to): &(&P3, &P3)| {
@@ -345,7 +345,7 @@ impl<'a> HullSurface<'a> {
         if sides.iter().all(is_inside) {
             return facet.height(self.points, point);
         }
-        let distances = sides.map(|(from, to)| distance_from_segment(place, from, to));
+        let distances = sides.mapped(|(from, to)| distance_from_segment(place, from, to));
         distances.into_iter().fold(f64::INFINITY, f64::min)
     }
 
@@ -361,7 +361,7 @@ impl<'a> HullSurface<'a> {
         }
         self.facets.retain(|facet| facet.seen != GONE);
         for facet in &mut self.facets {
-            facet.neighbors = facet.neighbors.map(|neighbor| renamed[at(neighbor)]);
+            facet.neighbors = facet.neighbors.mapped(|neighbor| renamed[at(neighbor)]);
         }
         self.facets
     }

@@ -4,6 +4,7 @@
 //! a [`DirtyTree`], which the first query after a change makes and each later change keeps up to date. Without
 //! queries there is none.
 
+use super::entries;
 use std::sync::OnceLock;
 
 use super::CollisionGroups;
@@ -142,7 +143,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         if let Some(tree) = self.dirty.get_mut()
             && let Some(id) = tree.id_of(body)
         {
-            (N::tables().world.take_dirty)(tree, id);
+            entries::take_dirty::<N, D>(tree, id);
         }
         if let Some(place) = body.place() {
             self.entries[place as usize].index = GONE;
@@ -310,7 +311,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         let aabb = self.box_at(place);
         let Some(tree) = self.dirty.get_mut() else { return };
         let id = if tree.has_all() { body.index() } else { place };
-        (N::tables().world.put_dirty)(tree, id, &aabb);
+        entries::put_dirty(tree, id, &aabb);
         if tree.is_worn() {
             self.dirty.take();
         }

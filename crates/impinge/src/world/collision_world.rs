@@ -2,6 +2,7 @@
 //!
 //! An operation that fails changes nothing.
 
+use super::entries;
 use super::error::{check_pose, or_panic, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
@@ -97,7 +98,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         }
         Ok(Self {
             objects: CollisionObjects::new(),
-            broad_phase: (N::tables().world.new_broad_phase)(margin),
+            broad_phase: entries::new_broad_phase(margin),
             narrow_phase: Box::new(DefaultNarrowPhase::<N, D>::new()),
             next_broad_phase: None,
             next_narrow_phase: None,
@@ -224,7 +225,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         position: N::Isometry,
     ) -> Result<(), WorldError> {
         let (body, changes) = self.objects.fresh(handle)?;
-        (N::tables().world.set_isometry)(body, changes, position)
+        entries::set_isometry(body, changes, position)
     }
 
     /// Moves many objects: all of them or, on an error, none. Of several positions for one object
@@ -275,7 +276,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         shape: ShapeHandle<N, D>,
     ) -> Result<(), WorldError> {
         let (body, changes) = self.objects.fresh(handle)?;
-        (N::tables().world.set_shape)(body, changes, shape);
+        entries::set_shape(body, changes, shape);
         Ok(())
     }
 
@@ -328,7 +329,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         query_type: impl Into<GeometricQueryType<N>>,
     ) -> Result<(), WorldError> {
         let (body, changes) = self.objects.fresh(handle)?;
-        (N::tables().world.set_query)(body, changes, usable_query(query_type.into())?);
+        entries::set_query(body, changes, usable_query(query_type.into())?);
         Ok(())
     }
 }

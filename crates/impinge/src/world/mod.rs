@@ -11,6 +11,7 @@ mod debug;
 mod deform;
 mod dirty;
 mod emptying;
+pub(crate) mod entries;
 mod error;
 mod filter;
 mod group_masks;
@@ -30,9 +31,9 @@ mod substep;
 mod validate;
 
 pub(crate) use bodies::{WorldBody, WorldBroadPhase};
-pub(crate) use changes::{ChangeList, Readers};
 pub use collision_world::CollisionWorld;
 pub(crate) use dirty::{DirtyTree, DirtyVisitor};
+pub(crate) use entries::WorldEntries;
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;
 pub use groups::{CollisionGroups, GroupError};

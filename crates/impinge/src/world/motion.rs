@@ -1,6 +1,7 @@
 //! How objects move, as far as it matters for their pairs: fixed ones have none among each other, and the box
 //! of a fast one covers its way.
 
+use super::entries;
 use super::error::or_panic;
 use super::{CollisionWorld, WorldError};
 use crate::math::Space;
@@ -121,7 +122,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         predicted: N::Isometry,
     ) -> Result<(), WorldError> {
         let (body, changes) = self.objects.fresh(handle)?;
-        (N::tables().world.set_predicted)(body, changes, position, predicted)
+        entries::set_predicted(body, changes, position, predicted)
     }
 
     /// Where [`Self::set_position_with_prediction`] predicted an object to be next; `None` if the object was

@@ -1,6 +1,7 @@
 //! The narrow phase as a world sees it: given pairs, asked for contacts and proximities.
 
 use super::CollisionObjects;
+use super::entries;
 use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, Interaction,
@@ -225,7 +226,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         handle2: CollisionObjectHandle,
     ) -> bool {
         let key = [handle1.index(), handle2.index()];
-        (N::tables().world.update_pair)(self, objects.table(), key, events)
+        entries::update_pair(self, objects.table(), key, events)
     }
 
     fn handle_interaction(
@@ -238,9 +239,9 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
     ) {
         let (index1, index2) = (handle1.index(), handle2.index());
         if started {
-            (N::tables().world.pair_started)(self, objects.table(), index1, index2);
+            entries::pair_started(self, objects.table(), index1, index2);
         } else {
-            (N::tables().world.pair_stopped)(self, objects.table(), index1, index2, events);
+            entries::pair_stopped(self, objects.table(), index1, index2, events);
         }
     }
 
@@ -250,7 +251,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &CollisionObjects<N, D, T>,
         interactions: &[Interaction],
     ) {
-        (N::tables().world.begin_and_end_pairs)(self, objects.table(), interactions, events);
+        entries::begin_and_end_pairs(self, objects.table(), interactions, events);
     }
 
     fn handle_removal(
@@ -261,7 +262,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         handle2: CollisionObjectHandle,
     ) {
         let (index1, index2) = (handle1.index(), handle2.index());
-        (N::tables().world.pair_stopped)(self, objects.table(), index1, index2, events);
+        entries::pair_stopped(self, objects.table(), index1, index2, events);
     }
 
     fn handle_change(
@@ -270,7 +271,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &CollisionObjects<N, D, T>,
         handle: CollisionObjectHandle,
     ) {
-        (N::tables().world.object_changed)(self, objects.table(), handle.index(), events);
+        entries::object_changed(self, objects.table(), handle.index(), events);
     }
 
     fn has_pairs_of(&self, handle: CollisionObjectHandle) -> bool {

@@ -3,6 +3,7 @@
 use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
 use super::changes::{ChangeList, Readers};
 use super::dirty::DirtyTree;
+use super::entries;
 use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
@@ -117,7 +118,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         self.changes.dirty_tree(|| {
             let has_all = self.changes.num_dirty() * MANY >= self.records.len();
             let boxes = &mut *self.boxes(has_all, broad_phase);
-            (N::tables().world.new_dirty_tree)(has_all, boxes)
+            entries::new_dirty_tree(has_all, boxes)
         })
     }
 
@@ -264,7 +265,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let order = changes.take_order();
         for &index in &order {
             if let Some(object) = records.get_mut(slots[index as usize].place as usize) {
-                (N::tables().world.flush)(changes, &mut object.body, &mut readers);
+                entries::flush(changes, &mut object.body, &mut readers);
             }
         }
         changes.clear(order);

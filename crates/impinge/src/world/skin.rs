@@ -1,5 +1,6 @@
 //! Contacts with a margin around the shapes.
 
+use super::entries;
 use super::error::or_panic;
 use super::{CollisionWorld, WorldError};
 use crate::math::Space;
@@ -67,7 +68,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         if skin < N::ZERO || !skin.is_finite_number() {
             return Err(WorldError::Skin { handle, value: skin.as_f64() });
         }
-        (N::tables().world.set_skin)(body, changes, skin);
+        entries::set_skin(body, changes, skin);
         Ok(())
     }
 

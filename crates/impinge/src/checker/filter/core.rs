@@ -1,8 +1,8 @@
 //! How far points are from an obstacle, eight points at a time.
 
-use crate::math::lanes::{by_axis, dot, lit, minus, norm, seen_from, times};
+use crate::math::lanes::{dot, lit, minus, norm, seen_from, times};
 use crate::math::simd::Simd;
-use crate::math::{Matrix, Point, Pose, Real, Vector, Wide};
+use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, Wide, filled};
 use crate::shape::{Kind, Shape};
 
 /// What is left of an obstacle without the radius that rounds it, in `f32`.
@@ -99,7 +99,7 @@ fn cuboid_at<N: Real, const D: usize>(
 }
 
 fn between<N: Real, const D: usize>(pose: &Pose<N, D>, ends: [&Point<N, D>; 2]) -> Core<D> {
-    let [start, end] = ends.map(|end| pose.point(end).coords);
+    let [start, end] = ends.mapped(|end| pose.point(end).coords);
     let way = (end - start).map(N::as_f32);
     let squared = way.norm_squared();
     let inverse_squared = if squared > f32::MIN_POSITIVE { 1.0 / squared } else { 0.0 };
@@ -134,7 +134,7 @@ impl<const D: usize> Core<D> {
             }
             Self::Cuboid { axes, center, half } => {
                 let local = local(simd, axes, center, points);
-                let over: [V; D] = by_axis(
+                let over: [V; D] = filled(
                     #[inline(always)]
                     |axis| (local[axis].abs() - V::all(simd, half[axis])).larger(zero),
                 );
@@ -159,7 +159,7 @@ impl<const D: usize> Core<D> {
 
 #[inline(always)]
 fn all<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, numbers: &[f32; D]) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| V::all(simd, numbers[axis]),
     )
@@ -173,7 +173,7 @@ fn local<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
     center: &[f32; D],
     points: &[V; D],
 ) -> [V; D] {
-    let axes: [[V; D]; D] = by_axis(
+    let axes: [[V; D]; D] = filled(
         #[inline(always)]
         |axis| all(simd, &axes[axis]),
     );

@@ -8,7 +8,7 @@ use super::{MAX_LENGTH, margin};
 use crate::checker::chain::{LANES, LaneRow, Node};
 use crate::checker::frames::{FrameTree, OnNode};
 use crate::math::order::order_of;
-use crate::math::{Matrix, Point, Pose, Real, Space, Vector};
+use crate::math::{Mapped, Matrix, Point, Pose, Real, Space, Vector};
 use crate::shape::Shape;
 
 /// A robot as the scan sees it.
@@ -213,7 +213,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     fn cross(&mut self, pairs: &[[u32; 2]]) {
         let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
         for pair in pairs {
-            let mut places = pair.map(|body| self.places[body as usize]);
+            let mut places = pair.mapped(|body| self.places[body as usize]);
             places.sort_unstable();
             let [(group1, balls1), (group2, balls2)] = places;
             let wanted = by_groups.entry([group1, group2]).or_default();
@@ -222,7 +222,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             }
         }
         for (groups, wanted) in by_groups {
-            let [one, other] = groups.map(|group| &self.filter.groups[group]);
+            let [one, other] = groups.mapped(|group| &self.filter.groups[group]);
             let (gap, sliding) = if one.node == other.node {
                 (gap_on_node([one, other], &wanted), 0.0)
             } else {
@@ -237,7 +237,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
 
     /// How far apart what two groups can reach is at least.
     fn gap_between(&self, groups: [usize; 2]) -> f32 {
-        let [one, other] = groups.map(|group| &self.ways[group]);
+        let [one, other] = groups.mapped(|group| &self.ways[group]);
         let apart = (one.anchor - other.anchor).norm().as_f64();
         N::lit(apart - one.length - other.length).as_f32_below()
     }

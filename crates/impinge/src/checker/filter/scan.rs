@@ -8,9 +8,9 @@ use super::obstacles::{InReach, LaneObstacle, Surroundings};
 use super::robot::{BallGroup, GroupPair, RobotFilter};
 use super::search::{CollisionSearch, Distances, Other};
 use crate::checker::chain::{LANES, LaneRow, PoseRows, forward, store};
-use crate::math::Wide;
-use crate::math::lanes::{by_axis, dot, load, minus, with_lanes};
+use crate::math::lanes::{dot, load, minus, with_lanes};
 use crate::math::simd::{Eight, Level, Simd};
+use crate::math::{Wide, filled};
 
 /// Where everything is in eight configurations.
 #[derive(Debug)]
@@ -250,7 +250,7 @@ fn squared_between<S: Simd, V: Wide<S>, const D: usize>(one: &[V; D], other: &[V
 
 #[inline(always)]
 fn spread<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(simd: S, v: &[f32; D]) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| V::all(simd, v[axis]),
     )
@@ -263,7 +263,7 @@ fn spread_lane<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
     rows: &[LaneRow<f32>; D],
     lane: usize,
 ) -> [V; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| V::all(simd, rows[axis][lane]),
     )

@@ -2,10 +2,10 @@
 
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
-use super::vectors::{bits, by_axis, length_of, lit, minus, negated, rounding_of, times, unit};
+use super::vectors::{bits, length_of, lit, minus, negated, rounding_of, times, unit};
 use super::{PairQuestion, Solid};
 use crate::math::simd::Simd;
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 use crate::shape::{Cuboid, FeatureId};
 
 /// Balls with their centre outside of the box.
@@ -30,7 +30,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
         let center = pose12.inverse_origin(simd);
-        let clamped = by_axis(
+        let clamped = filled(
             #[inline(always)]
             |axis| center[axis].smaller(half[axis]).larger(-half[axis]),
         );

@@ -1,6 +1,7 @@
 //! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule, and segments
 //! and capsules. Their manifold is one point, of segments of the plane perhaps two.
 
+use crate::tables::ByDimension;
 use core::marker::PhantomData;
 
 use super::gather::Inputs;
@@ -11,7 +12,7 @@ use crate::collide::manifold::ids::{PairPose, is_same_point};
 use crate::collide::manifold::{Candidate, PointChoice, choose};
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::math::simd::Simd;
-use crate::math::{Point, Real, Space, Vector, Wide};
+use crate::math::{Mapped, Point, Real, Space, Vector, Wide};
 use crate::shape::FeatureId;
 
 /// A closed form in lanes.
@@ -35,7 +36,7 @@ pub(super) trait Form<N: Real, const D: usize> {
     where
         N: Space<D>,
     {
-        (N::tables().contacts)(pair, request, raw);
+        <N::Algorithms>::contacts(pair, request, raw);
     }
 }
 
@@ -145,7 +146,7 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
     #[inline(always)]
     fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
-            [self.is_found, self.is_apart, self.is_two].map(|lanes| lanes >> lane & 1 == 1);
+            [self.is_found, self.is_apart, self.is_two].mapped(|lanes| lanes >> lane & 1 == 1);
         if is_apart {
             raw.points.clear();
         }
@@ -171,7 +172,7 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
     /// Replaces the points of one pair by so many others.
     #[inline(never)]
     fn choose<F: Form<N, D>>(&self, lane: usize, count: usize, raw: &mut RawManifold<N, D>) {
-        let mut candidates = [0, 1].map(|which| Candidate {
+        let mut candidates = [0, 1].mapped(|which| Candidate {
             point1: Point::from(vector(&self.points1[which], lane)),
             distance: if count > 1 { self.distances[which][lane] } else { self.gap[lane] },
             flat: Vector::<N, 2>::zeros(),

@@ -1,10 +1,10 @@
 //! Eight pairs of solids side by side.
 
-use super::vectors::{by_axis, minus, seen_from};
+use super::vectors::{minus, seen_from};
 use super::{Batch, KeptPairs, LANES, PairQuestion};
 use crate::math::lanes::{LanePose, load};
 use crate::math::simd::Simd;
-use crate::math::{Matrix, Real, Vector, Wide};
+use crate::math::{Matrix, Real, Vector, Wide, filled};
 
 /// A vector in each lane, by rows.
 type LaneRows<N, const D: usize> = [[N; LANES]; D];
@@ -147,7 +147,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     pub(super) fn pose12<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
         let axes = load_all::<S, N, V, D>(simd, &self.rotations[0]);
         let turned = load_all::<S, N, V, D>(simd, &self.rotations[1]);
-        let rotation = by_axis(
+        let rotation = filled(
             #[inline(always)]
             |column| seen_from(&axes, &turned[column]),
         );
@@ -185,7 +185,7 @@ fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     columns: &[LaneRows<N, D>; D],
 ) -> [[V; D]; D] {
-    by_axis(
+    filled(
         #[inline(always)]
         |column| load(simd, &columns[column]),
     )

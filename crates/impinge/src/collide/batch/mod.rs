@@ -37,7 +37,7 @@ use super::Pair;
 use crate::collide::{ManifoldRequest, RawManifold};
 use crate::math::lanes::with_lanes;
 use crate::math::simd::{Level, Simd};
-use crate::math::{Pose, Real, Space, Wide};
+use crate::math::{Mapped, Pose, Real, Space, Wide};
 use crate::shape::Geometry;
 
 /// How many pairs are treated at once.
@@ -52,7 +52,7 @@ pub(crate) struct PairQuestion<'a, N: Real, const D: usize> {
 
 impl<'a, N: Real, const D: usize> PairQuestion<'a, N, D> {
     fn pair(&self) -> Pair<'a, N, D> {
-        Pair::new(self.solids.map(|solid| Geometry(solid.kind())), self.poses)
+        Pair::new(self.solids.mapped(|solid| Geometry(solid.kind())), self.poses)
     }
 }
 

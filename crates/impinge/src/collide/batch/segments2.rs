@@ -5,14 +5,12 @@ use super::PairQuestion;
 use super::closed_form::{EightContacts, Form};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther, half_length};
-use super::vectors::{
-    bits, by_axis, dot, either, either_mask, lit, minus, norm, plus, rounding_of, times,
-};
+use super::vectors::{bits, dot, either, either_mask, lit, minus, norm, plus, rounding_of, times};
 use crate::collide::manifold::contacts_of_separation2;
 use crate::collide::separation::SegmentGap;
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 use crate::shape::FeatureId;
 
 /// Segments and capsules whose cores are apart and are seen as more than points.
@@ -292,7 +290,7 @@ impl<V, M> LaneContact<V, M> {
             point1: either(is_other, &other.point1, &self.point1),
             distance: is_other.select(other.distance, self.distance),
             is_admitted: either_mask(is_other, other.is_admitted, self.is_admitted),
-            parts: by_axis(
+            parts: filled(
                 #[inline(always)]
                 |part| either_mask(is_other, others[part], own[part]),
             ),

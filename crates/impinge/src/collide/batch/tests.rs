@@ -9,6 +9,7 @@ use crate::collide::{ManifoldRequest, RawManifold};
 use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::shape::{Ball, Capsule, Cuboid, Segment};
+use crate::tables::ByDimension;
 
 /// A pair and what is asked of it; not all need an update.
 #[derive(Clone)]
@@ -106,7 +107,7 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
         sums = [0; 3];
         for (step, cases) in steps.iter().enumerate() {
             for (case, raw) in cases.iter().zip(&mut expected).filter(|(case, _)| case.is_due) {
-                (N::tables().contacts)(&case.question().pair(), &case.request, raw);
+                <N::Algorithms>::contacts(&case.question().pair(), &case.request, raw);
             }
             let [begun, declined] = in_lanes::<F, N, D>(level, cases, &mut found);
             for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
@@ -302,7 +303,6 @@ fn balls<N: Scene<D> + Space<D>, const D: usize>() {
 fn eight_pairs_with_balls_are_as_one() {
     balls::<f32, 2>();
     balls::<f32, 3>();
-    #[cfg(feature = "f64")]
     {
         balls::<f64, 2>();
         balls::<f64, 3>();
@@ -319,7 +319,6 @@ fn segments<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
 fn eight_pairs_of_segments_are_as_one() {
     segments::<ClosedForm<Segments2>, f32, 2>();
     segments::<ClosedForm<Segments3>, f32, 3>();
-    #[cfg(feature = "f64")]
     {
         segments::<ClosedForm<Segments2>, f64, 2>();
         segments::<ClosedForm<Segments3>, f64, 3>();
@@ -367,7 +366,6 @@ fn faced<N: Scene<D>, const D: usize>(
 fn eight_pairs_of_boxes_are_as_one() {
     boxes::<Boxes2, f32, 2>();
     boxes::<Boxes3, f32, 3>();
-    #[cfg(feature = "f64")]
     {
         boxes::<Boxes2, f64, 2>();
         boxes::<Boxes3, f64, 3>();

@@ -3,8 +3,7 @@
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::separation::is_usual;
 pub(super) use crate::math::lanes::{
-    bits, by_axis, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus,
-    seen_from, times,
+    bits, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus, seen_from, times,
 };
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};

@@ -11,6 +11,7 @@ use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector, max, min};
 use crate::shape::{Geometry, Kind};
+use crate::tables::ByDimension;
 
 /// What a manifold along a given normal is asked for.
 #[derive(Clone, Copy)]
@@ -51,7 +52,7 @@ pub(crate) fn build_along<N: Space<D>, const D: usize>(
 ) {
     let (Along { normal, least, tolerance }, prediction) = (*along, request.prediction);
     let on_face = OnFace { normal, least, nearest: None, prediction, tolerance };
-    (N::tables().on_face)(pair, &on_face, out);
+    <N::Algorithms>::on_face(pair, &on_face, out);
 }
 
 /// Builds the manifold of a pair that is a distance apart along the normal of a face of a surface that is one
@@ -66,7 +67,7 @@ pub(crate) fn build_on_face<N: Space<D>, const D: usize>(
 ) -> bool {
     let (normal, nearest, prediction) = (*normal, Some(distance), request.prediction);
     let on_face = OnFace { normal, least: -N::INFINITY, nearest, prediction, tolerance };
-    distance <= prediction && (N::tables().on_face)(pair, &on_face, out)
+    distance <= prediction && <N::Algorithms>::on_face(pair, &on_face, out)
 }
 
 /// The manifold of a pair whose separation is known, with as many points as are asked for.
@@ -76,7 +77,7 @@ pub(crate) fn build_between<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, D>,
 ) {
-    (N::tables().between)(pair, separation, request, out);
+    <N::Algorithms>::between(pair, separation, request, out);
 }
 
 /// The contacts of two solids of the plane along a normal. Where the distance is known the nearest points are,

@@ -21,7 +21,7 @@ use super::ring::{LANES, RingCorner, SupportRing};
 use super::{Pair, RawManifold, add_witness, choose_in_frame};
 use crate::math::lanes::{bits, load, with_lanes};
 use crate::math::simd::{Level, Simd};
-use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
+use crate::math::{Mapped, Point, Pose, Real, Vector, Wide, cross2, max};
 use crate::shape::{FeatureId, Kind};
 
 /// Builds the manifold of two solids within the prediction whose nearest points are known.
@@ -300,7 +300,7 @@ impl<'a, N: Real> RingClip<'a, N> {
         for side1 in 0..one.side_count() {
             let ends1 = [in_other.row(side1), in_other.row(one.next(side1))];
             for block2 in 0..in_other.width {
-                let [from1, to1] = ends1.map(|rows| &rows[block2]);
+                let [from1, to1] = ends1.mapped(|rows| &rows[block2]);
                 let mut crossed = parted(from1, to1);
                 while crossed != 0 {
                     let lane2 = crossed.trailing_zeros() as usize;
@@ -317,7 +317,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     fn push_crossing(&self, side1: usize, side2: usize, share1: N, out: &mut Candidates<N, 3>) {
         let ([one, other], in_one) = (&self.rings, &self.insides[0]);
         let (block1, lane1) = (side1 / LANES, side1 % LANES);
-        let [from2, to2] = [side2, other.next(side2)].map(|at| &in_one.row(at)[block1]);
+        let [from2, to2] = [side2, other.next(side2)].mapped(|at| &in_one.row(at)[block1]);
         if parted(from2, to2) >> lane1 & 1 == 1 {
             let share2 = share(from2.inside[lane1], to2.inside[lane1]);
             let cores = [one.along_side(side1, share1), other.along_side(side2, share2)];

@@ -6,8 +6,8 @@
 
 use super::super::ones::Ones;
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
-use crate::math::Real;
 use crate::math::order::{order_of, sort_keyed};
+use crate::math::{Mapped, Real};
 use crate::shape::FeatureId;
 
 /// The three classes, above the other bits of a key.
@@ -195,7 +195,7 @@ fn each_possible<N: Real, const D: usize>(
         between(&by_names, [names; 2]).for_each(|other| visit(at, other));
         for (solid, order) in by_place.iter().enumerate() {
             let x = point.places[solid][0];
-            between(order, [x - length, x + length].map(order_of))
+            between(order, [x - length, x + length].mapped(order_of))
                 .for_each(|other| visit(at, other));
         }
     }
@@ -226,7 +226,7 @@ impl<N: Real, const D: usize> Anchors<N, D> {
     /// A number that points with the same names share, and few others.
     fn names_key(&self) -> u64 {
         let ([part1, part2], features) = self.names;
-        let [feature1, feature2] = features.map(|id| match id {
+        let [feature1, feature2] = features.mapped(|id| match id {
             FeatureId::Vertex(number) => 3 * u64::from(number),
             FeatureId::Edge(number) => 3 * u64::from(number) + 1,
             FeatureId::Face(number) => 3 * u64::from(number) + 2,

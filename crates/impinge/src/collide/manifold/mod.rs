@@ -39,6 +39,7 @@ use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector, max, orthonormal_basis, perp};
 use crate::shape::{FeatureId, Kind};
+use crate::tables::ByDimension;
 
 /// Builds the manifold of two solids in 2D: at most two points.
 ///
@@ -113,7 +114,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
     } else if let Kind::Ball(_) = pair.first {
         settle_witness(pair, separation, out);
     } else if let Kind::Plane(_) = pair.second {
-        let tangents = (N::tables().tangents)(&separation.normal);
+        let tangents = <N::Algorithms>::tangents(&separation.normal);
         half_space::build(
             pair,
             &ContactFrame::new(pair, separation, request, tangents),
@@ -132,7 +133,7 @@ fn settle_witness<N: Space<D>, const D: usize>(
     separation: &Separation<N, D>,
     out: &mut RawManifold<N, D>,
 ) {
-    let parts = (N::tables().witness_features)(pair, separation);
+    let parts = <N::Algorithms>::witness_features(pair, separation);
     let choice = PointChoice {
         pose: PairPose { pose12: None, normal: &separation.normal },
         size: &|| smaller_size([pair.first, pair.second]),

@@ -17,7 +17,7 @@ use core::cmp::Ordering;
 
 use smallvec::SmallVec;
 
-use crate::math::{Real, Vector, cross2, max, max_component, min};
+use crate::math::{Mapped, Real, Vector, cross2, max, max_component, min};
 
 /// Of so many candidates the best are found exactly.
 const FEW: usize = 16;
@@ -318,7 +318,7 @@ fn with_sides<N: Real>(
     is_four: bool,
     tolerance: N,
 ) -> Option<Indices> {
-    let [start, end] = ends.map(|place| &points[place]);
+    let [start, end] = ends.mapped(|place| &points[place]);
     let least = tolerance * (end.at - start.at).norm();
     let (mut corners, [mut left, mut right]) = (Indices::from_slice(&ends), [least; 2]);
     let mut sides = [None; 2];
@@ -381,7 +381,7 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     for rank in 0..4 {
         let mut at = 0;
         while ring.len() > 2 && at < ring.len() {
-            let [before, after] = [at + ring.len() - 1, at + 1].map(|place| place % ring.len());
+            let [before, after] = [at + ring.len() - 1, at + 1].mapped(|place| place % ring.len());
             let own = &ring[at];
             let is_next = u8::from(own.is_kept) + 2 * u8::from(own.is_deepest) == rank;
             if is_next && is_between(own, [&ring[before], &ring[after]], tolerance) {

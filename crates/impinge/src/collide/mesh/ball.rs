@@ -18,7 +18,7 @@ use crate::collide::parts::bounds::enclosing;
 use crate::collide::separation::{BallQuestion, NearTriangles, ball_triangle, near_triangles};
 use crate::collide::{ManifoldRequest, Pair};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
 use crate::shape::{Ball, CompositeShape, FeatureId, Kind, SupportMap, SurfaceAccess, Triangle};
 
 /// Lengths below this many rounding units of all sizes are rounding errors.
@@ -164,7 +164,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     /// One of the triangles that are kept; `None` where the numbers end.
     fn seen(&self, around: &PartCache<N, 3>, index: usize) -> Option<SeenTriangle<N>> {
         let corners = around.tiles()[index / LANES].corners(index % LANES);
-        let [a, b, c] = corners.map(|corner| corner - self.between.pose21.translation);
+        let [a, b, c] = corners.mapped(|corner| corner - self.between.pose21.translation);
         let triangle = Triangle::try_new(a, b, c).ok()?;
         let size = self.ball.radius() + triangle.reach();
         let tolerance = N::lit(ROUNDING) * N::EPSILON * size;

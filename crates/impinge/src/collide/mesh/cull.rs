@@ -9,7 +9,7 @@ use super::part_cache::PartCache;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::Pair;
 use crate::collide::parts::between::Between;
-use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min};
+use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, SupportMap};
 
 /// Bounds are loosened by so many rounding units of all lengths, or by what is left where the search
@@ -188,7 +188,7 @@ fn to_triangle<N: Real, const D: usize>(
     if at_b >= N::ZERO && at_c >= N::ZERO && at_b + at_c <= area && area > N::ZERO {
         return ap - ab * (at_b / area) - ac * (at_c / area);
     }
-    let sides = [[*a, *b], [*b, *c], [*c, *a]].map(|side| to_segment(&side, p));
+    let sides = [[*a, *b], [*b, *c], [*c, *a]].mapped(|side| to_segment(&side, p));
     let nearer = |x: Vector<N, D>, y: Vector<N, D>| {
         if y.norm_squared() < x.norm_squared() { y } else { x }
     };
@@ -216,7 +216,7 @@ mod tests {
         const STEPS: u32 = 48;
         let shares = (0..=STEPS).flat_map(|v| (0..=STEPS - v).map(move |w| (v, w)));
         let distance = |(v, w): (u32, u32)| {
-            let [v, w] = [v, w].map(|share| f64::from(share) / f64::from(STEPS));
+            let [v, w] = [v, w].mapped(|share| f64::from(share) / f64::from(STEPS));
             (a + (b - a) * v + (c - a) * w - p).norm()
         };
         shares.map(distance).fold(f64::INFINITY, f64::min)
@@ -248,7 +248,7 @@ mod tests {
         for round in 0..400 {
             // Every other one is a sliver.
             let thin = if round % 2 == 0 { 1.0 } else { 1e-9 };
-            let mut corner = || P3::from([0, 1, 2].map(|_| 2.0 * noise(&mut state)));
+            let mut corner = || P3::from([0, 1, 2].mapped(|_| 2.0 * noise(&mut state)));
             let [a, b, mut c] = [corner(), corner(), corner()];
             c = a + (b - a) * 0.3 + (c - a) * thin;
             let truth = sampled(&[a, b, c], &origin);

@@ -5,9 +5,9 @@
 
 use super::cull::{least_length, relative_slack};
 use crate::collide::packet::{LANES, PartPacket};
-use crate::math::lanes::{bits, by_axis, dot, either, lit, load, minus, norm, spread, with_lanes};
+use crate::math::lanes::{bits, dot, either, lit, load, minus, norm, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Matrix, Real, Vector, Wide, min};
+use crate::math::{Matrix, Real, Vector, Wide, filled, min};
 
 /// A convex solid in the frame of a composite.
 pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
@@ -120,7 +120,7 @@ fn toward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     let is_over =
         at_b.simd_ge(zero) & at_c.simd_ge(zero) & (at_b + at_c).simd_le(area) & area.simd_gt(zero);
     let (share_b, share_c) = (at_b / area, at_c / area);
-    let over = by_axis(
+    let over = filled(
         #[inline(always)]
         |axis| a[axis] - ab[axis] * share_b - ac[axis] * share_c,
     );
@@ -140,7 +140,7 @@ fn from_side<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     let share = dot(&along, from) / dot(&along, &along);
     let zero = V::all(simd, N::ZERO);
     let share = share.simd_gt(zero).select(share.smaller(lit(simd, 1.0)), zero);
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| from[axis] - along[axis] * share,
     )
@@ -160,7 +160,7 @@ fn extent<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
 ) -> V {
     let mut sum = V::all(simd, N::ZERO);
     for axis in 0..D {
-        let column: [V; D] = by_axis(
+        let column: [V; D] = filled(
             #[inline(always)]
             |row| V::all(simd, query.turn[(row, axis)]),
         );

@@ -13,7 +13,7 @@ use super::part_cache::corners_of;
 use super::part_contact::{PartContact, PartStatus};
 use super::scene::Scene;
 use crate::math::order::{order_of, sort_keyed};
-use crate::math::{Point, Real, Space, Vector, max, min};
+use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 
 /// Faces whose normals' cosine is above this hide nothing from each other.
 const ALIKE: f64 = 0.99;
@@ -95,7 +95,7 @@ fn faces_of<N: Space<D>, const D: usize>(
         };
         // What has no corners, as parts of a user's surface may be, hides nothing.
         let Some((corners, _)) = corners_of(&part) else { continue };
-        let corners = corners.map(|corner| part.pose.point(&corner));
+        let corners = corners.mapped(|corner| part.pose.point(&corner));
         scene.each_corner(piece.parts[1], |corner| shared.push((corner, next_face)));
         next_face += 1;
         faces.push(TouchedFace { contact, distance: *distance, normal, corners });

@@ -37,6 +37,8 @@ mod patch_points;
 mod resolve;
 mod scene;
 
+use crate::tables::ByDimension;
+use crate::tables::entries;
 use core::cell::OnceCell;
 
 use smallvec::SmallVec;
@@ -167,7 +169,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        if !(N::tables().update_quickly)(self, between, request) {
+        if !<N::Algorithms>::update_quickly(self, between, request) {
             self.update_in_general(between, is_self, request);
         }
     }
@@ -272,7 +274,7 @@ fn advanced<N: Space<D>, const D: usize>(
     if is_free || way == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
         return center;
     }
-    let is_hit = (N::tables().is_crossed)(composite, &Ray::new(old, way), N::ONE);
+    let is_hit = entries::is_crossed(composite, &Ray::new(old, way), N::ONE);
     if is_hit { old } else { center }
 }
 
@@ -439,7 +441,7 @@ fn deepest_within<N: Space<D>, const D: usize>(
     if has_own_way(between) {
         let mut contacts =
             CompositeContacts { around: PartCache::for_once(), ..Default::default() };
-        if (N::tables().update_quickly)(&mut contacts, between, &request) {
+        if <N::Algorithms>::update_quickly(&mut contacts, between, &request) {
             return contacts.deepest();
         }
     }
@@ -484,7 +486,7 @@ pub(crate) fn own_distance<N: Space<D>, const D: usize>(
     let between = Between::of_pair(pair);
     let candidates = gather::candidates(&between, true, max(limit, N::ZERO));
     let scene = Scene::new(&between, None);
-    let one = |&parts| (N::tables().separation)(&scene.pair(parts).pair(), limit);
+    let one = |&parts| <N::Algorithms>::separation(&scene.pair(parts).pair(), limit);
     let distances = candidates.iter().filter_map(one).map(|found| found.distance);
     distances.reduce(min)
 }

@@ -4,7 +4,7 @@
 //! that is not thin it is plain to see: the middle lies over the inside, beside one side or beside
 //! one corner, each by far more than what counts as rounding.
 
-use crate::math::{Point, Real, Vector, cross, max};
+use crate::math::{Mapped, Point, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Triangle};
 
 /// So many tolerances from the border of a region its answer is certain.
@@ -25,9 +25,9 @@ pub(crate) fn over3<N: Real>(
     tolerance: N,
 ) -> Option<FeatureId> {
     let corners = triangle.corners();
-    let sides = [0, 1, 2].map(|at: usize| corners[(at + 1) % 3] - corners[at]);
-    let arms = corners.each_ref().map(|corner| center - corner);
-    let lengths = sides.map(|side| side.norm());
+    let sides = [0, 1, 2].mapped(|at: usize| corners[(at + 1) % 3] - corners[at]);
+    let arms = corners.each_ref().mapped(|corner| center - corner);
+    let lengths = sides.mapped(|side| side.norm());
     let longest = max(lengths[0], max(lengths[1], lengths[2]));
     let normal = cross(&sides[0], &sides[1]);
     let (area, room) = (normal.norm(), N::lit(CERTAIN) * tolerance);
@@ -37,7 +37,8 @@ pub(crate) fn over3<N: Real>(
         return None;
     }
     let front = normal / area;
-    let insides = [0, 1, 2].map(|at: usize| cross(&sides[at], &arms[at]).dot(&front) / lengths[at]);
+    let insides =
+        [0, 1, 2].mapped(|at: usize| cross(&sides[at], &arms[at]).dot(&front) / lengths[at]);
     if insides.iter().all(|&inside| inside > room) {
         let height = front.dot(&arms[0]);
         return (height.abs() > room).then_some(FeatureId::Face(u32::from(height < N::ZERO)));

@@ -1,5 +1,6 @@
 //! The contact of each pair of parts, by the normals that the surfaces have.
 
+use crate::tables::ByDimension;
 use core::cell::Cell;
 
 use super::Query;
@@ -128,7 +129,7 @@ fn plain<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
-    (N::tables().contacts)(&placed.pair(), request, arena.blank());
+    <N::Algorithms>::contacts(&placed.pair(), request, arena.blank());
     if arena.raw.points.is_empty() {
         return None;
     }
@@ -173,7 +174,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         let feature = |is_second| match &gap.witness {
             Some(found) => {
                 let pair = self.placed.pair();
-                (N::tables().witness_feature)(&pair, found, tolerance, is_second)
+                <N::Algorithms>::witness_feature(&pair, found, tolerance, is_second)
             }
             None => {
                 is_owing.set(true);
@@ -206,7 +207,7 @@ fn of_separation<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
-    let found = (N::tables().separation)(&meeting.placed.pair(), request.prediction)?;
+    let found = <N::Algorithms>::separation(&meeting.placed.pair(), request.prediction)?;
     of_surfaces(scene, meeting, &PartGap::of(&found), request, arena)
 }
 
@@ -299,7 +300,7 @@ fn over<N: Space<D>, const D: usize>(pair: &Pair<'_, N, D>, tolerance: N) -> Opt
         return None;
     };
     let center = pair.pose12.inverse_point(&Point::origin());
-    (N::tables().over)(triangle, &center, tolerance)
+    <N::Algorithms>::over(triangle, &center, tolerance)
 }
 
 /// The name of a contact is the feature that the ball is over: close to a side a ball may yet have
@@ -330,7 +331,7 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
 ) -> (Piece<N, D>, N) {
     let placed = scene.pair(parts);
     let (pair, raw) = (placed.pair(), arena.blank());
-    if let Some(found) = (N::tables().separation)(&pair, request.prediction) {
+    if let Some(found) = <N::Algorithms>::separation(&pair, request.prediction) {
         build_between(&pair, &found, request, raw);
     }
     appended(&placed, parts, arena)

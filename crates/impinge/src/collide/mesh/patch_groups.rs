@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 use super::super::RawPoint;
 use super::patch::{Merging, Piece};
 use crate::math::order::{order_of, sort_keyed};
-use crate::math::{Real, Vector, min};
+use crate::math::{Mapped, Real, Vector, min};
 
 /// Normals that differ by more than this, as vectors, are those of different patches; points that
 /// lie farther from a plane than this part of their distance lie in different planes.
@@ -153,9 +153,9 @@ fn are_level<N: Real, const D: usize>(
     lead1: &Lead,
     lead2: &Lead,
 ) -> bool {
-    let [normal1, normal2] = [lead1, lead2].map(|lead| &merging.pieces[lead.piece].normal);
+    let [normal1, normal2] = [lead1, lead2].mapped(|lead| &merging.pieces[lead.piece].normal);
     let [point1, point2] =
-        [lead1, lead2].map(|lead| -> &RawPoint<N, D> { &merging.points[lead.deepest] });
+        [lead1, lead2].mapped(|lead| -> &RawPoint<N, D> { &merging.points[lead.deepest] });
     // Written so that NaN differs.
     let is_same = (normal1 - normal2).norm_squared() <= square_of_same();
     let arm = point2.point1 - point1.point1;

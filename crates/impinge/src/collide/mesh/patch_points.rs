@@ -4,6 +4,7 @@
 //! A patch has few points, most often those of one piece. So all is done in place, in lists that the
 //! patches of a shape share.
 
+use crate::tables::ByDimension;
 use smallvec::SmallVec;
 
 use super::super::{PairIds, RawPoint};
@@ -46,7 +47,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         out: &mut SmallVec<[PatchPoint<N, D>; 4]>,
         ids: &mut PairIds,
     ) {
-        let mut tangents = (N::tables().tangents)(&self.merging.pieces[lead.piece].normal);
+        let mut tangents = <N::Algorithms>::tangents(&self.merging.pieces[lead.piece].normal);
         let count = |piece: &usize| self.merging.pieces[*piece].points.len();
         if pieces.iter().map(count).sum::<usize>() > FEW {
             tangents = askew(&tangents);

@@ -1,5 +1,7 @@
 //! The parts of two shapes, placed for computing with them.
 
+use crate::tables::ByDimension;
+use crate::tables::entries;
 use core::cell::OnceCell;
 
 use super::gather::Nearby;
@@ -8,7 +10,7 @@ use super::patch::{Piece, Points};
 use crate::collide::packet::{GapVisitor, TiledParts};
 use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::{Pair, RawManifold};
-use crate::math::{Point, Pose, Real, Space, Vector, min};
+use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, SurfaceAccess};
 
 /// Two shapes, one of them a composite at least.
@@ -115,7 +117,7 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
 impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn new(between: &'a Between<'a, N, D>, around: Option<&'a PartCache<N, D>>) -> Self {
         let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface_access();
-        let surfaces = between.composites().map(surface);
+        let surfaces = between.composites().mapped(surface);
         Self { between, surfaces, around, usual: OnceCell::new() }
     }
 
@@ -145,7 +147,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
                     && faces.all(|face| face.offset - face.normal.dot(&point.coords) > depth)
             }
             first => {
-                let found = (N::tables().surface_point)(first, point);
+                let found = entries::surface_point(first, point);
                 found.is_inside && (found.point - point).norm() > depth
             }
         }
@@ -184,7 +186,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let (tiles, near, origin) = (around.tiles(), nearby.near.as_slice(), usual.local);
         let parts = TiledParts { tiles, near, origin };
         let (first, pose12) = (self.between.pair.first, &usual.lying.pose12);
-        (N::tables().gaps)(&parts, first, pose12, prediction, limit, visit)
+        <N::Algorithms>::gaps(&parts, first, pose12, prediction, limit, visit)
     }
 
     /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is
@@ -334,7 +336,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// first shape and by the second; `None` if one is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
         let [center1, center2] = self.turned([self.bodies[0].center()?, self.bodies[1].center()?]);
-        let [origin1, origin2] = self.origins.map(|origin| origin.coords);
+        let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
         let [in1, in2] = [self.lying.turn.inverse_point(&center1), self.lying.turn.point(&center2)];
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
@@ -393,7 +395,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     pub(super) fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
         pair.pose12.translation += self.inward(way);
-        (N::tables().separation)(&pair, -tolerance).is_none()
+        <N::Algorithms>::separation(&pair, -tolerance).is_none()
     }
 
     /// A manifold of the bodies as one of the shapes, in the frame of the first; its points are

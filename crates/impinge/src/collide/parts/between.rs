@@ -12,7 +12,7 @@ use crate::bounding_volume::Aabb;
 use crate::collide::Pair;
 use crate::collide::pair::Ordered;
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Segment, Triangle};
 
 /// Two shapes, at least one of them a composite, and how each lies in the frame of the other.
@@ -61,7 +61,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
 
     /// The parts of both shapes; `None` for a convex solid.
     pub(crate) fn composites(&self) -> [Option<&'a dyn CompositeShape<N, D>>; 2] {
-        [self.pair.first, self.pair.second].map(|kind| Geometry(kind).as_composite())
+        [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
     /// The first shape is a half-space.
@@ -95,7 +95,7 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
     /// Two convex solids as they are.
     fn whole(&self) -> PartPair<'a, N, D> {
         let [seen1, seen2] = [self.pair.first, self.pair.second]
-            .map(|kind| AnchoredPart { solid: PartOf::Whole(kind), pose: Pose::identity() });
+            .mapped(|kind| AnchoredPart { solid: PartOf::Whole(kind), pose: Pose::identity() });
         PartPair { seen1, seen2, origin1: Point::origin(), pose12: self.pair.pose12 }
     }
 }
@@ -237,7 +237,7 @@ pub(crate) fn recentred<'a, N: Real, const D: usize>(
 ) -> Option<PartSolid<'a, N, D>> {
     match solid {
         PartSolid::Triangle(triangle) => {
-            let [a, b, c] = triangle.corners().map(|corner| corner - origin);
+            let [a, b, c] = triangle.corners().mapped(|corner| corner - origin);
             Triangle::try_new(a, b, c).ok().map(PartSolid::Triangle)
         }
         PartSolid::Segment(segment) => {

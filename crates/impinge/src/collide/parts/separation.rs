@@ -1,5 +1,6 @@
 //! How far a composite is from another shape: as far as the nearest of its parts.
 
+use crate::tables::ByDimension;
 use smallvec::SmallVec;
 
 use super::between::{Between, by_number};
@@ -13,7 +14,7 @@ use crate::collide::Pair;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::separation as of_convex;
 use crate::convex::Separation;
-use crate::math::{Point, Real, Space, Vector, max, max_component, unit};
+use crate::math::{Mapped, Point, Real, Space, Vector, max, max_component, unit};
 use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Kind};
 
@@ -113,7 +114,7 @@ pub(crate) fn visit_near_pairs<N: Space<D>, const D: usize>(
             _ => search.of_solid(0, parts2),
         },
         [Some(parts1), Some(parts2)] => {
-            let trees = [parts1, parts2].map(|parts| parts.search().as_tree()?.packed_whole());
+            let trees = [parts1, parts2].mapped(|parts| parts.search().as_tree()?.packed_whole());
             let [Some(tree1), Some(tree2)] = trees else { return search.of_many(parts1, parts2) };
             let NearestSearch { visitor, .. } = search;
             let mut pairs = TreeParts::new(between, [parts1, parts2], visitor);
@@ -145,7 +146,7 @@ impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
         parts: [&'a dyn CompositeShape<N, D>; 2],
         visitor: &'q mut dyn PairVisitor<N, D>,
     ) -> Self {
-        let sizes = parts.map(|parts| extent(&parts.search().bounds()));
+        let sizes = parts.mapped(|parts| extent(&parts.search().bounds()));
         let size = sizes[0] + sizes[1] + max_component(&between.pair.pose12.translation);
         let is_at_rest = [0, 1].iter().all(|&which| visitor.sweep(which).is_none());
         let is_known = is_at_rest && (size / N::EPSILON).is_finite_number();
@@ -256,12 +257,12 @@ type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
-        self.gap(toward, [0, 1].map(|which| self.reach(which, parts[which], &toward[which])))
+        self.gap(toward, [0, 1].mapped(|which| self.reach(which, parts[which], &toward[which])))
     }
 
     /// The gap along the direction from one part to another.
     fn gap_between(&self, parts: [u32; 2]) -> N {
-        let middles = [0, 1].map(|which| {
+        let middles = [0, 1].mapped(|which| {
             let part = self.parts[which].part(parts[which]);
             let [a, b, c] = corners(&part.solid, &part.pose)?;
             Some(Point::from((a + b + c) * N::lit(1.0 / 3.0)))
@@ -295,11 +296,11 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
             for (lane, (_, other)) in group.iter().enumerate() {
                 let part = parts.part(*other);
                 if let Some(corners) = corners(&part.solid, &part.pose) {
-                    tiles.put(lane, &corners.map(Point::from));
+                    tiles.put(lane, &corners.mapped(Point::from));
                     is_known[lane] = true;
                 }
             }
-            let gaps = (N::tables().part_gaps)(&around.slabs, &tiles, self.visitor.limit());
+            let gaps = <N::Algorithms>::part_gaps(&around.slabs, &tiles, self.visitor.limit());
             for (((own, _), gap), is_known) in group.iter_mut().zip(gaps).zip(is_known) {
                 *own = if is_known { max(gap, *own) } else { *own };
             }

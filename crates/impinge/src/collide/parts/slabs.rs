@@ -4,7 +4,7 @@ use smallvec::{SmallVec, smallvec};
 
 use super::between::Between;
 use super::sweep::PartSweep;
-use crate::math::{Pose, Real, Space, Vector, max, max_component, min, unit};
+use crate::math::{Mapped, Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Part, PartSolid, Plane};
 
 /// Gaps are loosened by so many rounding units of all lengths.
@@ -58,12 +58,12 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         let own = max_component(&part.pose.translation);
         let place = max(own, max_component(&pose.translation));
         slabs.origin = corners[0];
-        let ends = corners.map(|at| sweep.map_or(at, |sweep| at + sweep.way(&at)));
+        let ends = corners.mapped(|at| sweep.map_or(at, |sweep| at + sweep.way(&at)));
         let all = corners.iter().chain(&ends);
         slabs.size = all.fold(place, |size, at| max(max_component(at), size));
         let spread = sweep.map_or(N::ZERO, |sweep| sweep.spread);
-        let seen = corners.map(|at| at - corners[0]);
-        slabs.surround(&seen, &ends.map(|at| at - corners[0]), spread);
+        let seen = corners.mapped(|at| at - corners[0]);
+        slabs.surround(&seen, &ends.mapped(|at| at - corners[0]), spread);
         slabs.corners = sweep.is_none().then_some(seen);
         slabs
     }
@@ -84,7 +84,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
             return false;
         }
         let Some(corners) = corners(&part.solid, &part.pose) else { return false };
-        let corners = corners.map(|corner| corner - self.origin);
+        let corners = corners.mapped(|corner| corner - self.origin);
         let size = corners.iter().fold(self.size, |size, at| max(max_component(at), size));
         let gap = self.slabs.iter().fold(-N::INFINITY, |gap, slab| {
             let [lowest, highest] = range(&corners, &slab.along);
@@ -120,7 +120,7 @@ pub(crate) fn corners<N: Real, const D: usize>(
         PartSolid::Segment(segment) => [*segment.a(), *segment.b(), *segment.a()],
         PartSolid::Shape(_) => return None,
     };
-    Some(corners.map(|corner| pose.point(&corner).coords))
+    Some(corners.mapped(|corner| pose.point(&corner).coords))
 }
 
 /// How low and how high the corners lie along a direction.
@@ -128,7 +128,7 @@ pub(crate) fn range<N: Real, const D: usize>(
     corners: &[Vector<N, D>; 3],
     along: &Vector<N, D>,
 ) -> [N; 2] {
-    let [a, b, c] = [0, 1, 2].map(|index| corners[index].dot(along));
+    let [a, b, c] = [0, 1, 2].mapped(|index| corners[index].dot(along));
     [min(min(a, b), c), max(max(a, b), c)]
 }
 
@@ -144,7 +144,7 @@ fn normal_to<N: Real, const D: usize>(one: &Vector<N, D>, other: &Vector<N, D>) 
     let spans = [along(one), along(&without(other, one))];
     let (mut most, mut squared) = (Vector::<N, D>::zeros(), N::lit(0.0625));
     for index in 0..D {
-        let [a, b] = spans.each_ref().map(|span| span[index]);
+        let [a, b] = spans.each_ref().mapped(|span| span[index]);
         let left = N::ONE - a * a - b * b;
         if left > squared {
             let mut axis = Vector::<N, D>::zeros();

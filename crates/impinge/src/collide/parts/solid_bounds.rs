@@ -8,6 +8,7 @@ use super::between::Between;
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, unit};
 use crate::shape::{Geometry, Kind, Part, SupportMap};
+use crate::tables::ByDimension;
 
 /// Bounds are less than gaps by so many rounding units of all lengths; of curved solids the algorithms are content
 /// with 2⁻⁴⁰ of these.
@@ -63,7 +64,7 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
             self.gap(along, along.dot(&lowest) - map.rounding(), reach)
         };
         let center = part.pose.inverse_point(&self.center);
-        let Some(seen) = (N::tables().seen)(geometry.0, &center) else {
+        let Some(seen) = <N::Algorithms>::seen(geometry.0, &center) else {
             return gap(&self.outward_at(&aabb.center()));
         };
         let across = gap(&-part.pose.vector(&seen.outward));
@@ -72,7 +73,7 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
 
     /// The outward normal where the solid is nearest to a point, or the way from its middle to that.
     fn outward_at(&self, point: &Point<N, D>) -> Vector<N, D> {
-        match (N::tables().seen)(self.solid, &self.pose.inverse_point(point)) {
+        match <N::Algorithms>::seen(self.solid, &self.pose.inverse_point(point)) {
             Some(seen) => self.pose.vector(&seen.outward),
             None => unit(&(point - self.center)).map_or_else(Vector::<N, D>::zeros, |(way, _)| way),
         }

@@ -209,7 +209,6 @@ fn no_part_is_nearer_than_the_one_that_is_found() {
     searches_of_surface::<f32>();
 }
 
-#[cfg(feature = "f64")]
 #[test]
 fn no_part_is_nearer_in_double_precision() {
     searches::<f64, 3>(&in_space(), Random::vector, Random::turn);

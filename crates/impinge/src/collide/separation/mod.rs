@@ -48,6 +48,7 @@ use crate::collide::Pair;
 use crate::convex::Separation;
 use crate::math::{Real, Space};
 use crate::shape::{Geometry, ShapeKind};
+use crate::tables::ByDimension;
 
 pub(crate) use balls::ball_triangle::separation as ball_triangle;
 pub(crate) use chain::{ChainQuestion, Links, links};
@@ -75,7 +76,7 @@ pub(crate) fn separation<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    (N::tables().separation)(pair, limit)
+    <N::Algorithms>::separation(pair, limit)
 }
 
 /// The algorithm of a table for a pair.

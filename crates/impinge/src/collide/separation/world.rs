@@ -1,11 +1,13 @@
 //! The separation of two solids in the world, in the order in which they are given.
 
 use crate::collide::far::Apart;
+use crate::collide::far::are_beyond;
 use crate::collide::pair::{Ordered, Placed, Placing};
 use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::convex::Separation;
 use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 use crate::shape::{Geometry, Shape};
+use crate::tables::ByDimension;
 
 /// The separation of two placed solids in the world frame, `None` beyond `limit`.
 ///
@@ -56,7 +58,7 @@ pub(crate) fn distance_in_world<N: Space<D>, const D: usize>(
     if !pair.pose12.is_finite() {
         return None;
     }
-    (N::tables().distance)(&pair, limit)
+    <N::Algorithms>::distance(&pair, limit)
 }
 
 /// The separation in the frame of the first; `None` also if a pose is not finite.
@@ -151,7 +153,7 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
         let between = other.translation() - one.translation();
         let apart = Apart { shapes, between };
         let known = apart.is_known_beyond(limit);
-        if known.unwrap_or_else(|| (N::tables().are_beyond)(&apart, limit)) {
+        if known.unwrap_or_else(|| are_beyond(&apart, limit)) {
             return None;
         }
         Some([one.placed(), other.placed()])

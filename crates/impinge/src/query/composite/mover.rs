@@ -4,7 +4,7 @@ use crate::bounding_volume::Aabb;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::aabb_of;
 use crate::collide::parts::slabs::{across, corners, range};
-use crate::math::{Pose, Real, Space, Vector, max, max_component, min};
+use crate::math::{Mapped, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{Geometry, Part, SupportMap};
 
 /// Gaps are loosened by so many rounding units of all lengths.
@@ -39,7 +39,7 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
     ) -> Option<Self> {
         let (first, pose) = (between.pair.first, between.pose21);
         let map = Geometry(first).as_support_map()?;
-        let boxes = [Pose::identity(), pose].map(|pose| aabb_of(first, &pose));
+        let boxes = [Pose::identity(), pose].mapped(|pose| aabb_of(first, &pose));
         Some(Self { map, boxes, pose, velocity, target })
     }
 
@@ -47,22 +47,22 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
     /// It depends on nothing else, so that no answer depends on the search.
     pub(super) fn earliest(&self, part: &Part<'_, N, D>, end: N) -> Option<N> {
         let Some(corners) = corners(&part.solid, &part.pose) else { return Some(N::ZERO) };
-        let seen = corners.map(|corner| corner - self.pose.translation);
+        let seen = corners.mapped(|corner| corner - self.pose.translation);
         let own = max_component(&self.pose.translation) + self.map.reach() + self.map.rounding();
         let size = seen.iter().fold(own + self.target, |size, at| max(max_component(at), size));
         let slack = self.target + size * N::lit(ROUNDING) * N::EPSILON;
         let mut meeting = MeetingSpan { enter: N::ZERO, leave: end, slack };
-        let turned = seen.map(|at| self.pose.inverse_vector(&at));
+        let turned = seen.mapped(|at| self.pose.inverse_vector(&at));
         let speeds = [self.pose.inverse_vector(&self.velocity), self.velocity];
         for (index, points) in [turned, corners].iter().enumerate() {
             let own = &self.boxes[index];
             for axis in 0..D {
-                let [a, b, c] = points.each_ref().map(|at| at[axis]);
+                let [a, b, c] = points.each_ref().mapped(|at| at[axis]);
                 let other = [min(min(a, b), c), max(max(a, b), c)];
                 meeting.cut([own.mins()[axis], own.maxs()[axis]], other, speeds[index][axis]);
             }
         }
-        for along in across(&seen.map(|at| at - seen[0])) {
+        for along in across(&seen.mapped(|at| at - seen[0])) {
             let local = self.pose.inverse_vector(&along);
             let reach = |direction: &Vector<N, D>| {
                 self.map.core_support(direction).coords.dot(direction) + self.map.rounding()

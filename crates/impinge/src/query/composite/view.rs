@@ -8,6 +8,7 @@ use crate::query::kinematic::{ContactKinematic, KinematicSides};
 use crate::query::manifold::{TrackedContact, placed};
 use crate::query::{ContactId, ContactManifold, ManifoldView, PairRef, Placement};
 use crate::shape::{Geometry, Kind, Part, PartSolid};
+use crate::tables::ByDimension;
 
 /// Normals that differ by no more than so many rounding units are the same.
 const ROUNDING: f64 = 64.0;
@@ -105,7 +106,7 @@ fn is_face_normal<N: Space<D>, const D: usize>(
 ) -> bool {
     let Some(composite) = Geometry(kind).as_composite() else { return false };
     let face = composite.surface().and_then(|surface| surface.snapped(part, outward));
-    let is_in_space = (N::tables().tangents)(outward)[1] != Vector::<N, D>::zeros();
+    let is_in_space = <N::Algorithms>::tangents(outward)[1] != Vector::<N, D>::zeros();
     let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_in_space;
     let room = N::lit(ROUNDING) * N::EPSILON;
     face.is_some_and(|face| !is_line && (face - outward).norm() <= room)

@@ -8,7 +8,7 @@
 use super::{ConstantVelocities, RigidMotion};
 use crate::bounding_volume::Aabb;
 use crate::collide::parts::{PartPair, PartSweep};
-use crate::math::{Point, Pose, Real, Space, Vector, max, max_component, min, unit};
+use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min, unit};
 use crate::shape::{Geometry, Shape};
 
 /// At most so many spans are tried to find how far a bound carries.
@@ -185,7 +185,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     where
         'a: 'p,
     {
-        let (pair, poses) = (parts.pair(), parts.poses().map(|pose| frame.compose(&pose)));
+        let (pair, poses) = (parts.pair(), parts.poses().mapped(|pose| frame.compose(&pose)));
         let [center1, center2] = &self.centers;
         let part1 = self.bodies[0].part(Geometry(pair.first), &poses[0], center1);
         let part2 = self.bodies[1].part(Geometry(pair.second), &poses[1], center2);
@@ -210,7 +210,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
 
     /// How fast parts of the bodies approach in any direction, at most.
     pub(super) fn rate_of(&self, parts: &ImpactParts<'_, N, D>, to: N) -> Rate<N> {
-        let swings = [0, 1].map(|index| {
+        let swings = [0, 1].mapped(|index| {
             product(self.bodies[index].turn_bound(self.time, to), parts.bodies[index].arm)
         });
         Rate { speed: self.drift(None, to) + swings[0] + swings[1], bend: N::ZERO }
@@ -223,12 +223,12 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// which turns by `S`: a linear function of its place. Its derivative, `u'' - 2 S u' + S² u`, bends the way.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
         let way = rate.way(span);
-        let [body, other] = [which, 1 - which].map(|index| self.bodies[index]);
+        let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);
         let [Some(own), Some(frame)] = [body.constant(), other.constant()] else {
             return PartSweep::anywhere(way);
         };
         let [center, pivot] = [self.centers[which], self.centers[1 - which]];
-        let [turn, turning] = [body, other].map(|body| body.turn_bound(self.time, self.time));
+        let [turn, turning] = [body, other].mapped(|body| body.turn_bound(self.time, self.time));
         let swing = product(turn, body.arm);
         let speed = self.drift(None, self.time) + swing;
         let far = length(&(center - pivot)) + body.reach + speed * span;
@@ -296,7 +296,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
                 return self.about_unbounded(index, to);
             }
         }
-        let swings = [0, 1].map(|index| self.swing(index, self.bodies[index].arm, to));
+        let swings = [0, 1].mapped(|index| self.swing(index, self.bodies[index].arm, to));
         let speed = self.drift(self.direction(), to) + swings[0] + swings[1];
         Rate { speed, bend: N::ZERO }
     }
@@ -344,7 +344,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// At least how fast the centres approach along a unit vector from the first to the second; with
     /// none, in any direction. Rounding is taken for nothing.
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
-        if let [Some(motion1), Some(motion2)] = self.bodies.map(MovingBody::constant) {
+        if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
             let noise = N::lit(8.0) * N::EPSILON * max_component(&relative);
             let speed = direction.map_or_else(|| length(&relative), |n| n.dot(&relative));
@@ -383,8 +383,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// How fast a point of the first body and one of the second approach along the normal, and how
     /// much of that rounding can make.
     pub(super) fn closing(&self, points: &[Vector<N, D>; 2], size: N) -> (N, N) {
-        let arms = [0, 1].map(|index| points[index] - self.centers[index]);
-        if let [Some(motion1), Some(motion2)] = self.bodies.map(MovingBody::constant) {
+        let arms = [0, 1].mapped(|index| points[index] - self.centers[index]);
+        if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let terms =
                 [motion1.linear - motion2.linear, motion1.spin * arms[0], motion2.spin * arms[1]];
             let noise = terms.iter().fold(N::ZERO, |sum, term| sum + max_component(term));
@@ -411,7 +411,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if !(span > N::ZERO && span.is_finite_number()) {
             return (N::ZERO, N::ZERO);
         }
-        let moved = [0, 1].map(|index| self.moved(index, &points[index], span));
+        let moved = [0, 1].mapped(|index| self.moved(index, &points[index], span));
         (self.normal.dot(&(moved[0] - moved[1])) / span, N::lit(8.0) * root * speed)
     }
 

@@ -10,6 +10,7 @@ use crate::collide::separation::separation;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
 use crate::shape::{FeatureId, Geometry, Kind};
+use crate::tables::ByDimension;
 
 /// At most so many steps are made.
 const MAX_STEPS: usize = 128;
@@ -79,7 +80,7 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
     /// What the points of the pair that begins so lie on when it arrives.
     pub(crate) fn features(&self, start: &Pair<'_, N, D>, path: &Path<N, D>) -> [FeatureId; 2] {
         let pose12 = Pose { translation: path.place(start, self.along), ..start.pose12 };
-        (N::tables().witness_features)(&Pair { pose12, ..*start }, &self.separation)
+        <N::Algorithms>::witness_features(&Pair { pose12, ..*start }, &self.separation)
     }
 }
 
@@ -229,7 +230,7 @@ fn touching<N: Space<D>, const D: usize>(
         let turned = max_component(&(outward - normal));
         (distance - target).abs() <= tolerance && turned <= N::lit(8.0) * N::EPSILON
     };
-    let seen_from = |kind: Kind<'_, N, D>, point: &Point<N, D>| (N::tables().seen)(kind, point);
+    let seen_from = |kind: Kind<'_, N, D>, point: &Point<N, D>| <N::Algorithms>::seen(kind, point);
     let seen = seen_from(*first, &point2);
     if let Some(seen) = seen.filter(|seen| is_touch(seen.distance, seen.outward)) {
         let (distance, point1) = (seen.distance, point2 - normal * seen.distance);

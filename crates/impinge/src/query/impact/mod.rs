@@ -14,6 +14,7 @@ mod motion;
 mod nonlinear;
 mod velocities;
 
+use crate::tables::entries;
 use linear::advance;
 use linear::is_hit_at_start;
 pub(crate) use linear::{Arrival, Path, advance_from};
@@ -311,7 +312,7 @@ pub fn impact<N: Space<D>, const D: usize>(
     moving2: &Moving<'_, N, D>,
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
-    (N::tables().impact)(moving1, moving2, options)
+    entries::impact(moving1, moving2, options)
 }
 
 /// The first time, zero or more, at which two solids touch that move with constant velocities and
@@ -341,7 +342,7 @@ pub fn time_of_impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     g2: &dyn Shape<N, D>,
 ) -> Option<N> {
     let (moving1, moving2) = (Moving::new(m1, v1, g1), Moving::new(m2, v2, g2));
-    (N::tables().time_of_impact)(&moving1, &moving2, &ImpactOptions::new())
+    entries::time_of_impact(&moving1, &moving2, &ImpactOptions::new())
 }
 
 /// [`impact`] of solids that the pair table knows.

@@ -2,6 +2,8 @@
 
 use super::bounds::{Moment, MovingBody, Rate, length};
 use super::{Impact, ImpactOptions, ImpactStatus, RigidMotion, is_hit_at_start};
+use crate::tables::ByDimension;
+use crate::tables::entries;
 use core::cmp::Ordering;
 use core::iter;
 
@@ -11,7 +13,7 @@ use crate::collide::parts::{
     Between, PairVisitor, PartSeparation, PartSweep, Wanted, nearest_between, visit_near_pairs,
 };
 use crate::collide::separation::separation;
-use crate::math::{Pose, Space, Unit, Vector, max, max_component, min};
+use crate::math::{Mapped, Pose, Space, Unit, Vector, max, max_component, min};
 use crate::shape::Shape;
 
 /// At most so many steps are made.
@@ -90,7 +92,7 @@ pub fn nonlinear_time_of_impact<N: Space<D>, const D: usize>(
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
     let flight = Flight { motions: [motion1, motion2], shapes: [shape1, shape2] };
-    (N::tables().nonlinear_impact)(&flight, options)
+    entries::nonlinear_impact(&flight, options)
 }
 
 /// Two moving bodies, in the order of the arguments.
@@ -105,9 +107,9 @@ pub(crate) fn impact_of_flight<N: Space<D>, const D: usize>(
     options: &ImpactOptions<N>,
 ) -> Option<Impact<N, D>> {
     let [one, two] =
-        [0, 1].map(|index| MovingBody::new(flight.motions[index], flight.shapes[index]));
+        [0, 1].mapped(|index| MovingBody::new(flight.motions[index], flight.shapes[index]));
     let world = Vector::<N, D>::zeros();
-    let [start1, start2] = [&one, &two].map(|body| body.placed(&world, N::ZERO));
+    let [start1, start2] = [&one, &two].mapped(|body| body.placed(&world, N::ZERO));
     let order = order(&start1, &start2);
     let mirrored = order.is_eq();
     let swapped = if mirrored { two_leads(&one, &two, options) } else { order.is_gt() };
@@ -137,7 +139,7 @@ fn two_leads<N: Space<D>, const D: usize>(
     options: &ImpactOptions<N>,
 ) -> bool {
     let world = Vector::<N, D>::zeros();
-    let later = |time| [one, two].map(|body| body.placed(&world, time));
+    let later = |time| [one, two].mapped(|body| body.placed(&world, time));
     // 64 times at most, when the numbers end.
     let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
     let times = times.take_while(|time| time.is_finite_number());
@@ -250,7 +252,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
     fn step(&self, configuration: &Configuration<'_, 'a, N, D>, mode: Mode<N>) -> Step<N> {
         let moment = &configuration.poses.moment;
         let between = length(&(moment.centers[1] - moment.centers[0]));
-        let [radius1, radius2] = self.bodies.each_ref().map(MovingBody::radius);
+        let [radius1, radius2] = self.bodies.each_ref().mapped(MovingBody::radius);
         let (excess, apart) =
             (configuration.excess(mode), between - radius1 - radius2 - self.target);
         let whole = moment.safe_time(excess, apart, self.end - moment.time);
@@ -277,9 +279,10 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 
     /// The bodies at a time; `None` if a pose is not finite.
     fn poses_at(&self, time: N) -> Option<BodyPoses<'_, 'a, N, D>> {
-        let poses = self.bodies.each_ref().map(|body| body.motion.pose_about(&self.origin, time));
+        let poses =
+            self.bodies.each_ref().mapped(|body| body.motion.pose_about(&self.origin, time));
         let [one, two] =
-            [0, 1].map(|index| Placed::of_pose(&poses[index], self.bodies[index].shape));
+            [0, 1].mapped(|index| Placed::of_pose(&poses[index], self.bodies[index].shape));
         let pair = Pair::new([one.shape, two.shape], [&one.pose, &two.pose]);
         let finite = one.pose.is_finite() && two.pose.is_finite() && pair.pose12.is_finite();
         finite.then(|| BodyPoses {
@@ -287,7 +290,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
                 normal: Vector::<N, D>::zeros(),
                 bodies: self.bodies.each_ref(),
                 origin: self.origin,
-                centers: [0, 1].map(|index| self.bodies[index].center_at(&poses[index])),
+                centers: [0, 1].mapped(|index| self.bodies[index].center_at(&poses[index])),
                 poses,
                 time,
             },
@@ -315,7 +318,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
             size,
             tolerance: self.tolerance.map_or(rounding, |tolerance| max(tolerance, rounding)),
             points: [found.separation.point1, found.separation.point2]
-                .map(|point| pose1.point(&point).coords),
+                .mapped(|point| pose1.point(&point).coords),
             poses: BodyPoses { moment: Moment { normal, ..moment }, pose1, between },
             found,
         })
@@ -337,8 +340,8 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         status: ImpactStatus,
     ) -> Impact<N, D> {
         let parts = configuration.poses.between.parts(configuration.found.parts);
-        let features = (N::tables().witness_features)(&parts.pair(), &configuration.found.local);
-        let [point1, point2] = configuration.points.map(|point| (point + self.origin).into());
+        let features = <N::Algorithms>::witness_features(&parts.pair(), &configuration.found.local);
+        let [point1, point2] = configuration.points.mapped(|point| (point + self.origin).into());
         Impact {
             toi: configuration.poses.moment.time,
             world1: point1,

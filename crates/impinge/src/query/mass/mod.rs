@@ -3,9 +3,9 @@
 //! Shapes are integrated in doubles, about their middle and in units of their size ([`integrals`]), whatever the
 //! scalar. What there is a closed form for has it; the rest is [`round_ellipsoid`], [`support2`] and [`support3`].
 
+mod by_dimension;
 mod enclosed;
 mod integrals;
-mod kernel;
 mod outline;
 mod plate;
 mod polyhedron;
@@ -15,7 +15,7 @@ mod solids;
 mod support2;
 mod support3;
 
-pub use kernel::MassKernel;
+pub(crate) use by_dimension::MassByDimension;
 
 use crate::math::{Pose, Real, Space, Vector};
 use crate::shape::{
@@ -155,7 +155,7 @@ impl<N: Real> Weighing<'_, N> {
         if let Some(compound) = shape.as_shape::<Compound<N, D>>() {
             return self.of_children(compound);
         }
-        let found = (N::mass_kernel().enclosed)(shape).map_err(|error| self.placed(error))?;
+        let found = <N::Algorithms>::enclosed(shape).map_err(|error| self.placed(error))?;
         Ok(found.of_density(self.density()?))
     }
 
@@ -241,7 +241,7 @@ fn of_solid<N: Space<D>, const D: usize>(
         (core, radius) = (outer.inner(), radius + outer.radius());
     }
     match (core.0, solid.as_support_map()) {
-        (Kind::SupportMap(_), Some(whole)) => (N::mass_kernel().by_support)(whole),
+        (Kind::SupportMap(_), Some(whole)) => <N::Algorithms>::by_support(whole),
         (Kind::Plane(_), _) => Err(MassError::Unbounded { part: 0 }),
         _ => Ok(rounded(core, radius)),
     }
@@ -249,7 +249,6 @@ fn of_solid<N: Space<D>, const D: usize>(
 
 /// The volume of all points within `radius` of a solid that there is a formula for.
 fn rounded<N: Space<D>, const D: usize>(core: Geometry<'_, N, D>, radius: N) -> Moments<D> {
-    let kernel = N::mass_kernel();
     match core.0 {
         Kind::Ball(ball) => solids::round_box(&Vector::<N, D>::zeros(), ball.radius() + radius),
         Kind::Cuboid(cuboid) => solids::round_box(cuboid.half_extents(), radius),
@@ -266,10 +265,10 @@ fn rounded<N: Space<D>, const D: usize>(core: Geometry<'_, N, D>, radius: N) -> 
             revolution::round_cylinder([cylinder.half_height(), cylinder.radius()], radius)
         }
         Kind::Cone(cone, _) => revolution::round_cone([cone.half_height(), cone.radius()], radius),
-        Kind::Triangle(triangle) => (kernel.triangle)(triangle.corners(), radius),
-        Kind::Polytope(polytope) => (kernel.polytope)(polytope, radius),
+        Kind::Triangle(triangle) => <N::Algorithms>::round_triangle(triangle.corners(), radius),
+        Kind::Polytope(polytope) => <N::Algorithms>::round_polytope(polytope, radius),
         Kind::Ellipsoid(ellipsoid) if radius > N::ZERO => {
-            (kernel.ellipsoid)(ellipsoid.half_axes(), radius)
+            <N::Algorithms>::round_ellipsoid(ellipsoid.half_axes(), radius)
         }
         Kind::Ellipsoid(ellipsoid) => solids::ellipsoid(ellipsoid.half_axes()),
         Kind::Rounded(_) | Kind::SupportMap(_) | Kind::Plane(_) | Kind::Composite(_) => {

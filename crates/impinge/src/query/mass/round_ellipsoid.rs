@@ -7,7 +7,7 @@
 //! logarithms are evenly spaced: the curvature of needles and plates is all near the axes.
 
 use super::integrals::LocalUnits;
-use crate::math::{Matrix, Real, Vector, max, max_component};
+use crate::math::{Mapped, Matrix, Real, Vector, max, max_component};
 use crate::shape::Moments;
 
 /// The step of the logarithms of angles, and how far they go to both sides.
@@ -25,7 +25,7 @@ fn nodes() -> Vec<AngleNode> {
         let growth = libm::exp(STEP * f64::from(step));
         // Both are exact near their end, where the other is a quarter up to rounding.
         let [from_zero, from_quarter] =
-            [growth, 1.0 / growth].map(|x| core::f64::consts::FRAC_PI_2 * x / (1.0 + x));
+            [growth, 1.0 / growth].mapped(|x| core::f64::consts::FRAC_PI_2 * x / (1.0 + x));
         let weight = STEP * from_zero * from_quarter * core::f64::consts::FRAC_2_PI;
         [libm::sin(from_zero), libm::sin(from_quarter), weight]
     };

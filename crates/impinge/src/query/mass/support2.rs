@@ -2,7 +2,7 @@
 
 use super::integrals::{Integrals, LocalUnits};
 use super::outline::crossed;
-use crate::math::{Point, Real, Vector};
+use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::{MassError, Moments, SupportMap, finite};
 
 type V2 = Vector<f64, 2>;
@@ -15,7 +15,7 @@ const FLAT: f64 = 64.0;
 
 /// The mass and moments of a convex solid by its support points, up to about 1e-9; polygons are exact.
 pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 2>) -> Result<Moments<2>, MassError> {
-    let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(V2::from);
+    let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].mapped(V2::from);
     let mut extremes = [Point::<N, 2>::origin(); 4];
     for (extreme, axis) in extremes.iter_mut().zip(&axes) {
         *extreme = map.support_point(&axis.map(N::lit));
@@ -49,8 +49,8 @@ impl<'s> Tracing<'s> {
 
     /// Adds the solid; quarters of its outline are halved at most `depth` times.
     pub(super) fn trace(&mut self, depth: u32) {
-        let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(V2::from);
-        let ends = axes.map(|axis| (self.support)(&axis));
+        let axes = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].mapped(V2::from);
+        let ends = axes.mapped(|axis| (self.support)(&axis));
         for quarter in 0..4 {
             self.follow(&ends[quarter], &ends[(quarter + 1) % 4], depth);
         }

@@ -9,8 +9,8 @@
 
 use core::cmp::Ordering;
 
-use crate::math::Point;
 use crate::math::exact::{area, volume};
+use crate::math::{Mapped, Point};
 
 /// A ray from a point to infinity.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +62,7 @@ pub(super) fn of_triangle(
 ) -> Added {
     let seen =
         |p: &Point<f64, 3>| Point::<f64, 2>::new(p[(way.axis + 1) % 3], p[(way.axis + 2) % 3]);
-    let around = around_seen(&corners.each_ref().map(seen), &seen(point));
+    let around = around_seen(&corners.each_ref().mapped(seen), &seen(point));
     if around == 0 {
         return Some(0);
     }
@@ -97,14 +97,15 @@ mod tests {
     use super::*;
 
     fn ways(axes: usize) -> impl Iterator<Item = RayWay> {
-        (0..axes).flat_map(|axis| [true, false].map(|is_ascending| RayWay { axis, is_ascending }))
+        (0..axes)
+            .flat_map(|axis| [true, false].mapped(|is_ascending| RayWay { axis, is_ascending }))
     }
 
     /// All eight points of a grid of three by three around the middle one, as an outline.
     #[test]
     fn an_outline_along_the_ray() {
         let ring = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
-        let corner = |at: usize| Point::<f64, 2>::from(ring[at % 8].map(f64::from));
+        let corner = |at: usize| Point::<f64, 2>::from(ring[at % 8].mapped(f64::from));
         for (x, y) in (-1..4).flat_map(|x| (-1..4).map(move |y| (x, y))) {
             let point = Point::<f64, 2>::new(f64::from(x), f64::from(y));
             let inside = x == 1 && y == 1;
@@ -122,7 +123,7 @@ mod tests {
     #[test]
     fn a_surface_along_the_ray() {
         let mut triangles = Vec::new();
-        for (axis, end) in (0..3).flat_map(|axis| [0.0, 2.0].map(|end| (axis, end))) {
+        for (axis, end) in (0..3).flat_map(|axis| [0.0, 2.0].mapped(|end| (axis, end))) {
             for (u, v) in [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)] {
                 let at = |du: f64, dv: f64| {
                     let mut point = Point::<f64, 3>::origin();
@@ -133,7 +134,7 @@ mod tests {
                 let (a, b, c, d) = (at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0));
                 let outward = [[a, b, c], [a, c, d]];
                 let turned = |[a, b, c]: [Point<f64, 3>; 3]| [a, c, b];
-                triangles.extend(if end > 1.0 { outward } else { outward.map(turned) });
+                triangles.extend(if end > 1.0 { outward } else { outward.mapped(turned) });
             }
         }
         let steps = || (-1..6).map(|step| f64::from(step) * 0.5);

@@ -10,6 +10,7 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, max, max_component};
 use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Polyline, TriMesh};
+use crate::tables::entries;
 
 impl<N: Real> TriMesh<N, 3> {
     /// The point, in the frame of the mesh, lies in the volume that the mesh bounds, or on the mesh;
@@ -113,7 +114,7 @@ fn touches<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     point: &Point<N, D>,
 ) -> bool {
-    (N::tables().nearest_part)(parts, point, true).is_some()
+    entries::nearest_part(parts, point, true).is_some()
 }
 
 /// The distance to the nearest part with the sign that the winding number says.
@@ -122,7 +123,7 @@ fn signed<N: Space<D>, const D: usize>(
     point: &Point<N, D>,
     winding: impl FnOnce() -> Option<i64>,
 ) -> N {
-    let Some(nearest) = (N::tables().nearest_part)(parts, point, false) else {
+    let Some(nearest) = entries::nearest_part(parts, point, false) else {
         return N::INFINITY;
     };
     // What lies on a part is at plain zero.

@@ -2,7 +2,7 @@
 
 use super::nearest_on_segment;
 use super::triangle::{nearest, on_side};
-use crate::math::{Point, Real};
+use crate::math::{Point, Real, filled};
 use crate::shape::{FeatureId, Geometry, Kind, Segment, Triangle};
 
 /// Where on a shape a projected point lies.
@@ -81,7 +81,7 @@ fn of_triangle<N: Real, const D: usize>(
     feature: Option<FeatureId>,
 ) -> [N; 3] {
     if let Some(FeatureId::Vertex(corner)) = feature {
-        return core::array::from_fn(|at| if at == corner as usize { N::ONE } else { N::ZERO });
+        return filled(|at| if at == corner as usize { N::ONE } else { N::ZERO });
     }
     let is_side = |side: &u32| feature == Some(FeatureId::flat::<D>(1, *side));
     match (0..3).find(is_side) {

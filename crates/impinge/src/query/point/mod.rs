@@ -35,6 +35,7 @@ pub(super) use surface::length;
 use super::composite::{Near, PartPoint};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
+use crate::tables::entries;
 
 /// The point of a solid, or of its surface, that is nearest to a given point.
 ///
@@ -225,10 +226,10 @@ pub(crate) fn project<N: Space<D>, const D: usize>(
 ) -> Option<(PointProjection<N, D>, N)> {
     let local = pose.inverse_point(point);
     let (nearest, distance) = if let Some(parts) = shape.as_composite() {
-        let found = (N::tables().nearest_part)(parts, &local, false)?;
+        let found = entries::nearest_part(parts, &local, false)?;
         (found.projection(), found.distance.abs())
     } else {
-        let (nearest, _) = (N::tables().surface_point)(shape.0, &local).projection(&local);
+        let (nearest, _) = entries::surface_point(shape.0, &local).projection(&local);
         (nearest, length(&(local - nearest.point)))
     };
     let is_own = solid && nearest.is_inside;
@@ -269,8 +270,8 @@ impl<N: Real, const D: usize> PointProjection<N, D> {
 impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for S {
     fn project_local_point(&self, point: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
         match self.geometry().as_composite() {
-            None => (N::tables().surface_point)(self.geometry().0, point).projection(point),
-            Some(parts) => match (N::tables().nearest_part)(parts, point, false) {
+            None => entries::surface_point(self.geometry().0, point).projection(point),
+            Some(parts) => match entries::nearest_part(parts, point, false) {
                 None => (nowhere(point), FeatureId::Face(0)),
                 Some(found) => (found.projection(), found.feature),
             },
@@ -289,7 +290,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for 
             let barycentric = Barycentric::of(self.geometry(), &projected.point, on_boundary);
             return (projected, PointLocation { part: 0, feature, barycentric });
         };
-        let found = (N::tables().nearest_part)(parts, point, false);
+        let found = entries::nearest_part(parts, point, false);
         let nothing = PointLocation {
             part: 0,
             feature: FeatureId::Face(0),
@@ -302,7 +303,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for 
 
     fn signed_distance_to_local_point(&self, point: &Point<N, D>) -> N {
         if let Some(parts) = self.geometry().as_composite() {
-            let found = (N::tables().nearest_part)(parts, point, false);
+            let found = entries::nearest_part(parts, point, false);
             return found.map_or(N::INFINITY, |found| found.distance);
         }
         let (nearest, _) = self.project_local_point(point);
@@ -323,8 +324,8 @@ pub(crate) fn holds<N: Space<D>, const D: usize>(
     point: &Point<N, D>,
 ) -> bool {
     match shape.as_composite() {
-        None => (N::tables().surface_point)(shape.0, point).projection(point).0.is_inside,
-        Some(parts) => (N::tables().nearest_part)(parts, point, true).is_some(),
+        None => entries::surface_point(shape.0, point).projection(point).0.is_inside,
+        Some(parts) => entries::nearest_part(parts, point, true).is_some(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::SurfacePoint;
 use super::segment::{feature_at, nearest};
-use crate::math::{Point, Real, cross};
+use crate::math::{Mapped, Point, Real, cross};
 use crate::shape::{FeatureId, Polytope, PolytopeFace};
 
 /// From inside: the foot on the plane of the nearest face, which is the nearest point of the
@@ -65,7 +65,7 @@ fn on_line<N: Real, const D: usize>(
     between: FeatureId,
     point: &Point<N, D>,
 ) -> SurfacePoint<N, D> {
-    let [a, b] = ends.map(|end| &solid.vertices()[end as usize]);
+    let [a, b] = ends.mapped(|end| &solid.vertices()[end as usize]);
     let (found, fraction) = nearest([a, b], point);
     SurfacePoint::on(found, feature_at(fraction, ends, between))
 }

@@ -1,7 +1,7 @@
 //! The nearest point of a segment.
 
 use super::SurfacePoint;
-use crate::math::{Point, Real, Vector, max, max_component};
+use crate::math::{Mapped, Point, Real, Vector, max, max_component};
 use crate::shape::{FeatureId, Segment, SupportMap};
 
 /// The nearest point of the segment between `ends`, and where it is: 0 at the first end, 1 at the
@@ -31,16 +31,16 @@ pub(crate) fn nearest<N: Real, const D: usize>(
 
 /// How far two vectors whose sum is `along` lead along it, both in the same unit.
 fn shares<N: Real, const D: usize>(along: &Vector<N, D>, parts: [&Vector<N, D>; 2]) -> (N, N) {
-    let [from_a, to_b] = parts.map(|part| part.dot(along));
+    let [from_a, to_b] = parts.mapped(|part| part.dot(along));
     let whole = from_a + to_b;
     if whole * N::EPSILON > N::MIN_POSITIVE && from_a.abs() + to_b.abs() < N::INFINITY {
         return (from_a, to_b);
     }
     // Their squares are no numbers of the type, or lose digits.
-    let largest = parts.map(max_component);
+    let largest = parts.mapped(max_component);
     let scale = max(largest[0], largest[1]).power_of_two_below();
     let along = along / scale;
-    let [from_a, to_b] = parts.map(|part| (part / scale).dot(&along));
+    let [from_a, to_b] = parts.mapped(|part| (part / scale).dot(&along));
     (from_a, to_b)
 }
 

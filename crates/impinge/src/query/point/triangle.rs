@@ -2,7 +2,7 @@
 
 use super::SurfacePoint;
 use super::segment::{self, feature_at};
-use crate::math::{Point, Real, max, max_component};
+use crate::math::{Mapped, Point, Real, max, max_component};
 use crate::shape::FeatureId;
 
 /// A point of a triangle that is near to another point.
@@ -32,7 +32,7 @@ pub(super) fn nearest<N: Real, const D: usize>(
     corners: &[Point<N, D>; 3],
     point: &Point<N, D>,
 ) -> OnTriangle<N, D> {
-    let sides = [0, 1, 2].map(|side| on_side(corners, side, point));
+    let sides = [0, 1, 2].mapped(|side| on_side(corners, side, point));
     let [first, second, third] = sides;
     let best = first.nearer(second, point).nearer(third, point);
     match on_chord(corners, &sides, point) {
@@ -48,7 +48,7 @@ pub(super) fn on_side<N: Real, const D: usize>(
     point: &Point<N, D>,
 ) -> OnTriangle<N, D> {
     let next = (side + 1) % 3;
-    let [from, to] = [side, next].map(|corner| corner as usize);
+    let [from, to] = [side, next].mapped(|corner| corner as usize);
     let (place, fraction) = segment::nearest([&corners[from], &corners[to]], point);
     let mut weights = [N::ZERO; 3];
     (weights[from], weights[to]) = (N::ONE - fraction, fraction);
@@ -80,7 +80,7 @@ fn on_chord<N: Real, const D: usize>(
     let (inner, fraction) = segment::nearest([&base.found.point, &end], point);
     let is_inner = [place, fraction].iter().all(|&share| share > N::ZERO && share < N::ONE);
     is_inner.then(|| {
-        let mut weights = base.weights.map(|weight| weight * (N::ONE - fraction));
+        let mut weights = base.weights.mapped(|weight| weight * (N::ONE - fraction));
         weights[start] += fraction * (N::ONE - share);
         weights[top] = fraction * share;
         OnTriangle { found: SurfacePoint::on(inner, FeatureId::Face(0)), weights }
@@ -89,10 +89,10 @@ fn on_chord<N: Real, const D: usize>(
 
 /// The number of the longest side, the first of equals.
 fn longest_side<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> usize {
-    let sides = [0, 1, 2].map(|side| corners[(side + 1) % 3] - corners[side]);
+    let sides = [0, 1, 2].mapped(|side| corners[(side + 1) % 3] - corners[side]);
     // Squares of large and of small lengths are no numbers of the type.
     let scale = sides.iter().map(max_component).fold(N::ZERO, max).power_of_two_below();
-    let squares = sides.map(|side| (side / scale).norm_squared());
+    let squares = sides.mapped(|side| (side / scale).norm_squared());
     let longer = |a: usize, b: usize| if squares[b] > squares[a] { b } else { a };
     longer(longer(0, 1), 2)
 }

@@ -5,7 +5,7 @@ use super::clip::in_order;
 use super::segment::{RayNames, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Real, Vector, max, min, unit, unit_or};
+use crate::math::{Mapped, Real, Vector, max, min, unit, unit_or};
 use crate::shape::{Capsule, FeatureId};
 
 /// The union of two balls and of the round side between them, which is convex: first in, last out.
@@ -47,7 +47,7 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
     }
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
     let normals = [(enter, against), (leave, -against)]
-        .map(|(t, fallback)| unit_or(&(flat_origin + flat_dir * t), fallback));
+        .mapped(|(t, fallback)| unit_or(&(flat_origin + flat_dir * t), fallback));
     let [enter_normal, leave_normal] =
         refined(&found.places(), normals, [enter == found.enter, leave == found.leave]);
     let feature = FeatureId::Edge(0);
@@ -63,5 +63,5 @@ fn refined<N: Real, const D: usize>(
     normals: [Vector<N, D>; 2],
     round: [bool; 2],
 ) -> [Vector<N, D>; 2] {
-    [0, 1].map(|end| if round[end] { unit_or(&places[end], normals[end]) } else { normals[end] })
+    [0, 1].mapped(|end| if round[end] { unit_or(&places[end], normals[end]) } else { normals[end] })
 }

@@ -5,7 +5,7 @@ use super::cylinder::{cap, span as cylinder_span};
 use super::segment::{RayNames, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Point, Real, Vector, cross2, max, min, unit_or};
+use crate::math::{Mapped, Point, Real, Vector, cross2, max, min, unit_or};
 use crate::shape::{Cone, Cylinder, FeatureId};
 
 /// The infinite double cone of the slanted side, one nappe of it, clipped by the base and at the
@@ -21,7 +21,7 @@ pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3
     }
     let side = Nappe::new(cone, ray).span()?;
     let caps = [(-N::ONE, FeatureId::Face(0)), (N::ONE, FeatureId::Vertex(0))];
-    clipped(side, caps.map(|(sign, feature)| cap(half_height, sign, feature, ray)))
+    clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
 /// The infinite cone below its apex, and a line through it.

@@ -4,7 +4,7 @@ use super::ball::roots;
 use super::clip::{HalfSpace, clipped};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Real, Vector, unit_or};
+use crate::math::{Mapped, Real, Vector, unit_or};
 use crate::shape::{Cylinder, FeatureId};
 
 /// The infinite round side, clipped by the two caps.
@@ -12,7 +12,7 @@ pub(super) fn span<N: Real>(cylinder: &Cylinder<N>, ray: &Ray<N, 3>) -> Option<S
     let side = round_side(cylinder.radius(), ray)?;
     let half_height = cylinder.half_height();
     let caps = [(N::ONE, FeatureId::Face(0)), (-N::ONE, FeatureId::Face(1))];
-    clipped(side, caps.map(|(sign, feature)| cap(half_height, sign, feature, ray)))
+    clipped(side, caps.mapped(|(sign, feature)| cap(half_height, sign, feature, ray)))
 }
 
 /// The line inside the infinite cylinder around the y axis.
@@ -23,7 +23,7 @@ fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let [entry, exit] = found.places();
     // Around an axis of no thickness the normal faces the line.
     let against = unit_or(&-dir, Vector::<N, 2>::zeros());
-    let [enter, leave] = [(found.enter, entry, against), (found.leave, exit, -against)].map(
+    let [enter, leave] = [(found.enter, entry, against), (found.leave, exit, -against)].mapped(
         |(t, place, fallback)| {
             let normal = unit_or(&place, fallback);
             let normal = Vector::<N, 3>::new(normal.x, N::ZERO, normal.y);

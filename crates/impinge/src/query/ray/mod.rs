@@ -26,6 +26,7 @@ mod triangle2;
 mod triangle3;
 mod volume;
 
+use crate::tables::entries;
 pub use batch::RayBatch;
 use passing::may_hold;
 pub(crate) use passing::surely_misses;
@@ -326,7 +327,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
             return self.cast_local_ray_until(ray, max_time, solid).into_iter().collect();
         };
         let mut hits = Vec::new();
-        (N::tables().each_hit)(parts, &RayQuestion { ray: *ray, max_time, solid }, &mut |hit| {
+        entries::each_hit(parts, &RayQuestion { ray: *ray, max_time, solid }, &mut |hit| {
             hits.push(hit);
             max_time
         });
@@ -365,14 +366,10 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
             return self.cast_local_ray_until(ray, max_time, true).is_some();
         };
         let mut hits = false;
-        (N::tables().each_hit)(
-            parts,
-            &RayQuestion { ray: *ray, max_time, solid: true },
-            &mut |_| {
-                hits = true;
-                -N::ONE
-            },
-        );
+        entries::each_hit(parts, &RayQuestion { ray: *ray, max_time, solid: true }, &mut |_| {
+            hits = true;
+            -N::ONE
+        });
         hits
     }
 }
@@ -403,9 +400,9 @@ pub(crate) fn cast_on<N: Space<D>, const D: usize>(
     if let Kind::Composite(parts) = kind {
         return first_that(parts, &RayQuestion { ray: *ray, max_time, solid }, |_| true);
     }
-    let surface_point = |point: &_| (N::tables().surface_point)(kind, point).projection(point);
+    let surface_point = |point: &_| entries::surface_point(kind, point).projection(point);
     let project = |point: &_| may_hold(kind, point).then(|| surface_point(point));
-    let hit = cast(ray, solid, project, |ray| (N::tables().ray_span)(kind, ray));
+    let hit = cast(ray, solid, project, |ray| entries::ray_span(kind, ray));
     hit.filter(|hit| hit.toi <= max_time)
 }
 
@@ -417,7 +414,7 @@ fn first_that<N: Space<D>, const D: usize>(
     counts: impl Fn(&RayIntersection<N, D>) -> bool,
 ) -> Option<RayIntersection<N, D>> {
     let mut first: Option<RayIntersection<N, D>> = None;
-    (N::tables().each_hit)(parts, question, &mut |hit| {
+    entries::each_hit(parts, question, &mut |hit| {
         let is_first = first.is_none_or(|first| is_before(&hit, &first));
         first = if is_first && counts(&hit) { Some(hit) } else { first };
         first.map_or(question.max_time, |first| first.toi)

@@ -7,6 +7,7 @@ use crate::collide::Pair;
 use crate::collide::separation::separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{Ball, Geometry, Kind, RoundedSolid, ShapeKind};
+use crate::tables::entries;
 
 /// Searched by the distances of what is rounded; without a radius the line and that.
 pub(super) fn span<N: Space<D>, const D: usize>(
@@ -15,7 +16,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
 ) -> Option<Span<N, D>> {
     let inner = solid.inner();
     if solid.radius() == N::ZERO {
-        return (N::tables().ray_span)(inner.0, ray);
+        return entries::ray_span(inner.0, ray);
     }
     let point = Ball::new(N::ZERO);
     let see = |place: &Vector<N, D>| {
@@ -25,7 +26,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
         Some((found.distance, -found.normal))
     };
     let name = |place: &Vector<N, D>, _: &Vector<N, D>| {
-        (N::tables().surface_point)(inner.0, &Point::from(*place)).feature
+        entries::surface_point(inner.0, &Point::from(*place)).feature
     };
     let radius = solid.reach() + solid.rounding();
     RaySolid { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)

@@ -2,7 +2,7 @@
 
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Point, Real, Vector, max, unit_or};
+use crate::math::{Mapped, Point, Real, Vector, max, unit_or};
 use crate::query::point::{feature_at, nearest_on_segment};
 use crate::shape::FeatureId;
 
@@ -27,8 +27,8 @@ pub(super) fn span<N: Real, const D: usize>(
     ray: &Ray<N, D>,
 ) -> Option<Span<N, D>> {
     let squared = ray.dir.norm_squared();
-    let [a, b] = ends.map(|end| end - ray.origin);
-    let [at_a, at_b] = [a, b].map(|end| end.dot(&ray.dir) / squared);
+    let [a, b] = ends.mapped(|end| end - ray.origin);
+    let [at_a, at_b] = [a, b].mapped(|end| end.dot(&ray.dir) / squared);
     let (across_a, across_b) = (a - ray.dir * at_a, b - ray.dir * at_b);
     let rounding = N::lit(8.0) * N::EPSILON * max(a.norm(), b.norm());
     let seen = [Point::from(across_a), Point::from(across_b)];

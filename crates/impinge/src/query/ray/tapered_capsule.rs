@@ -5,7 +5,7 @@ use super::clip::in_order;
 use super::segment::{RayNames, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Real, Vector, max, min, unit_or};
+use crate::math::{Mapped, Real, Vector, max, min, unit_or};
 use crate::shape::{FeatureId, Taper, TaperedCapsule};
 
 /// The two balls, and the piece of a cone between the circles in which it touches them. Without any
@@ -77,7 +77,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         let (enter, leave) = self.in_cone()?;
         let (enter, leave) = (max(enter, low), min(leave, high));
         let [enter, leave] =
-            [(enter, self.against), (leave, -self.against)].map(|(t, fallback)| {
+            [(enter, self.against), (leave, -self.against)].mapped(|(t, fallback)| {
                 let away = unit_or(&(self.flat + self.flat_dir * t), fallback);
                 let normal = away * self.taper.cosine + self.taper.along * self.taper.sine;
                 Crossing::new(self.start + t, unit_or(&normal, fallback), FeatureId::Edge(0))
@@ -88,7 +88,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
 
     /// When the line is between the planes of the circles.
     fn between_circles(&self) -> Option<(N, N)> {
-        let [low, high] = self.heights.map(|height| height - self.height);
+        let [low, high] = self.heights.mapped(|height| height - self.height);
         if self.climb == N::ZERO {
             let is_between = low <= N::ZERO && high >= N::ZERO;
             return is_between.then_some((-N::INFINITY, N::INFINITY));

@@ -3,7 +3,7 @@
 use super::segment::{RayNames, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Point, Real, Vector, cross, cross2, unit, unit_or};
+use crate::math::{Mapped, Point, Real, Vector, cross, cross2, unit, unit_or};
 use crate::shape::{FeatureId, Triangle};
 
 /// Through the inside, else along the triangle: there the sides answer, each within rounding.
@@ -67,7 +67,7 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     let all_left = areas.iter().all(|&area| area >= N::ZERO);
     let all_right = areas.iter().all(|&area| area <= N::ZERO);
     if (all_left || all_right) && total != N::ZERO {
-        let [wa, wb, wc] = areas.map(|area| area / total);
+        let [wa, wb, wc] = areas.mapped(|area| area / total);
         return Through::Hit(a.t * wa + b.t * wb + c.t * wc);
     }
     let spread = |p: &Sheared<N>, q: &Sheared<N>| p.size * q.flat.amax() + q.size * p.flat.amax();

@@ -1,8 +1,6 @@
 //! Where the parts of a surface meet: at equal positions, whatever the indices.
 
-use core::array;
-
-use crate::math::{Point, Real};
+use crate::math::{Mapped, Point, Real, filled};
 
 /// The points at which parts meet.
 ///
@@ -28,7 +26,7 @@ impl Joints {
         let mut starts = vec![0; vertices.len() + 1];
         let each = |visit: &mut dyn FnMut(u32, u32)| {
             for (part, corners) in (0..).zip(parts) {
-                let joints = corners.map(|vertex| of_vertex[vertex as usize]);
+                let joints = corners.mapped(|vertex| of_vertex[vertex as usize]);
                 let is_new = |&at: &usize| !joints[..at].contains(&joints[at]);
                 (0..K).filter(is_new).for_each(|at| visit(joints[at], part));
             }
@@ -60,7 +58,7 @@ impl Joints {
     /// The parts that meet at a joint, ascending.
     #[inline]
     pub(in crate::shape) fn parts(&self, joint: u32) -> &[u32] {
-        let [start, end] = [0, 1].map(|next| self.starts[joint as usize + next] as usize);
+        let [start, end] = [0, 1].mapped(|next| self.starts[joint as usize + next] as usize);
         &self.parts[start..end]
     }
 
@@ -76,7 +74,7 @@ impl Joints {
 /// By vertex: the first one at the same position. Zeros of both signs are one position.
 fn welded<N: Real, const D: usize>(vertices: &[Point<N, D>]) -> Vec<u32> {
     let key = |vertex: u32| -> [u64; D] {
-        array::from_fn(|axis| (vertices[vertex as usize][axis] + N::ZERO).bits())
+        filled(|axis| (vertices[vertex as usize][axis] + N::ZERO).bits())
     };
     let mut first: Vec<u32> = (0..).take(vertices.len()).collect();
     let mut order = first.clone();
@@ -95,7 +93,7 @@ mod tests {
 
     #[test]
     fn equal_positions_are_one_joint() {
-        let vertices = [0.0_f32, 1.0, 1.0, -0.0, 2.0, 1.0].map(|x| Point::<f32, 2>::new(x, 0.0));
+        let vertices = [0.0_f32, 1.0, 1.0, -0.0, 2.0, 1.0].mapped(|x| Point::<f32, 2>::new(x, 0.0));
         let joints = Joints::new(&vertices, &[[0, 1], [2, 4], [5, 3], [5, 1]]);
         assert_eq!((0..6).map(|v| joints.of(v)).collect::<Vec<_>>(), [0, 1, 1, 0, 4, 1], "first");
         assert_eq!(joints.parts(0), [0, 2], "zeros of both signs are equal");

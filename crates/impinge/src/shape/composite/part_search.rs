@@ -2,6 +2,7 @@
 
 use crate::bounding_volume::Aabb;
 use crate::math::{Space, Vector};
+use crate::partitioning::entries;
 use crate::partitioning::{BoxTree, Sweep};
 use crate::shape::PartSearch;
 
@@ -19,7 +20,7 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
     }
 
     fn nearest(&self, aabb: &Aabb<N, D>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
-        (N::tables().partitioning.nearest_first)(self, aabb, limit, visit);
+        entries::nearest_first(self, aabb, limit, visit);
     }
 
     fn cast(
@@ -30,7 +31,7 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for BoxTree<N, D> {
         visit: &mut dyn FnMut(u32, N) -> N,
     ) {
         let sweep = Sweep { aabb: *aabb, velocity: *velocity };
-        (N::tables().partitioning.near_first)(self, &sweep, limit, visit);
+        entries::near_first(self, &sweep, limit, visit);
     }
 }
 

@@ -7,13 +7,12 @@ pub(crate) mod convex_polygon;
 pub(crate) mod feature;
 pub(crate) mod support;
 
-use core::array::from_fn;
 use core::ops::Range;
 
 use smallvec::SmallVec;
 
 use crate::math::simd::Level;
-use crate::math::{Point, Real, Vector, max, min};
+use crate::math::{Point, Real, Vector, filled, max, min};
 use crate::shape::FeatureId;
 use crate::shape::polytope::support as polytope_support;
 use crate::shape::solids::segment::length_of;
@@ -257,7 +256,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     {
         let block = |some: &[Point<N, D>]| {
             let last = some.len() - 1;
-            from_fn(|axis| from_fn(|lane| some[if lane < last { lane } else { last }][axis]))
+            filled(|axis| filled(|lane| some[if lane < last { lane } else { last }][axis]))
         };
         vertices.chunks(COUNT).map(block).collect()
     }
@@ -281,8 +280,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             let last = some.len() - 1;
             let at = |lane: usize| &some[if lane < last { lane } else { last }];
             Planes {
-                normals: from_fn(|axis| from_fn(|lane| at(lane).normal[axis])),
-                offsets: from_fn(|lane| at(lane).offset),
+                normals: filled(|axis| filled(|lane| at(lane).normal[axis])),
+                offsets: filled(|lane| at(lane).offset),
             }
         };
         faces.chunks(LANES).map(block).collect()
@@ -294,7 +293,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 }
 
-/// How far four vertices reach along a direction.
+/// How far four vertices reach along a direction. (`map` of the standard library keeps the four in one register here.)
 #[inline]
 fn heights<N: Real, const D: usize>(
     quartet: &[[N; QUARTET]; D],

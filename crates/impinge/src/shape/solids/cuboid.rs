@@ -1,7 +1,7 @@
 //! Boxes (rectangles in 2D).
 
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Pose, Real, Vector};
+use crate::math::{Mapped, Point, Pose, Real, Vector};
 use crate::shape::error::{finite, or_panic, size};
 use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
@@ -453,7 +453,7 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
             let [from, to, ..] = Self::part(id, 1).ring().corners;
             [from, to]
         });
-        ends.map(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
+        ends.mapped(|corner| (FeatureId::Vertex(corner), self.corner(corner)))
     }
 
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {

@@ -1,7 +1,7 @@
 //! Tapered capsules: the hulls of two balls.
 
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
-use crate::math::{Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
+use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, max, min, perpendicular_to, unit};
 use crate::shape::error::{or_panic, size};
 use crate::shape::scale::Scale;
 use crate::shape::solids::segment::{box_at, length_of};
@@ -115,7 +115,7 @@ impl<N: Real, const D: usize> TaperedCapsule<N, D> {
 
     /// The radii of the balls of the core: one of them is zero.
     fn core_radii(&self) -> [N; 2] {
-        self.radii.map(|radius| radius - self.rounding())
+        self.radii.mapped(|radius| radius - self.rounding())
     }
 }
 
@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         let is_on_large = (lean > N::ZERO) == (large == 1);
         let side = away * taper.cosine + taper.along * taper.sine;
         let toward = if is_on_large { *direction } else { side };
-        let ends = [0, 1].map(|end| self.end(end) + toward * self.core_radii()[end]);
+        let ends = [0, 1].mapped(|end| self.end(end) + toward * self.core_radii()[end]);
         out.set_segment(FeatureId::Edge(0), [(names[0], ends[0]), (names[1], ends[1])]);
     }
 }
@@ -219,13 +219,13 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
         let [around1, around2] =
-            [0, 1].map(|end| box_at(pose, [self.end(end)]).loosened(self.radii[end]));
+            [0, 1].mapped(|end| box_at(pose, [self.end(end)]).loosened(self.radii[end]));
         around1.merged(&around2)
     }
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         let [ball1, ball2] =
-            [0, 1].map(|end| BoundingSphere::try_new(*self.end(end), self.radii[end]));
+            [0, 1].mapped(|end| BoundingSphere::try_new(*self.end(end), self.radii[end]));
         match (ball1, ball2) {
             (Ok(ball1), Ok(ball2)) => ball1.merged(&ball2),
             _ => BoundingSphere::unbounded(),
@@ -235,7 +235,11 @@ impl<N: Real, const D: usize> Shape<N, D> for TaperedCapsule<N, D> {
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let factors = Scale::try_new(scale)?;
         let factor = factors.uniform()?;
-        let [a, b] = [0, 1].map(|end| factors.point(self.end(end)));
-        Ok(ShapeHandle::new(Self::try_from_ends(a, b, self.radii.map(|radius| radius * factor))?))
+        let [a, b] = [0, 1].mapped(|end| factors.point(self.end(end)));
+        Ok(ShapeHandle::new(Self::try_from_ends(
+            a,
+            b,
+            self.radii.mapped(|radius| radius * factor),
+        )?))
     }
 }

@@ -1,6 +1,6 @@
 //! What is left of a tetrahedron without volume: a polygon, a segment or a point.
 
-use crate::math::{Point, Real, Vector, unit};
+use crate::math::{Mapped, Point, Real, Vector, unit};
 use crate::shape::solids::tetrahedron::{EDGES, scaled};
 use crate::shape::tilt::Tilt;
 use crate::shape::{Feature, FeatureId};
@@ -106,7 +106,7 @@ impl<N: Real> FlatOutline<N> {
 fn widest_normal(places: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> {
     let [a, b, c, d] = places;
     let triangles = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
-    let across = triangles.map(|[a, b, c]| (b - a).cross(&(c - a)));
+    let across = triangles.mapped(|[a, b, c]| (b - a).cross(&(c - a)));
     let widest = across.into_iter().fold(Vector::<f64, 3>::zeros(), |most, area| {
         if area.norm() > most.norm() { area } else { most }
     });

@@ -1,7 +1,7 @@
 //! Triangles: filled in 2D, flat in 3D.
 
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Pose, Real, Vector, centroid, max};
+use crate::math::{Mapped, Point, Pose, Real, Vector, centroid, max};
 use crate::shape::error::{finite, or_panic};
 use crate::shape::scale::Scale;
 use crate::shape::solids::segment::{box_at, farther, length_of};
@@ -122,7 +122,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Triangle<N, D> {
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {
         let scale = Scale::try_new(scale)?;
-        let [a, b, c] = self.corners.map(|corner| scale.point(&corner));
+        let [a, b, c] = self.corners.mapped(|corner| scale.point(&corner));
         Ok(ShapeHandle::new(Self::try_new(a, b, c)?))
     }
 }

@@ -5,7 +5,7 @@
 //! size that is plain to see without the directions from the edge into the faces, which the rule of
 //! [`seam`](super::seam) goes by; what is close is left to that.
 
-use crate::math::{Point, Real, Vector, cross, max, max_component, min};
+use crate::math::{Mapped, Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::surface::seam::{FLAT_SINE, slack};
 
 /// A triangle with a squared height of more than this, of its longest side, is not thin.
@@ -52,7 +52,7 @@ impl<N: Real> Bend<N> {
         normal: &Vector<N, 3>,
         is_one_sided: bool,
     ) -> Option<bool> {
-        let [along1, along2] = self.fronts.each_ref().map(|front| front.dot(normal));
+        let [along1, along2] = self.fronts.each_ref().mapped(|front| front.dot(normal));
         let is_front = along1 > N::ZERO && along2 > N::ZERO;
         let is_back = along1 < N::ZERO && along2 < N::ZERO;
         if !(is_front || is_back) {
@@ -117,7 +117,7 @@ impl BendShape {
             height_of(corners[0], corners[1], &fronts[1]),
         ];
         let is_bent = squared_sine > flat * N::lit(1.0 + CLOSE);
-        match heights.map(|height| height > N::ZERO) {
+        match heights.mapped(|height| height > N::ZERO) {
             [true, true] if is_bent => Some(Self::Hollow),
             [false, false] if is_bent => Some(Self::Ridge),
             _ => None,

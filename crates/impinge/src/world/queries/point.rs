@@ -7,6 +7,7 @@ use crate::bounding_volume::Aabb;
 use crate::math::{Point, Space};
 use crate::query::{ClosestPoints, PointProjection};
 use crate::world::bodies::WorldBody;
+use crate::world::entries;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Points, in the world frame. A point that is not finite lies in nothing and is near nothing.
@@ -29,9 +30,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let point = *point;
         let near = near(&point).map(|_| self.meeting(&Aabb::at(point), filter));
-        near.into_iter()
-            .flatten()
-            .filter(move |object| (N::tables().world.holds)(&object.body, &point))
+        near.into_iter().flatten().filter(move |object| entries::holds(&object.body, &point))
     }
 
     /// The nearest point to `point` of any object, and that object; of several the one whose handle comes
@@ -121,6 +120,6 @@ fn projection<N: Space<D>, const D: usize>(
     solid: bool,
     farthest: N,
 ) -> Option<(N, PointProjection<N, D>)> {
-    let (found, distance) = (N::tables().world.project)(body, point, solid, farthest)?;
+    let (found, distance) = entries::project(body, point, solid, farthest)?;
     (distance <= farthest).then_some((distance, found))
 }

@@ -7,6 +7,7 @@ use crate::math::Space;
 use crate::narrow_phase::CollisionObjectHandle;
 use crate::query::{Ray, RayBatch, RayIntersection};
 use crate::world::bodies::WorldBody;
+use crate::world::entries;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Rays.
@@ -167,5 +168,5 @@ fn cast<N: Space<D>, const D: usize>(
     latest: N,
     solid: bool,
 ) -> Option<RayIntersection<N, D>> {
-    (N::tables().world.cast_ray)(body, ray, latest, solid)
+    entries::cast_ray(body, ray, latest, solid)
 }

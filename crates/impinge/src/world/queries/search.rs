@@ -1,5 +1,6 @@
 //! The way all ranked queries go: box by box, near ones first, as long as a box may hold an answer.
 
+use crate::world::entries;
 use core::cell::Cell;
 
 use super::QueryFilter;
@@ -27,11 +28,10 @@ pub(super) enum WorldProbe<N: Real, const D: usize> {
 impl<N: Space<D>, const D: usize> WorldProbe<N, D> {
     /// The boxes of dirty objects, those of least keys about first.
     fn visit_dirty(&self, tree: &DirtyTree<D>, limit: N, visit: &mut DirtyVisitor<'_, N>) {
-        let tables = &N::tables().world;
-        let along = |sweep, visit| (tables.dirty_by_time)(tree, &sweep, limit, visit);
+        let along = |sweep, visit| entries::dirty_by_time(tree, &sweep, limit, visit);
         match self {
             Self::Ray(ray) => along(Sweep::along(ray), visit),
-            Self::Near(own) => (tables.dirty_by_distance)(tree, own, limit, visit),
+            Self::Near(own) => entries::dirty_by_distance(tree, own, limit, visit),
             Self::Cast(own, velocity) => along(Sweep { aabb: *own, velocity: *velocity }, visit),
         }
     }

@@ -9,6 +9,7 @@ use crate::convex::Separation;
 use crate::math::{Space, max};
 use crate::query::ClosestPoints;
 use crate::shape::Shape;
+use crate::tables::entries;
 use crate::world::bodies::{WorldBody, aabb_at, grown};
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
@@ -219,7 +220,7 @@ pub(super) fn around<N: Space<D>, const D: usize>(
 fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &WorldBody<N, D>) -> bool {
     body.ask(|shape| {
         let object = Placed::of_isometry(&body.isometry, shape);
-        (N::tables().distance_in_world)(placed, &object, N::ZERO).is_some()
+        entries::distance_in_world(placed, &object, N::ZERO).is_some()
     })
 }
 
@@ -231,6 +232,6 @@ fn separation<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     body.ask(|shape| {
         let object = Placed::of_isometry(&body.isometry, shape);
-        (N::tables().separation_in_world)(placed, &object, limit)
+        entries::separation_in_world(placed, &object, limit)
     })
 }

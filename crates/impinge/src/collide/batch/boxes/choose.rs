@@ -8,7 +8,7 @@ use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::{ALL, slack_level};
 use crate::collide::ones::Ones;
 use crate::collide::{RawManifold, RawPoint};
-use crate::math::{Point, Real, Vector};
+use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::FeatureId;
 
 /// The slots of one pair.
@@ -315,7 +315,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
             if has_old { -N::INFINITY } else { slack_level(self.gap, self.size, self.tolerance) };
         let mut points = Projections::new();
         for slot in Ones::<COUNT>(self.valid) {
-            let [is_level, is_kept] = [level, kept].map(|slots| slots >> slot & 1 == 1);
+            let [is_level, is_kept] = [level, kept].mapped(|slots| slots >> slot & 1 == 1);
             let is_deepest = is_level || is_kept && self.distance(slot) <= slack;
             points.push(Projected { at: self.flat(slot), index: slot, is_deepest, is_kept });
         }

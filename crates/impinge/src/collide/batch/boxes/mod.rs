@@ -16,9 +16,9 @@ pub(super) use self::space::Boxes3;
 use super::gather::Inputs;
 use super::{LANES, PairQuestion, Solid, masks};
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
-use crate::math::lanes::{by_axis, either, lit, norm, seen_from};
+use crate::math::lanes::{either, lit, norm, seen_from};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 
 impl<N: Real, const D: usize> Inputs<N, D> {
     /// Two boxes and where they are; answers whether both are.
@@ -59,17 +59,17 @@ pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
 ) -> ([[V; D]; D], [V; D]) {
     let (r, t) = (&boxes.rotation, &boxes.translation);
     let inverse = seen_from(r, t);
-    let rotation = by_axis(
+    let rotation = filled(
         #[inline(always)]
         |j| {
-            let row = by_axis(
+            let row = filled(
                 #[inline(always)]
                 |axis| r[axis][j],
             );
             either(is_second, &row, &r[j])
         },
     );
-    let shift = by_axis(
+    let shift = filled(
         #[inline(always)]
         |axis| is_second.select(-inverse[axis], t[axis]),
     );

@@ -1,16 +1,14 @@
 //! Eight pairs side by side, gathered for the search.
 
-use core::array::from_fn;
-
 use super::core::LaneCore;
 use super::search::LaneCores;
 use super::{FlatPair, GapResult, LANES, vertices};
 use crate::collide::Pair;
 use crate::collide::separation::flat_core::FlatCore;
 use crate::convex::Separation;
-use crate::math::lanes::{LanePose, by_axis, load, minus, with_lanes};
+use crate::math::lanes::{LanePose, load, minus, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Real, Vector, Wide};
+use crate::math::{Point, Real, Vector, Wide, filled};
 
 /// A vector in each lane, by coordinates.
 type LaneVectors<N> = [[N; LANES]; 3];
@@ -53,7 +51,7 @@ pub(super) fn results<'p, 'a: 'p, N: Real>(
     }
     let mut found = PacketGap::new();
     with_lanes!(level, simd => packet.search::<_, N::Lanes<_>>(simd, with_overlap, &mut found));
-    Some(from_fn(|lane| match &packet.pairs[lane] {
+    Some(filled(|lane| match &packet.pairs[lane] {
         Some(solids) => found.result(lane, solids),
         None => GapResult::Unproved,
     }))
@@ -96,7 +94,7 @@ impl<'a, N: Real> Packet<'a, N> {
     {
         let row = [N::ZERO; LANES];
         let mut packet = Self {
-            pairs: from_fn(|_| None),
+            pairs: [const { None }; LANES],
             rotation: [[row; 3]; 3],
             translation: [row; 3],
             half_extents: [[row; 3]; 2],
@@ -151,7 +149,7 @@ impl<'a, N: Real> Packet<'a, N> {
         with_overlap: bool,
         out: &mut PacketGap<N>,
     ) {
-        let rotation = by_axis(
+        let rotation = filled(
             #[inline(always)]
             |column| load(simd, &self.rotation[column]),
         );

@@ -7,7 +7,7 @@ use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::collide::separation::{general, wrong_kinds};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, max, min};
+use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
 use crate::shape::Kind;
 
 /// The separation of two boxes.
@@ -93,7 +93,7 @@ fn between_edges<N: Real>(
 ) -> (Point<N, 3>, Point<N, 3>) {
     let edge1 = edge_toward(&boxes.half1, axis1, normal);
     let edge2 = edge_toward(&boxes.half2, axis2, &boxes.pose12.inverse_vector(&-normal));
-    nearest_of_segments(&edge1, &edge2.map(|end| boxes.pose12.point(&end)))
+    nearest_of_segments(&edge1, &edge2.mapped(|end| boxes.pose12.point(&end)))
 }
 
 /// The edge of a box along one of its axes that lies farthest in a direction.
@@ -190,7 +190,7 @@ type Polygon<N> = SmallVec<[Point<N, 3>; 8]>;
 fn face_toward<N: Real>(half: &Vector<N, 3>, direction: &Vector<N, 3>) -> [Point<N, 3>; 4] {
     let axis = direction.iamax();
     let sign = if direction[axis] < N::ZERO { -N::ONE } else { N::ONE };
-    [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(u, v)| {
+    [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].mapped(|(u, v)| {
         let mut corner = *half;
         corner[axis] *= sign;
         corner[(axis + 1) % 3] *= N::lit(u);

@@ -10,7 +10,7 @@ use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::{core, nearest_of_segments};
 use crate::collide::separation::{general, wrong_kinds};
 use crate::convex::Separation;
-use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
+use crate::math::{Mapped, Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Kind, SupportMap};
 
 /// The separation of a segment or capsule from a box.
@@ -229,8 +229,8 @@ impl<N: Real> LocalBox<'_, N> {
             if along[axis].abs() <= noise() {
                 continue;
             }
-            let [one, other] =
-                [-self.half[axis], self.half[axis]].map(|side| (side - from[axis]) / along[axis]);
+            let [one, other] = [-self.half[axis], self.half[axis]]
+                .mapped(|side| (side - from[axis]) / along[axis]);
             (first, last) = (max(first, min(one, other)), min(last, max(one, other)));
         }
         (first <= last).then(|| self.segment.at((first + last) * N::HALF))
@@ -243,7 +243,7 @@ impl<N: Real> LocalBox<'_, N> {
             let side = if outward[at] < N::ZERO { -self.half[at] } else { self.half[at] };
             (ends[0][at], ends[1][at]) = (if at == axis { -side } else { side }, side);
         }
-        let core = self.segment.ends.map(Point::from);
+        let core = self.segment.ends.mapped(Point::from);
         let (on_segment, on_solid) = nearest_of_segments(&core, &ends);
         let [on_segment, on_solid] = [on_segment.coords, on_solid.coords];
         let aside = on_segment - on_solid - outward * gap;
@@ -319,7 +319,7 @@ impl<N: Real> LocalBox<'_, N> {
             return N::ONE;
         }
         let sides =
-            (0..3).flat_map(|axis| [-self.half[axis], self.half[axis]].map(|at| (axis, at)));
+            (0..3).flat_map(|axis| [-self.half[axis], self.half[axis]].mapped(|at| (axis, at)));
         for (axis, side) in sides {
             let share = (side - from[axis]) / along[axis];
             // NaN counts as passed over.

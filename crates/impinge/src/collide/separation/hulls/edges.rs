@@ -7,9 +7,9 @@ use super::vertices::Vertices;
 use super::{LANES, noise};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::convex::Separation;
-use crate::math::lanes::{self, LanePose, by_axis, dot, highest_lane, load, spread};
+use crate::math::lanes::{self, LanePose, dot, highest_lane, load, spread};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Point, Real, Vector, Wide, cross, unit};
+use crate::math::{Point, Real, Vector, Wide, cross, filled, unit};
 use crate::shape::PolytopeEdge;
 
 /// As many edges as 32 vertices may have.
@@ -316,7 +316,7 @@ fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let across = lanes::cross(&along1, &along2);
     let squared = dot(&across, &across);
     let from1: [V; 3] = spread(simd, &edge1.from);
-    let away = by_axis(
+    let away = filled(
         #[inline(always)]
         |axis| V::load(simd, &edges2.from[axis]) - from1[axis],
     );
@@ -341,7 +341,7 @@ pub(super) fn squared_distances<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (along1, along2): ([V; 3], [V; 3]) =
         (spread(simd, &edge1.along), load(simd, &edges2.along));
     let from1: [V; 3] = spread(simd, &edge1.from);
-    let away = by_axis(
+    let away = filled(
         #[inline(always)]
         |axis| from1[axis] - V::load(simd, &edges2.from[axis]),
     );
@@ -354,7 +354,7 @@ pub(super) fn squared_distances<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let share1 = clamp((both * toward2 - toward1 * squared2) / spread);
     let share2 = clamp((both * share1 + toward2) / squared2);
     let share1 = clamp((both * share2 - toward1) / squared1);
-    let off: [V; 3] = by_axis(
+    let off: [V; 3] = filled(
         #[inline(always)]
         |axis| away[axis] + along1[axis] * share1 - along2[axis] * share2,
     );

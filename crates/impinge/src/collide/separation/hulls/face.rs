@@ -8,7 +8,7 @@ use super::vertices::{Heights, Vertices, height_above};
 use crate::collide::separation::segments::nearest::nearest_on_segment;
 use crate::convex::Separation;
 use crate::math::simd::Simd;
-use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, min};
+use crate::math::{Mapped, Point, Pose, Real, Vector, Wide, cross, max, min};
 
 /// A solid in the frame of the one with the reference face.
 pub(super) struct LocalSolid<'s, 'a, N: Real> {
@@ -193,7 +193,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
                 continue;
             }
             let ends = if is_low(from) { [from, to] } else { [to, from] };
-            let [from, to] = ends.map(|vertex| self.other.vertices.at(vertex as usize));
+            let [from, to] = ends.mapped(|vertex| self.other.vertices.at(vertex as usize));
             let Some((share, _)) = self.span([from, to]) else { continue };
             let point = from + (to - from) * share;
             if self.normal.dot(&point) <= most {
@@ -231,7 +231,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             let is_beside = inside < N::ZERO
                 && inside * inside > noise::<N>() * noise() * inward.norm_squared();
             if is_beside {
-                let nearest = nearest_on_segment(&ends.map(Point::from), &Point::from(*point)).0;
+                let nearest = nearest_on_segment(&ends.mapped(Point::from), &Point::from(*point)).0;
                 let squared = (point - nearest.coords).norm_squared();
                 least = Some(least.map_or(squared, |least| min(squared, least)));
             }
@@ -246,7 +246,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         let is_lowest = |vertex: &u32| lowest >> *vertex & 1 == 1;
         let edges = solid.edges.iter().filter(|edge| edge.vertices.iter().all(is_lowest));
         let mut crossing = edges.filter_map(|edge| {
-            self.clipped(edge.vertices.map(|vertex| self.other.vertices.at(vertex as usize)))
+            self.clipped(edge.vertices.mapped(|vertex| self.other.vertices.at(vertex as usize)))
         });
         if let Some(point) = crossing.next() {
             return Some(point);
@@ -271,7 +271,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     fn span(&self, [a, b]: [Vector<N, 3>; 2]) -> Option<(N, N)> {
         let (mut from, mut to) = (N::ZERO, N::ONE);
         for (ends, inward) in self.sides() {
-            let [inside1, inside2] = [a, b].map(|end| inward.dot(&(end - ends[0])));
+            let [inside1, inside2] = [a, b].mapped(|end| inward.dot(&(end - ends[0])));
             if inside1 < N::ZERO && inside2 < N::ZERO {
                 return None;
             }

@@ -1,12 +1,10 @@
 //! Convex polyhedra, hulls, boxes and triangles alike: vertices and face planes in lanes, edges, and the rings
 //! of faces.
 
-use core::array::from_fn;
-
 use super::edges::MAX_EDGES;
 use super::vertices::Vertices;
 use super::{BLOCKS, LANES, PLANE_BLOCKS, noise};
-use crate::math::{Real, Vector, cross, max, max_component, min};
+use crate::math::{Mapped, Real, Vector, cross, filled, max, max_component, min};
 use crate::shape::{Cuboid, Kind, Planes, Polytope, PolytopeEdge, SupportMap, Triangle};
 
 /// A convex polyhedron in its own frame.
@@ -134,7 +132,7 @@ impl<N: Real> LocalFeatures<N> {
     fn of_cuboid(cuboid: &Cuboid<N, 3>) -> Self {
         let half = cuboid.half_extents();
         let signed = |axis: usize, bit: usize| if bit == 0 { -half[axis] } else { half[axis] };
-        let vertices = from_fn(|axis| from_fn(|vertex| signed(axis, vertex >> axis & 1)));
+        let vertices = filled(|axis| filled(|vertex| signed(axis, vertex >> axis & 1)));
         // Faces 2 · axis on the positive side, one more on the negative side; the last one fills up.
         let face = |lane: usize| if lane < 6 { lane } else { 5 };
         let along = |axis: usize, lane: usize| match face(lane) {
@@ -143,8 +141,8 @@ impl<N: Real> LocalFeatures<N> {
             _ => -N::ONE,
         };
         let planes = Planes {
-            normals: from_fn(|axis| from_fn(|lane| along(axis, lane))),
-            offsets: from_fn(|lane| half[face(lane) / 2]),
+            normals: filled(|axis| filled(|lane| along(axis, lane))),
+            offsets: filled(|lane| half[face(lane) / 2]),
         };
         Self {
             blocks: [vertices],
@@ -165,8 +163,8 @@ impl<N: Real> LocalFeatures<N> {
         let sides = [b - a, c - b, a - c];
         // Of length about 1, so that squares stay numbers of the type.
         let scale = max(max_component(&sides[0]), max_component(&sides[1])).power_of_two_below();
-        let sides = sides.map(|side| side / scale);
-        let squared = sides.map(|side| side.norm_squared());
+        let sides = sides.mapped(|side| side / scale);
+        let squared = sides.mapped(|side| side.norm_squared());
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&sides[0], &sides[1]);
         let area = across.norm();
@@ -176,7 +174,7 @@ impl<N: Real> LocalFeatures<N> {
             return None;
         }
         let front = across / area;
-        let outward: [_; 3] = from_fn(|side| cross(&sides[side], &front) / squared[side].sqrt());
+        let outward: [_; 3] = filled(|side| cross(&sides[side], &front) / squared[side].sqrt());
         let faces = [front, -front, outward[0], outward[1], outward[2]];
         // The last face fills up.
         let face = |lane: usize| if lane < 4 { lane } else { 4 };
@@ -184,11 +182,11 @@ impl<N: Real> LocalFeatures<N> {
         // The plane of a side holds the corner that the side begins at.
         let on = [a, a, a, b, c];
         let planes = Planes {
-            normals: from_fn(|axis| from_fn(|lane| faces[face(lane)][axis])),
-            offsets: from_fn(|lane| faces[face(lane)].dot(&on[face(lane)].coords)),
+            normals: filled(|axis| filled(|lane| faces[face(lane)][axis])),
+            offsets: filled(|lane| faces[face(lane)].dot(&on[face(lane)].coords)),
         };
         Some(Self {
-            blocks: [from_fn(|axis| from_fn(|lane| corner(lane)[axis]))],
+            blocks: [filled(|axis| filled(|lane| corner(lane)[axis]))],
             planes: [planes],
             vertices: 3,
             edges: &TRIANGLE_EDGES,
@@ -260,15 +258,15 @@ mod tests {
     fn check(solid: &Polyhedral<'_, f64>) {
         let is_zero = |height: &f64| height.abs() < 1e-14;
         let at = |vertex: u32| {
-            Vector::<f64, 3>::from(from_fn(|axis| solid.blocks[0][axis][vertex as usize]))
+            Vector::<f64, 3>::from(filled(|axis| solid.blocks[0][axis][vertex as usize]))
         };
         for edge in solid.edges {
-            let [a, b] = edge.vertices.map(at);
-            let [m, n] = edge.faces.map(|face| solid.normal(face as usize));
+            let [a, b] = edge.vertices.mapped(at);
+            let [m, n] = edge.faces.mapped(|face| solid.normal(face as usize));
             assert!(cross(&m, &n).dot(&(b - a)) > 0.0, "{edge:?} lies between its faces");
-            for face in edge.faces.map(|face| face as usize) {
+            for face in edge.faces.mapped(|face| face as usize) {
                 let height = |v: Vector<f64, 3>| solid.normal(face).dot(&v) - solid.offset(face);
-                assert!([a, b].map(height).iter().all(is_zero), "{edge:?} lies on face {face}");
+                assert!([a, b].mapped(height).iter().all(is_zero), "{edge:?} lies on face {face}");
             }
         }
         for face in 0..solid.faces() {
@@ -291,7 +289,7 @@ mod tests {
 
     #[test]
     fn features_of_a_triangle_fit_together() {
-        let [a, b, c] = [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [0.0, 4.0, 1.0]].map(Point::from);
+        let [a, b, c] = [[0.0, 0.0, 1.0], [3.0, 0.0, 1.0], [0.0, 4.0, 1.0]].mapped(Point::from);
         let features = LocalFeatures::of_triangle(&Triangle::new(a, b, c)).expect("wide");
         check(&features.polyhedral());
         let thin = Triangle::new(a, b, b + (c - a) * 1e-4);

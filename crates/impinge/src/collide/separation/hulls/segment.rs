@@ -16,9 +16,11 @@ use super::vertices::Vertices;
 use super::{LANES, LocalFeatures, Polyhedral, SatResult, in_first_frame, noise, out_of_reach};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units};
-use crate::math::lanes::{self, by_axis, dot, highest_lane, load, spread, with_lanes};
+use crate::math::lanes::{self, dot, highest_lane, load, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Pose, Real, Vector, Wide, cross, max, max_component, min};
+use crate::math::{
+    Mapped, Point, Pose, Real, Vector, Wide, cross, filled, max, max_component, min,
+};
 
 /// The separation of a segment or capsule from a triangle or a convex hull.
 ///
@@ -194,7 +196,7 @@ impl<N: Real> SegmentQuery<'_, N> {
                 return None;
             }
             let inward = cross(normal, &side);
-            let [a, b] = self.ends.map(|end| inward.dot(&(end - from)));
+            let [a, b] = self.ends.mapped(|end| inward.dot(&(end - from)));
             from = to;
             if a < N::ZERO && b < N::ZERO {
                 return None;
@@ -230,10 +232,10 @@ impl<N: Real> SegmentQuery<'_, N> {
         let (mut best, mut largest) = (None, faces.separation + N::TWO * noise());
         for eight in candidates.indices().chunks(LANES) {
             let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
-            let outward = block.indices.map(|index| self.outward(usize::from(index), climbed));
+            let outward = block.indices.mapped(|index| self.outward(usize::from(index), climbed));
             let across = lanes::cross(&load(simd, &block.along), &along);
             let squared = dot(&across, &across);
-            let away: [V; 3] = by_axis(
+            let away: [V; 3] = filled(
                 #[inline(always)]
                 |axis| end[axis] - V::load(simd, &block.from[axis]),
             );

@@ -14,7 +14,7 @@ use crate::collide::separation::hulls::noise;
 use crate::collide::separation::ridges::Round;
 use crate::collide::separation::wrong_kinds;
 use crate::convex::{self, Peak, Peaks, Separation};
-use crate::math::{Pose, Real, Vector, cross, max, perpendicular_to, unit};
+use crate::math::{Mapped, Pose, Real, Vector, cross, max, perpendicular_to, unit};
 use crate::shape::{Geometry, Kind};
 
 /// Solids of about size 1 that lie no farther from having one axis are searched near it: 2⁻¹².
@@ -89,9 +89,9 @@ impl<N: Real> AxialOutline<N> {
             FlatCore::Capsule(capsule) => capsule.segment(),
             _ => return None,
         };
-        let [a, b] = [segment.a(), segment.b()].map(|end| end.coords * (shrink * N::HALF));
+        let [a, b] = [segment.a(), segment.b()].mapped(|end| end.coords * (shrink * N::HALF));
         let (along, half) = unit(&(b - a)).filter(|(_, half)| *half > noise())?;
-        let corners = [half, -half].map(|at| Vector::<N, 2>::new(N::ZERO, at));
+        let corners = [half, -half].mapped(|at| Vector::<N, 2>::new(N::ZERO, at));
         let middle = pose.rotation * (a + b) + place;
         Some(Self { middle, axis: pose.rotation * along, corners })
     }
@@ -115,7 +115,7 @@ impl<N: Real> AxialOutline<N> {
     fn normals(&self) -> impl Iterator<Item = Vector<N, 2>> {
         let [top, bottom] = &self.corners;
         let up = Vector::<N, 2>::y();
-        let caps = [(top, up), (bottom, -up)].map(|(end, cap)| (end.x > N::ZERO).then_some(cap));
+        let caps = [(top, up), (bottom, -up)].mapped(|(end, cap)| (end.x > N::ZERO).then_some(cap));
         let side = unit(&Vector::<N, 2>::new(top.y - bottom.y, bottom.x - top.x));
         caps.into_iter().chain([side.map(|(side, _)| side)]).flatten()
     }
@@ -153,7 +153,8 @@ impl<N: Real> Coaxial<N> {
         if first.axis.dot(&second.axis) < N::ZERO {
             let [top, bottom] = second.corners;
             second.axis = -second.axis;
-            second.corners = [bottom, top].map(|corner| Vector::<N, 2>::new(corner.x, -corner.y));
+            second.corners =
+                [bottom, top].mapped(|corner| Vector::<N, 2>::new(corner.x, -corner.y));
         }
         let between = second.middle - first.middle;
         let shift = first.axis.dot(&between);
@@ -251,11 +252,11 @@ mod tests {
             if one.geometry().kind() > other.geometry().kind() {
                 continue;
             }
-            let [about, lean, offset] = [(); 3].map(|()| random.vector::<N>());
+            let [about, lean, offset] = [(); 3].mapped(|()| random.vector::<N>());
             let up = if round % 2 == 0 { N::ZERO } else { N::lit(core::f64::consts::PI) };
             let turns =
                 [lean * N::lit(slight), Vector::<N, 3>::x() * up, Vector::<N, 3>::y() * about.y];
-            let turn = turns.map(UnitQuaternion::from_scaled_axis);
+            let turn = turns.mapped(UnitQuaternion::from_scaled_axis);
             let rotation = (turn[0] * turn[1] * turn[2]).to_rotation_matrix().into_inner();
             let at = Vector::<N, 3>::y() * (about.x * N::HALF) + offset * N::lit(slight);
             let pose12 = Pose { rotation, translation: at };

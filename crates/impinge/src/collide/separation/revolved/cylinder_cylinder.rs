@@ -13,7 +13,7 @@ use crate::collide::Pair;
 use crate::collide::separation::hulls::{in_first_frame, noise, out_of_reach};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::{Separation, Units};
-use crate::math::{Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
+use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
 use crate::shape::{Cylinder, Kind, SupportMap};
 
 /// Cap on the steps of Newton's method; from the direction between the middles about four are enough.
@@ -137,7 +137,7 @@ struct CylinderPair<N: Real> {
 
 impl<N: Real> CylinderPair<N> {
     fn new(first: &Cylinder<N>, second: &Cylinder<N>, pose12: &Pose<N, 3>, shrink: N) -> Self {
-        let [size1, size2] = [first, second].map(|solid| Size {
+        let [size1, size2] = [first, second].mapped(|solid| Size {
             half: solid.half_height() * shrink,
             radius: solid.radius() * shrink,
         });
@@ -422,8 +422,8 @@ pub(in crate::collide::separation) mod tests {
     ) {
         let random = &mut Random(seed);
         for round in 0..rounds {
-            let shapes = solids([(); 2].map(|()| random.vector::<N>().abs()));
-            let [first, second] = shapes.each_ref().map(|shape| shape.geometry().0);
+            let shapes = solids([(); 2].mapped(|()| random.vector::<N>().abs()));
+            let [first, second] = shapes.each_ref().mapped(|shape| shape.geometry().0);
             let mut pair = Pair { first, second, pose12: random.turn() };
             pair.pose12.translation = random.vector::<N>() * N::lit([4.0, 0.3][round % 2]);
             let truth = general::separation(&pair, N::INFINITY).expect("no limit");
@@ -460,7 +460,7 @@ pub(in crate::collide::separation) mod tests {
         let random = &mut Random(3);
         let mut undecided = 0;
         for _ in 0..1000 {
-            let [first, second] = [(); 2].map(|()| {
+            let [first, second] = [(); 2].mapped(|()| {
                 let sizes = random.vector::<f64>().abs();
                 Cylinder::new(sizes.x + 0.1, sizes.y + 0.1)
             });

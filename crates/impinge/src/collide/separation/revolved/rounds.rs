@@ -8,7 +8,7 @@
 use super::profile::Profile;
 use super::{RevolvedFound, RevolvedPlace, RevolvedResult, noise, seen_from_second, still};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
-use crate::math::{Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
+use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
 /// Cap on the corners and rims of one solid that are tried.
 const TURNS: usize = 3;
@@ -148,7 +148,7 @@ impl<N: Real> RoundView<N> {
         };
         let own = line(&self.own, &outward)?;
         let other = line(&self.other, &-self.rotation.tr_mul(&outward))?;
-        let other = other.map(|end| Point::from(self.center + self.rotation * end.coords));
+        let other = other.mapped(|end| Point::from(self.center + self.rotation * end.coords));
         let (nearest, point) = nearest_of_segments(&own, &other);
         let level = self.own.level(&outward);
         Some(RevolvedPlace { point: point.coords, nearest: nearest.coords, outward, level })

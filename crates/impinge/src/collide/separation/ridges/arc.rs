@@ -8,7 +8,7 @@
 
 use smallvec::SmallVec;
 
-use crate::math::{Real, Vector, cross2, min, perp, unit};
+use crate::math::{Mapped, Real, Vector, cross2, min, perp, unit};
 
 /// Cap on the directions asked for along one arc. About twenty are enough in `f32`, forty in `f64`: the part
 /// of the arc around the best direction is halved until the bound is good enough, and to each side of it there
@@ -80,7 +80,7 @@ impl<N: Real> Arc<N> {
     fn is_above(&self, least: N) -> bool {
         let [from, to] = &self.ends;
         let has_base = self.lines.iter().any(|line| line.base > N::ZERO);
-        let heights = self.lines.map(|line| [line.at(from), line.at(to)]);
+        let heights = self.lines.mapped(|line| [line.at(from), line.at(to)]);
         !has_base && are_above(&heights, least)
     }
 
@@ -88,7 +88,7 @@ impl<N: Real> Arc<N> {
     /// larger height of the two lines there, if there is one.
     fn bound(&self) -> (Vector<N, 2>, N) {
         let Some(crossing) = self.crossing() else {
-            let [first, second] = self.lines.map(|line| self.least_of(&line));
+            let [first, second] = self.lines.mapped(|line| self.least_of(&line));
             return if second.1 > first.1 { second } else { first };
         };
         let height = min(self.lines[0].at(&crossing), self.lines[1].at(&crossing));
@@ -112,7 +112,7 @@ impl<N: Real> Arc<N> {
 /// is high enough in every mix of the ends, and is no higher than its height in the middle of the circle, it is
 /// high enough on the arc. Whether there is one is the value of a game of two by two heights.
 pub(super) fn are_above<N: Real>(heights: &[[N; 2]; 2], least: N) -> bool {
-    let [first, second] = heights.map(|[from, to]| [from - least, to - least]);
+    let [first, second] = heights.mapped(|[from, to]| [from - least, to - least]);
     let is_one = first[1] >= N::ZERO || second[0] >= N::ZERO;
     least > N::ZERO && (is_one || first[0] * second[1] >= first[1] * second[0])
 }

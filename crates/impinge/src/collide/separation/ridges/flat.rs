@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::collide::separation::hulls::noise;
-use crate::math::{Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
+use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::shape::{Cuboid, Kind, Polytope, Triangle};
 
 /// Larger solids are left to the general algorithm, which does not look at all of their parts.
@@ -87,7 +87,7 @@ impl<N: Real> Flat<N> {
     }
 
     fn fill_segment(&mut self, ends: [&Point<N, 3>; 2], shrink: N) -> Option<()> {
-        self.own_vertices.extend(ends.map(|end| end.coords * shrink));
+        self.own_vertices.extend(ends.mapped(|end| end.coords * shrink));
         let along = self.own_vertices[1] - self.own_vertices[0];
         let (along, _) = unit(&along).filter(|(_, length)| *length > noise())?;
         let (u, v) = orthonormal_basis(&along);
@@ -97,7 +97,7 @@ impl<N: Real> Flat<N> {
     }
 
     fn fill_triangle(&mut self, triangle: &Triangle<N, 3>, shrink: N) -> Option<()> {
-        let corners = triangle.corners().map(|corner| corner.coords * shrink);
+        let corners = triangle.corners().mapped(|corner| corner.coords * shrink);
         self.own_vertices.extend(corners);
         let (e, f) = (corners[1] - corners[0], corners[2] - corners[0]);
         let longest = (corners[2] - corners[1]).norm() + e.norm() + f.norm();

@@ -32,7 +32,7 @@ use super::revolved::coaxial;
 use super::{general, wrong_kinds};
 use crate::collide::Pair;
 use crate::convex::{self, Peak, Peaks, Separation};
-use crate::math::{Pose, Real, Vector, cross, max, min, unit};
+use crate::math::{Mapped, Pose, Real, Vector, cross, max, min, unit};
 use crate::shape::{Geometry, SupportMap};
 
 /// The separation of a solid with flat faces, or a segment or capsule, from a cylinder or cone.
@@ -159,10 +159,10 @@ impl<N: Real> DepthSearch<'_, N> {
     fn search_edge(&mut self, edge: usize, ends: &[Vector<N, 3>], gap: N) -> Option<()> {
         let (round, vertices) = (self.round, &self.flat.vertices);
         let flat::Edge { vertices: ends_of_edge, normals: [first, second] } = self.flat.edges[edge];
-        let [vertex, other] = ends_of_edge.map(|vertex| vertices[vertex as usize]);
-        let [from, to] = [first, second].map(|normal| self.flat.normals[normal as usize].0);
-        let ends = [first, second].map(|normal| ends[normal as usize]);
-        let heights = ends.map(|end| [from.dot(&(end - vertex)), to.dot(&(end - vertex))]);
+        let [vertex, other] = ends_of_edge.mapped(|vertex| vertices[vertex as usize]);
+        let [from, to] = [first, second].mapped(|normal| self.flat.normals[normal as usize].0);
+        let ends = [first, second].mapped(|normal| ends[normal as usize]);
+        let heights = ends.mapped(|end| [from.dot(&(end - vertex)), to.dot(&(end - vertex))]);
         if arc::are_above(&heights, self.least - gap) {
             return Some(());
         }
@@ -182,7 +182,7 @@ impl<N: Real> DepthSearch<'_, N> {
         };
         let arc = Arc {
             ends: [Vector::<N, 2>::x(), Vector::<N, 2>::new(cosine, sine)],
-            lines: ends.map(|end| line(&end)),
+            lines: ends.mapped(|end| line(&end)),
         };
         let lift = |u: &Vector<N, 2>| from * u.x + across * u.y;
         let mut search = ArcSearch::new(self.least, gap);
@@ -207,7 +207,7 @@ impl<N: Real> DepthSearch<'_, N> {
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut search = ArcSearch::new(self.least, gap);
         let starts = [x, y, -x, -y];
-        let lines = starts.map(|u| line(&u));
+        let lines = starts.mapped(|u| line(&u));
         (0..4).for_each(|index| search.note(&starts[index], &lines[index]));
         for index in 0..4 {
             let next = (index + 1) % 4;

@@ -6,7 +6,7 @@ use crate::collide::separation::projection::{
     first_axis, made_perpendicular, noise, perpendicular_to,
 };
 use crate::convex::Separation;
-use crate::math::{Point, Real, Vector, cross, max, unit};
+use crate::math::{Mapped, Point, Real, Vector, cross, max, unit};
 
 /// The separation of two segments or capsules in 3D.
 ///
@@ -18,7 +18,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 ) -> Option<Separation<N, 3>> {
     let ((ends1, rounding1), (local2, rounding2)) =
         (core(pair, &pair.first), core(pair, &pair.second));
-    let ends2 = local2.map(|end| pair.pose12.point(&end));
+    let ends2 = local2.mapped(|end| pair.pose12.point(&end));
     let points = nearest_of_segments(&ends1, &ends2);
     of_points(&[ends1, ends2], &points, [rounding1, rounding2], limit)
 }
@@ -42,7 +42,8 @@ pub(in crate::collide) fn of_points<N: Real>(
 pub(in crate::collide::separation) fn distance<N: Real>(pair: &Pair<'_, N, 3>) -> N {
     let ((ends1, rounding1), (local2, rounding2)) =
         (core(pair, &pair.first), core(pair, &pair.second));
-    let (point1, point2) = nearest_of_segments(&ends1, &local2.map(|end| pair.pose12.point(&end)));
+    let (point1, point2) =
+        nearest_of_segments(&ends1, &local2.mapped(|end| pair.pose12.point(&end)));
     (point2 - point1).norm() - rounding1 - rounding2
 }
 

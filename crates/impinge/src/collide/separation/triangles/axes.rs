@@ -12,10 +12,10 @@ use super::{TriangleQuery, noise};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
 use crate::math::lanes::{
-    bits, by_axis, cross, dot, either, load, minus, negated, over, spread, times, with_lanes,
+    bits, cross, dot, either, load, minus, negated, over, spread, times, with_lanes,
 };
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Matrix, Real, Wide, max, max_component};
+use crate::math::{Mapped, Matrix, Real, Wide, filled, max, max_component};
 
 /// The sine below which two edges count as parallel, in rounding units.
 const PARALLEL: f64 = 16.0;
@@ -299,8 +299,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         let sine = N::lit(PARALLEL) * N::EPSILON;
         let (mut best, mut bound) = (face, face.gap + V::all(simd, noise()));
         for edge in self.solid.edges {
-            let [first, second] = edge.faces.map(|face| &climbs[face as usize]);
-            let [from, to] = edge.vertices.map(|end| self.solid.vertex(end as usize));
+            let [first, second] = edge.faces.mapped(|face| &climbs[face as usize]);
+            let [from, to] = edge.vertices.mapped(|end| self.solid.vertex(end as usize));
             let along = times(&spread(simd, &(to - from)), self.shrink);
             let start = times(&spread(simd, &from), self.shrink);
             // The edge runs around the first face, so its product with a side that climbs over that face
@@ -366,10 +366,10 @@ fn turned<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     turn: &Matrix<N, 3>,
     v: &[V; 3],
 ) -> [V; 3] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| {
-            let column: [V; 3] = by_axis(
+            let column: [V; 3] = filled(
                 #[inline(always)]
                 |row| V::all(simd, turn[(row, axis)]),
             );

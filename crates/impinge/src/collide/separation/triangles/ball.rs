@@ -10,9 +10,9 @@ use smallvec::SmallVec;
 
 use crate::bounding_volume::Aabb;
 use crate::collide::packet::{LANES, PartPacket};
-use crate::math::lanes::{bits, by_axis, dot, either, load, minus, spread, with_lanes};
+use crate::math::lanes::{bits, dot, either, load, minus, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Real, Vector, Wide, max_component, min};
+use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
 /// A triangle with a squared height of more than this, of its longest side, is not thin.
 const TALL: f64 = 1.0 / 1000.0;
@@ -183,7 +183,7 @@ impl<V> TrianglePacket<V> {
         let is_over =
             shares[0].simd_ge(zero) & at_b.simd_ge(zero) & at_c.simd_ge(zero) & area.simd_gt(zero);
         let (share_b, share_c) = (at_b / area, at_c / area);
-        let below: [V; 3] = by_axis(
+        let below: [V; 3] = filled(
             #[inline(always)]
             |axis| a[axis] + ab[axis] * share_b - ca[axis] * share_c,
         );
@@ -356,7 +356,7 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
     // Of a side without length there is its start.
     let share = share.simd_gt(zero).select(share.smaller(one), zero);
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| start[axis] + side[axis] * share,
     )

@@ -14,7 +14,7 @@ pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
 use crate::collide::packet::{GapVisitor, LANES, PartGap, PartPacket, TiledParts};
 use crate::math::simd::Level;
-use crate::math::{Pose, Real, Vector, cross, max};
+use crate::math::{Mapped, Pose, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Kind};
 
 /// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
@@ -95,7 +95,7 @@ impl<N: Real> TriangleQuery<'_, N> {
     /// What the axis of a triangle says, if that is plain.
     fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<PartGap<N, 3>> {
         let triangle = PlacedTriangle {
-            corners: axes.corners.each_ref().map(|corner| of_lane(corner, lane)),
+            corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
             normal: of_lane(&axes.normals, lane),
             shrink: axes.shrink[lane],
             solid: self.solid,
@@ -136,7 +136,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
     /// A side of the triangle, which is not thin, if it and an edge of the solid, along whose common
     /// perpendicular the two are parted, cross well inside of both.
     fn crossing(&self, edge: usize, side: usize) -> Option<FeatureId> {
-        let [from, to] = self.solid.edges[edge].vertices.map(|end| self.vertex(end));
+        let [from, to] = self.solid.edges[edge].vertices.mapped(|end| self.vertex(end));
         let start = &self.corners[side];
         let way = self.corners[(side + 1) % 3] - start;
         let third = self.corners[(side + 2) % 3] - start;
@@ -162,7 +162,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
     /// The corner of the triangle that alone is nearest to a face of the solid, and over its inside.
     fn corner_over(&self, face: usize) -> Option<FeatureId> {
         let outward = -self.normal;
-        let heights = self.corners.each_ref().map(|corner| outward.dot(corner));
+        let heights = self.corners.each_ref().mapped(|corner| outward.dot(corner));
         let lower =
             |best: usize, next: usize| if heights[next] < heights[best] { next } else { best };
         let lowest = lower(lower(0, 1), 2);

@@ -6,7 +6,7 @@ use smallvec::SmallVec;
 
 use super::pyramid::{HeightSpan, Pyramid, PyramidBlock};
 use super::question::FieldProbe;
-use crate::math::{Point, Real, max, min};
+use crate::math::{Mapped, Point, Real, max, min};
 
 /// Heights in rows and columns, and where the rows and columns lie. In 2D there is one row.
 ///
@@ -115,7 +115,7 @@ impl<N: Real> Grid<N> {
         // In 2D one row of cells stands on one line.
         let last_row = min_index(last_row, self.zs.len() - 1);
         // Rounding keeps the order of products, so the scaled span is that of the scaled heights.
-        let [low, high] = span.map(|height| height * self.y_scale);
+        let [low, high] = span.mapped(|height| height * self.y_scale);
         let near = [self.xs[column], low, self.zs[row]];
         Some(GridExtent::between(near, [self.xs[last_column], high, self.zs[last_row]]))
     }

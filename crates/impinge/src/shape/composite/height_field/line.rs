@@ -1,10 +1,10 @@
 //! Height fields in 2D: one segment per cell.
 
+use super::entries;
 use smallvec::{SmallVec, smallvec};
 
 use super::grid::{Grid, GridCells, GridExtent, whole};
 use super::pyramid::{HeightSpan, Pyramid, merged, no_span};
-use super::table::table;
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector};
@@ -167,7 +167,7 @@ impl<N: Real> HeightField<N, 2> {
     }
 
     fn rebuild(&mut self) {
-        self.pyramid = (table::<N, 2>().pyramid)(self);
+        self.pyramid = entries::pyramid_over(self);
     }
 
     #[track_caller]
@@ -211,11 +211,11 @@ impl<N: Real> PartSearch<N, 2> for HeightField<N, 2> {
     }
 
     fn overlapping(&self, aabb: &Aabb<N, 2>, visit: &mut dyn FnMut(u32)) {
-        (table::<N, 2>().overlapping)(self, aabb, visit);
+        entries::cells_overlapping(self, aabb, visit);
     }
 
     fn nearest(&self, aabb: &Aabb<N, 2>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
-        (table::<N, 2>().nearest)(self, aabb, limit, visit);
+        entries::nearest_cells(self, aabb, limit, visit);
     }
 
     fn cast(
@@ -225,7 +225,7 @@ impl<N: Real> PartSearch<N, 2> for HeightField<N, 2> {
         limit: N,
         visit: &mut dyn FnMut(u32, N) -> N,
     ) {
-        (table::<N, 2>().cast)(self, &(*aabb, *velocity), limit, visit);
+        entries::first_cells(self, aabb, velocity, limit, visit);
     }
 }
 

@@ -4,6 +4,7 @@
 //! least and the greatest height of ever larger blocks of cells ([`Pyramid`]), which takes the place of
 //! a tree. What the plane and space share stands in [`grid`]; `line.rs` and `sheet.rs` are the two.
 
+mod entries;
 mod grid;
 mod line;
 mod marks;
@@ -11,10 +12,9 @@ mod pyramid;
 mod question;
 mod sheet;
 mod surface;
-mod table;
 
+pub(crate) use entries::FieldEntries;
 pub use marks::{Diagonal, Diagonals};
-pub(crate) use table::FieldTable;
 
 use self::grid::{Grid, lines};
 use self::marks::Marks;

@@ -2,7 +2,7 @@
 //!
 //! The span of a block is exactly that of its cells, also after an edit.
 
-use crate::math::{Real, max, min};
+use crate::math::{Mapped, Real, max, min};
 
 /// The least and the greatest height; infinity and minus infinity of nothing.
 pub(super) type HeightSpan<N> = [N; 2];
@@ -47,7 +47,7 @@ pub(super) struct PyramidBlock {
 impl PyramidBlock {
     /// The blocks one level below; some may lie beyond the far ends.
     fn children(self) -> [Self; 4] {
-        [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| Self {
+        [(0, 0), (0, 1), (1, 0), (1, 1)].mapped(|(row, column)| Self {
             level: self.level - 1,
             row: 2 * self.row + row,
             column: 2 * self.column + column,

@@ -1,11 +1,11 @@
 //! Height fields in 3D: two triangles per cell.
 
+use super::entries;
 use smallvec::SmallVec;
 
 use super::grid::{Grid, GridCells, GridExtent, whole};
 use super::marks::{Diagonal, Diagonals, Marks};
 use super::pyramid::{HeightSpan, Pyramid, merged, no_span};
-use super::table::table;
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Pose, Real, Vector, max, min};
@@ -265,7 +265,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     fn rebuild(&mut self) {
-        self.pyramid = (table::<N, 3>().pyramid)(self);
+        self.pyramid = entries::pyramid_over(self);
     }
 }
 
@@ -391,11 +391,11 @@ impl<N: Real> PartSearch<N, 3> for HeightField<N, 3> {
     }
 
     fn overlapping(&self, aabb: &Aabb<N, 3>, visit: &mut dyn FnMut(u32)) {
-        (table::<N, 3>().overlapping)(self, aabb, visit);
+        entries::cells_overlapping(self, aabb, visit);
     }
 
     fn nearest(&self, aabb: &Aabb<N, 3>, limit: N, visit: &mut dyn FnMut(u32, N) -> N) {
-        (table::<N, 3>().nearest)(self, aabb, limit, visit);
+        entries::nearest_cells(self, aabb, limit, visit);
     }
 
     fn cast(
@@ -405,7 +405,7 @@ impl<N: Real> PartSearch<N, 3> for HeightField<N, 3> {
         limit: N,
         visit: &mut dyn FnMut(u32, N) -> N,
     ) {
-        (table::<N, 3>().cast)(self, &(*aabb, *velocity), limit, visit);
+        entries::first_cells(self, aabb, velocity, limit, visit);
     }
 }
 

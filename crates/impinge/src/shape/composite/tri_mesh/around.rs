@@ -3,12 +3,10 @@
 //! Triangles without area lie in meshes as fillers: where a corner touches the middle of a longer
 //! side, a thin triangle joins the three. Seams are looked at through them, as if they were not there.
 
-use core::array;
-
 use smallvec::SmallVec;
 
 use super::TriMesh;
-use crate::math::{Point, Real, Vector, max, max_component, unit, unit_or};
+use crate::math::{Point, Real, Vector, filled, max, max_component, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 
 /// So many sides of triangles without area are crossed in search of what lies beyond.
@@ -101,7 +99,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// Unit, in the triangle's plane, from a side towards the opposite corner; `None` without area.
     pub(super) fn inward(&self, triangle: u32, side: usize) -> Option<Vector<N, D>> {
         let corners = self.corners(triangle);
-        inward_of(&array::from_fn(|turn| corners[(side + turn) % 3]))
+        inward_of(&filled(|turn| corners[(side + turn) % 3]))
     }
 }
 

@@ -1,10 +1,11 @@
 //! Making meshes, and making other ones of them.
 
+use super::MeshByDimension;
 use super::bends::Bends;
 use super::topology::Topology;
-use super::{TriMesh, table};
+use super::{TriMesh, entries};
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Space, Vector};
+use crate::math::{Mapped, Point, Real, Space, Vector};
 use crate::partitioning::BoxTree;
 use crate::shape::composite::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
@@ -32,6 +33,14 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         vertices: Vec<Point<N, D>>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
+        entries::build_mesh(vertices, triangles)
+    }
+
+    /// See [`Self::try_new`].
+    pub(super) fn build(
+        vertices: Vec<Point<N, D>>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<Self, MeshError> {
         check_vertices(&vertices)?;
         check_parts(&triangles, vertices.len())?;
         let topology = Topology::new(&vertices, &triangles);
@@ -42,7 +51,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         Ok(Self {
             is_cycle: topology.is_cycle,
             bends: Bends::new(triangles.len()),
-            packed: (table::<N, D>().packed)(&tree, &vertices, &triangles),
+            packed: <N::Algorithms>::mesh_packed(&tree, &vertices, &triangles),
             vertices,
             triangles,
             topology,
@@ -124,6 +133,11 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// # Errors
     /// If a coordinate is not finite or the number of vertices differs.
     pub fn try_set_vertices(&mut self, vertices: &[Point<N, D>]) -> Result<(), MeshError> {
+        entries::move_vertices(self, vertices)
+    }
+
+    /// See [`Self::try_set_vertices`].
+    pub(super) fn move_vertices(&mut self, vertices: &[Point<N, D>]) -> Result<(), MeshError> {
         check_moved(vertices, self.vertices.len())?;
         let boxes = boxes_of(vertices, &self.triangles);
         self.tree.try_refit(&boxes).map_err(refused)?;
@@ -133,7 +147,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.tree.add_slabs(&self.normals, corners);
         self.bends.clear();
         self.topology.is_moved = true;
-        self.packed = (table::<N, D>().packed)(&self.tree, vertices, &self.triangles);
+        self.packed = <N::Algorithms>::mesh_packed(&self.tree, vertices, &self.triangles);
         self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);
         Ok(())
     }
@@ -150,7 +164,7 @@ fn corners_of<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     triangle: &[u32; 3],
 ) -> [Point<N, D>; 3] {
-    triangle.map(|vertex| vertices[vertex as usize])
+    triangle.mapped(|vertex| vertices[vertex as usize])
 }
 
 /// The box of a triangle, as the tree has it.
@@ -162,6 +176,6 @@ fn normals_of<N: Space<D>, const D: usize>(
     vertices: &[Point<N, D>],
     triangles: &[[u32; 3]],
 ) -> Vec<Vector<N, D>> {
-    let Some(normal) = table::<N, D>().normal else { return Vec::new() };
-    triangles.iter().map(|triangle| normal(&corners_of(vertices, triangle))).collect()
+    let normal = |triangle| <N::Algorithms>::mesh_normal(&corners_of(vertices, triangle));
+    triangles.iter().map_while(normal).collect()
 }

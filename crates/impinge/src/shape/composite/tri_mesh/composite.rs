@@ -3,7 +3,7 @@
 use core::hint::black_box;
 
 use super::rays::RayBounds;
-use super::{TriMesh, table};
+use super::{TriMesh, entries};
 use crate::bounding_volume::{Aabb, BoundingSphere, Ray};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::partitioning::BoxTree;
@@ -34,7 +34,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
         limit: N,
         visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
     ) {
-        (table().parts_along)(self, &RayBounds { ray, around, limit }, visit);
+        entries::parts_along(self, &RayBounds { ray, around, limit }, visit);
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, D>> {
@@ -57,11 +57,11 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
 
 impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, D>) -> bool {
-        (table().admits)(self, part, feature, normal)
+        entries::admits(self, part, feature, normal)
     }
 
     fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
-        (table().snapped)(self, part, normal)
+        entries::snapped(self, part, normal)
     }
 
     fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
@@ -81,7 +81,7 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
         feature: FeatureId,
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2] {
-        (table().admits_in_turn)(self, part, feature, normals)
+        entries::admits_in_turn(self, part, feature, normals)
     }
 
     fn prefetch(&self, part: u32) {

@@ -3,23 +3,25 @@
 mod around;
 mod bends;
 mod build;
+mod by_dimension;
 mod composite;
+mod entries;
 mod rays;
 mod surface2;
 mod surface3;
-mod table;
 mod topology;
 
 pub(in crate::shape) use around::inward_of;
+pub(crate) use by_dimension::MeshByDimension;
 pub(in crate::shape) use composite::{aabb_at, sphere_around};
+pub(crate) use entries::MeshEntries;
 pub(in crate::shape) use surface3::normal_of;
-pub(crate) use table::MeshTable;
 pub use topology::EdgeNeighbor;
 
 use self::bends::Bends;
 use self::topology::Topology;
 use crate::bvh::Triangles;
-use crate::math::{Point, Real, Space, Vector};
+use crate::math::{Mapped, Point, Real, Vector};
 use crate::partitioning::BoxTree;
 use crate::shape::Triangle;
 
@@ -173,12 +175,12 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     fn corners(&self, triangle: u32) -> [Point<N, D>; 3] {
-        self.triangles[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+        self.triangles[triangle as usize].mapped(|vertex| self.vertices[vertex as usize])
     }
 
     /// The joints at the ends of a side, in the order of the triangle.
     fn joint_ends(&self, triangle: u32, side: usize) -> [u32; 2] {
-        [side, (side + 1) % 3].map(|corner| self.joint_at(triangle, corner))
+        [side, (side + 1) % 3].mapped(|corner| self.joint_at(triangle, corner))
     }
 
     /// The joint at a corner.
@@ -229,9 +231,4 @@ impl<N: Real> TriMesh<N, 3> {
         let normal = self.normals[triangle as usize];
         (normal != Vector::<N, 3>::zeros()).then_some(normal)
     }
-}
-
-/// The dimension of what follows is known only through the tables.
-fn table<N: Space<D>, const D: usize>() -> &'static MeshTable<N, D> {
-    &N::tables().mesh
 }

@@ -41,8 +41,7 @@ impl<N: Real> TriMesh<N, 3> {
         let block = |ids: &[u32; crate::bvh::LANES]| {
             let mut block = Triangles::EMPTY;
             for (lane, &id) in ids.iter().enumerate().filter(|&(_, &id)| id != NONE) {
-                let corner =
-                    |vertex: u32| vertices[vertex as usize].coords.map(Real::as_f32).into();
+                let corner = |vertex: u32| vertices[vertex as usize].coords.map(N::as_f32).into();
                 block.set_lane(lane, &triangles[id as usize].map(corner));
             }
             block

@@ -1,6 +1,6 @@
 //! Which triangles share a side.
 
-use crate::math::{Point, Real};
+use crate::math::{Mapped, Point, Real};
 use crate::shape::composite::joints::Joints;
 
 /// What lies across a side of a triangle of a mesh.
@@ -55,7 +55,7 @@ type TopologySide = (u32, u32, u8, bool);
 fn sides_by_joint(joints: &Joints, triangles: &[[u32; 3]]) -> (Vec<TopologySide>, Vec<usize>) {
     let each = |visit: &mut dyn FnMut(u32, TopologySide)| {
         for (index, triangle) in (0..).zip(triangles) {
-            let [a, b, c] = triangle.map(|vertex| joints.of(vertex));
+            let [a, b, c] = triangle.mapped(|vertex| joints.of(vertex));
             for (side, [from, to]) in (0..).zip([[a, b], [b, c], [c, a]]) {
                 if from != to {
                     visit(from.min(to), (from.max(to), index, side, from < to));

@@ -2,9 +2,9 @@
 //! `collide/separation/boxes/rectangle_axes.rs` in lanes.
 
 use super::super::{Boxes, is_finite};
-use crate::math::lanes::{by_axis, dot, either_mask, lit};
+use crate::math::lanes::{dot, either_mask, lit};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 
 /// The axis of the largest gap of eight pairs.
 pub(super) struct BestSide<V, M> {
@@ -54,7 +54,7 @@ impl<V> Boxes<V, 2> {
         let is_y = either_mask(is_second, second.is_y, first.is_y);
         let is_positive = either_mask(is_second, second.is_positive, first.is_positive);
         let unit = [is_y.select(zero, one), is_y.select(one, zero)];
-        let normal = by_axis(
+        let normal = filled(
             #[inline(always)]
             |axis| {
                 let own = is_y.select(self.rotation[1][axis], self.rotation[0][axis]);
@@ -76,11 +76,11 @@ impl<V> Boxes<V, 2> {
     {
         let (r, t, zero) = (&self.rotation, &self.translation, V::all(simd, N::ZERO));
         let leans = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
-        let reach2: [V; 2] = by_axis(
+        let reach2: [V; 2] = filled(
             #[inline(always)]
             |i| dot(&[leans[0][i], leans[1][i]], &self.half2),
         );
-        let gaps: [V; 2] = by_axis(
+        let gaps: [V; 2] = filled(
             #[inline(always)]
             |i| t[i].abs() - self.half1[i] - reach2[i],
         );
@@ -88,7 +88,7 @@ impl<V> Boxes<V, 2> {
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
         let first = side(gaps, is_y, is);
         let seen = [dot(&r[0], t), dot(&r[1], t)];
-        let gaps: [V; 2] = by_axis(
+        let gaps: [V; 2] = filled(
             #[inline(always)]
             |j| seen[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
         );

@@ -8,9 +8,9 @@ use super::super::admit::{Admission, Slots};
 use super::super::{Boxes, other, tolerance};
 use super::SLOTS;
 use super::axis::BestSide;
-use crate::math::lanes::{bits, by_axis, dot, either, lit};
+use crate::math::lanes::{bits, dot, either, lit};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 use crate::shape::FACING_SINE_SQUARED;
 
 /// A side of a box, and the side of the other above it, in the frame of the first of these.
@@ -71,7 +71,7 @@ impl<V, M> BoxSides<V, M> {
         M: SimdMask<S>,
     {
         let (zero, is_y) = (V::all(simd, N::ZERO), axis.is_y);
-        let own = by_axis(
+        let own = filled(
             #[inline(always)]
             |i| is_y.select(boxes.rotation[1][i], boxes.rotation[0][i]),
         );
@@ -157,7 +157,7 @@ impl<V, M> BoxSides<V, M> {
         let level = self.level + is_second.select(rise, V::all(simd, N::ZERO));
         let own = [self.is_y.select(place, level), self.is_y.select(level, place)];
         let ([x, y], shift) = (&boxes.rotation, &boxes.translation);
-        by_axis(
+        filled(
             #[inline(always)]
             |axis| {
                 let there = x[axis] * own[0] + y[axis] * own[1] + shift[axis];
@@ -238,7 +238,7 @@ impl<V, M> Upper<V, M> {
         M: SimdMask<S>,
     {
         let (rotation, shift) = other(boxes, axis.is_second);
-        let facing: [V; 2] = by_axis(
+        let facing: [V; 2] = filled(
             #[inline(always)]
             |j| {
                 let along = on(axis.is_y, &rotation[j]);
@@ -254,11 +254,11 @@ impl<V, M> Upper<V, M> {
         let out = on(is_own_y, &half);
         let out = is_positive.select(out, -out);
         let side = is_own_y.select(half[0], half[1]);
-        let [near, far]: [End<V>; 2] = by_axis(
+        let [near, far]: [End<V>; 2] = filled(
             #[inline(always)]
             |end| {
                 let side = if end == 0 { -side } else { side };
-                let point = by_axis(
+                let point = filled(
                     #[inline(always)]
                     |i| {
                         let own = is_own_y.select(rotation[1][i], rotation[0][i]);

@@ -1,9 +1,9 @@
 //! The separating axis test of eight pairs of boxes: `collide/separation/boxes/cuboid_axes.rs` in lanes.
 
 use super::super::{Boxes, is_finite};
-use crate::math::lanes::{by_axis, dot, lit};
+use crate::math::lanes::{dot, lit};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 
 /// The axis of the largest gap of eight pairs.
 pub(super) struct BestAxis<V, M> {
@@ -24,7 +24,7 @@ pub(super) struct BestAxis<V, M> {
 /// The vector whose number each lane names, of three.
 #[inline(always)]
 pub(super) fn of_three<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], three: [&[V; 3]; 3]) -> [V; 3] {
-    by_axis(
+    filled(
         #[inline(always)]
         |axis| is[0].select(three[0][axis], is[1].select(three[1][axis], three[2][axis])),
     )
@@ -43,7 +43,7 @@ pub(super) fn which<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V
 /// The rotation without signs.
 #[inline(always)]
 fn leans<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
-    by_axis(
+    filled(
         #[inline(always)]
         |j| [rotation[j][0].abs(), rotation[j][1].abs(), rotation[j][2].abs()],
     )
@@ -165,12 +165,12 @@ impl<V> Boxes<V, 3> {
         let across =
             [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
         let norm = dot(&across, &across).sqrt();
-        let direction = by_axis(
+        let direction = filled(
             #[inline(always)]
             |axis| is_edges.select(across[axis] / norm, is_second.select(b[axis], a[axis])),
         );
         let is_away = dot(&direction, &self.translation).simd_lt(zero);
-        by_axis(
+        filled(
             #[inline(always)]
             |axis| is_away.select(-direction[axis], direction[axis]),
         )

@@ -4,9 +4,9 @@
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
 use super::shown::ShownFaces;
-use crate::math::lanes::{by_axis, dot, either, lit, negated, norm, seen_from};
+use crate::math::lanes::{dot, either, lit, negated, norm, seen_from};
 use crate::math::simd::{Simd, SimdMask};
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 
 /// A face of a box, and the face of the other above it, in the frame of the first of these.
 pub(super) struct FacesInLanes<V, M> {
@@ -44,7 +44,7 @@ pub(super) struct FacesInLanes<V, M> {
 /// The component on the axis that each lane names, on the next and on the one after.
 #[inline(always)]
 fn in_turn<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], v: &[V; 3]) -> [V; 3] {
-    by_axis(
+    filled(
         #[inline(always)]
         |turn| is[0].select(v[turn], is[1].select(v[(turn + 1) % 3], v[(turn + 2) % 3])),
     )
@@ -90,11 +90,11 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     let straight = sign(simd, !axis.is_second.select(along2, along1).simd_lt(zero));
     let (leaning, is_second) = between_edges(simd, boxes, axis);
     let most = largest(&leaning);
-    let is_w = by_axis(
+    let is_w = filled(
         #[inline(always)]
         |a| (axis.is_edges & most[a]) | (!axis.is_edges & is_face[a]),
     );
-    let toward = by_axis(
+    let toward = filled(
         #[inline(always)]
         |a| axis.is_edges.select(leaning[a], is_face[a].select(straight, zero)),
     );
@@ -262,7 +262,7 @@ impl<V, M> FacesInLanes<V, M> {
             w0.select(v, w1.select(u, w)),
         ];
         let ([x, y, z], shift) = (&boxes.rotation, &boxes.translation);
-        by_axis(
+        filled(
             #[inline(always)]
             |axis| {
                 let there = x[axis] * own[0] + y[axis] * own[1] + z[axis] * own[2] + shift[axis];

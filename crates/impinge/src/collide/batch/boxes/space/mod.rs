@@ -18,7 +18,7 @@ use crate::collide::manifold::contacts_of_separation3;
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
-use crate::math::{Real, Wide};
+use crate::math::{Real, Wide, filled};
 
 /// The slots of a pair.
 const SLOTS: usize = 24;
@@ -255,7 +255,7 @@ impl Columns {
 /// Eight bytes in a row.
 #[inline(always)]
 fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; LANES] {
-    core::array::from_fn(
+    filled(
         #[inline(always)]
         |index| bytes[first + index],
     )

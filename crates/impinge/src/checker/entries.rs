@@ -1,0 +1,60 @@
+//! The entries of checkers.
+
+use super::filter::{RobotFilter, Surroundings};
+use super::frames::OnNode;
+use super::rows::RowsOf;
+use super::{Body, Checker, FrameTree, NearestColumns, Obstacle, answers, checks, frames};
+use crate::batch::{BatchError, Control};
+use crate::math::Pose;
+use crate::tables::compiled;
+
+type Done = Result<(), BatchError>;
+
+compiled! {
+    /// Checkers.
+    trait CheckerEntries;
+
+    /// The poses of what is on the nodes of a tree.
+    fn place(
+        tree: (&FrameTree<N, D>, &[OnNode<N, D>]),
+        values: &[N],
+        control: &Control<'_>,
+        rows: RowsOf<'_, Pose<N, D>>,
+    ) -> Done = frames::place;
+
+    fn robot(
+        tree: &FrameTree<N, D>,
+        bodies: &[Body<N, D>],
+        pairs: &[[u32; 2]],
+    ) -> RobotFilter<D> = checks::robot;
+
+    fn surroundings(
+        tree: &FrameTree<N, D>,
+        robot: &RobotFilter<D>,
+        obstacles: &[Obstacle<N, D>],
+        pairs: &[[u32; 2]],
+    ) -> Surroundings<D> = Surroundings::new;
+
+    /// Of configurations, and a clearance.
+    fn are_free(
+        checker: &Checker<N, D>,
+        asked: (&[N], N),
+        control: &Control<'_>,
+        out: &mut [bool],
+    ) -> Done = answers::are_free;
+
+    fn first_pairs(
+        checker: &Checker<N, D>,
+        asked: (&[N], N),
+        control: &Control<'_>,
+        out: &mut [[u32; 2]],
+    ) -> Done = answers::first_pairs;
+
+    /// Of configurations, a limit, and how many are wanted for each.
+    fn nearest(
+        checker: &Checker<N, D>,
+        asked: (&[N], N, usize),
+        control: &Control<'_>,
+        out: NearestColumns<'_, N>,
+    ) -> Done = answers::nearest;
+}

@@ -1,0 +1,85 @@
+//! The entries of height fields: their pyramid, and searches of it.
+
+use super::HeightField;
+use super::grid::{GridCells, overlapping, search};
+use super::pyramid::Pyramid;
+use super::question::{FieldProbe, lifted};
+use crate::bounding_volume::Aabb;
+use crate::math::{Real, Vector};
+use crate::tables::compiled;
+
+compiled! {
+    /// Height fields.
+    trait FieldEntries;
+
+    /// The pyramid over the cells as they are.
+    fn pyramid_over(field: &HeightField<N, D>) -> Pyramid<N> = new_pyramid;
+
+    fn cells_overlapping(
+        field: &HeightField<N, D>,
+        aabb: &Aabb<N, D>,
+        visit: &mut dyn FnMut(u32),
+    ) = each_overlapping;
+
+    fn nearest_cells(
+        field: &HeightField<N, D>,
+        aabb: &Aabb<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) = nearest_first;
+
+    /// The cells that a box meets which moves with a velocity.
+    fn first_cells(
+        field: &HeightField<N, D>,
+        aabb: &Aabb<N, D>,
+        velocity: &Vector<N, D>,
+        limit: N,
+        visit: &mut dyn FnMut(u32, N) -> N,
+    ) = first_met;
+}
+
+fn new_pyramid<N: Real, const D: usize>(field: &HeightField<N, D>) -> Pyramid<N>
+where
+    HeightField<N, D>: GridCells<N>,
+{
+    Pyramid::new(field.pyramid().cells(), |row, column| field.cell_span(row, column))
+}
+
+fn each_overlapping<N: Real, const D: usize>(
+    field: &HeightField<N, D>,
+    aabb: &Aabb<N, D>,
+    visit: &mut dyn FnMut(u32),
+) where
+    HeightField<N, D>: GridCells<N>,
+{
+    if let Some(probe) = FieldProbe::new(aabb) {
+        overlapping(field, &probe, visit);
+    }
+}
+
+fn nearest_first<N: Real, const D: usize>(
+    field: &HeightField<N, D>,
+    aabb: &Aabb<N, D>,
+    limit: N,
+    visit: &mut dyn FnMut(u32, N) -> N,
+) where
+    HeightField<N, D>: GridCells<N>,
+{
+    if let Some(probe) = FieldProbe::new(aabb) {
+        search(field, limit, |extent| probe.distance(extent), visit);
+    }
+}
+
+fn first_met<N: Real, const D: usize>(
+    field: &HeightField<N, D>,
+    aabb: &Aabb<N, D>,
+    velocity: &Vector<N, D>,
+    limit: N,
+    visit: &mut dyn FnMut(u32, N) -> N,
+) where
+    HeightField<N, D>: GridCells<N>,
+{
+    if let (Some(probe), Some(velocity)) = (FieldProbe::new(aabb), lifted(velocity)) {
+        search(field, limit, |extent| probe.time(&velocity, extent), visit);
+    }
+}

@@ -1,0 +1,145 @@
+//! What a mesh does differently in 2D and 3D.
+
+use super::rays::RayBounds;
+use super::{TriMesh, surface3};
+use crate::bvh::Triangles;
+use crate::math::{Point, Real, Vector};
+use crate::partitioning::BoxTree;
+use crate::shape::{FeatureId, Part};
+use crate::tables::Here;
+
+/// The algorithms of meshes that differ by dimension.
+#[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
+pub trait MeshByDimension<N: Real, const D: usize> {
+    /// The unit normal on the front of a triangle, zero without area; `None` where triangles have no front.
+    fn mesh_normal(corners: &[Point<N, D>; 3]) -> Option<Vector<N, D>>;
+
+    /// See [`Surface::admits`](crate::shape::Surface::admits).
+    fn mesh_admits(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+        feature: FeatureId,
+        normal: &Vector<N, D>,
+    ) -> bool;
+
+    /// Whether it admits the first of two normals, and if not, whether the second.
+    fn mesh_admits_in_turn(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2];
+
+    /// See [`Surface::snapped`](crate::shape::Surface::snapped).
+    fn mesh_snapped(mesh: &TriMesh<N, D>, part: u32, normal: &Vector<N, D>)
+    -> Option<Vector<N, D>>;
+
+    /// The triangles for rays, in the order of the tree; none where boxes are enough.
+    fn mesh_packed(
+        tree: &BoxTree<N, D>,
+        vertices: &[Point<N, D>],
+        triangles: &[[u32; 3]],
+    ) -> Vec<Triangles>;
+
+    /// Visits the parts that a ray may meet.
+    fn mesh_parts_along(
+        mesh: &TriMesh<N, D>,
+        bounds: &RayBounds<'_, N, D>,
+        visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
+    );
+}
+
+#[expect(private_interfaces, reason = "for this crate alone")]
+impl<N: Real> MeshByDimension<N, 2> for Here {
+    fn mesh_normal(_: &[Point<N, 2>; 3]) -> Option<Vector<N, 2>> {
+        None
+    }
+
+    fn mesh_admits(
+        mesh: &TriMesh<N, 2>,
+        part: u32,
+        feature: FeatureId,
+        normal: &Vector<N, 2>,
+    ) -> bool {
+        mesh.admits_in_plane(part, feature, normal)
+    }
+
+    fn mesh_admits_in_turn(
+        mesh: &TriMesh<N, 2>,
+        part: u32,
+        feature: FeatureId,
+        [first, second]: [&Vector<N, 2>; 2],
+    ) -> [bool; 2] {
+        let is_first = mesh.admits_in_plane(part, feature, first);
+        [is_first, !is_first && mesh.admits_in_plane(part, feature, second)]
+    }
+
+    fn mesh_snapped(
+        mesh: &TriMesh<N, 2>,
+        part: u32,
+        normal: &Vector<N, 2>,
+    ) -> Option<Vector<N, 2>> {
+        mesh.snapped_in_plane(part, normal)
+    }
+
+    fn mesh_packed(_: &BoxTree<N, 2>, _: &[Point<N, 2>], _: &[[u32; 3]]) -> Vec<Triangles> {
+        Vec::new()
+    }
+
+    fn mesh_parts_along(
+        mesh: &TriMesh<N, 2>,
+        bounds: &RayBounds<'_, N, 2>,
+        visit: &mut dyn FnMut(u32, Part<'_, N, 2>) -> N,
+    ) {
+        mesh.boxes_along(bounds, visit);
+    }
+}
+
+#[expect(private_interfaces, reason = "for this crate alone")]
+impl<N: Real> MeshByDimension<N, 3> for Here {
+    fn mesh_normal(corners: &[Point<N, 3>; 3]) -> Option<Vector<N, 3>> {
+        Some(surface3::normal_of(corners))
+    }
+
+    fn mesh_admits(
+        mesh: &TriMesh<N, 3>,
+        part: u32,
+        feature: FeatureId,
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        mesh.admits_in_space(part, feature, normal)
+    }
+
+    fn mesh_admits_in_turn(
+        mesh: &TriMesh<N, 3>,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        mesh.admits_in_turn_in_space(part, feature, normals)
+    }
+
+    fn mesh_snapped(
+        mesh: &TriMesh<N, 3>,
+        part: u32,
+        normal: &Vector<N, 3>,
+    ) -> Option<Vector<N, 3>> {
+        mesh.snapped_in_space(part, normal)
+    }
+
+    fn mesh_packed(
+        tree: &BoxTree<N, 3>,
+        vertices: &[Point<N, 3>],
+        triangles: &[[u32; 3]],
+    ) -> Vec<Triangles> {
+        TriMesh::<N, 3>::packed(tree, vertices, triangles)
+    }
+
+    fn mesh_parts_along(
+        mesh: &TriMesh<N, 3>,
+        bounds: &RayBounds<'_, N, 3>,
+        visit: &mut dyn FnMut(u32, Part<'_, N, 3>) -> N,
+    ) {
+        mesh.triangles_along(bounds, visit);
+    }
+}

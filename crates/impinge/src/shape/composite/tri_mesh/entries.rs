@@ -1,0 +1,49 @@
+//! The entries of meshes: making them, and what pairs and rays ask of them.
+
+use super::rays::RayBounds;
+use super::{MeshByDimension, TriMesh};
+use crate::math::{Point, Vector};
+use crate::shape::composite::mesh_error::MeshError;
+use crate::shape::{FeatureId, Part};
+use crate::tables::{Here, compiled};
+
+compiled! {
+    /// Meshes.
+    trait MeshEntries;
+
+    fn build_mesh(
+        vertices: Vec<Point<N, D>>,
+        triangles: Vec<[u32; 3]>,
+    ) -> Result<TriMesh<N, D>, MeshError> = TriMesh::build;
+
+    fn move_vertices(
+        mesh: &mut TriMesh<N, D>,
+        vertices: &[Point<N, D>],
+    ) -> Result<(), MeshError> = TriMesh::move_vertices;
+
+    fn admits(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+        feature: FeatureId,
+        normal: &Vector<N, D>,
+    ) -> bool = <Here as MeshByDimension<N, D>>::mesh_admits;
+
+    fn admits_in_turn(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] = <Here as MeshByDimension<N, D>>::mesh_admits_in_turn;
+
+    fn snapped(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+        normal: &Vector<N, D>,
+    ) -> Option<Vector<N, D>> = <Here as MeshByDimension<N, D>>::mesh_snapped;
+
+    fn parts_along(
+        mesh: &TriMesh<N, D>,
+        bounds: &RayBounds<'_, N, D>,
+        visit: &mut dyn FnMut(u32, Part<'_, N, D>) -> N,
+    ) = <Here as MeshByDimension<N, D>>::mesh_parts_along;
+}

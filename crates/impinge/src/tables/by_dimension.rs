@@ -1,0 +1,339 @@
+//! What each dimension does in its own way.
+
+use super::Here;
+use crate::batch::{SolidGroup, update_group2, update_group3};
+use crate::bounding_volume::Ray;
+use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
+use crate::collide::packet::{GapVisitor, LANES, PartPacket, TiledParts};
+use crate::collide::parts::{AxisSlabs, Between, part_gaps2, part_gaps3};
+use crate::collide::separation::{
+    Projection, distance_in_plane, distance_in_space, gaps2, gaps3, seen_in_plane, seen_in_space,
+    separation_in_plane, separation_in_space,
+};
+use crate::collide::{
+    ConvexPair, ManifoldRequest, OnFace, Pair, RawManifold, Solid, between2, build3, contacts2,
+    contacts3, distances2, distances3, on_face2, on_face3, separations2, separations3, tangents2,
+    tangents3, witness_feature2, witness_feature3, witness_features2, witness_features3,
+};
+use crate::convex::Separation;
+#[cfg(feature = "debug_render")]
+use crate::debug_render::{Sketch, sketch2, sketch3};
+use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::narrow_phase::{DueContacts, update_lanes2, update_lanes3};
+use crate::query::mass::MassByDimension;
+use crate::query::point::{SurfacePoint, point2, point3};
+use crate::query::ray::{Span, ray2, ray3};
+use crate::shape::{FeatureId, Kind, MeshByDimension, Triangle};
+
+/// The algorithms that differ by dimension; [`Here`] has them, so that scalars keep their own names.
+#[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
+pub trait ByDimension<N: Real, const D: usize>:
+    MassByDimension<N, D> + MeshByDimension<N, D>
+{
+    /// The one fact about a pair of solids; see [`crate::query`].
+    fn separation(pair: &Pair<'_, N, D>, limit: N) -> Option<Separation<N, D>>;
+
+    /// The separations of many triangles from one solid; `false` if there is no algorithm for many.
+    fn gaps(
+        parts: &TiledParts<'_, N, D>,
+        solid: Kind<'_, N, D>,
+        pose12: &Pose<N, D>,
+        prediction: N,
+        limit: N,
+        visit: GapVisitor<'_, N, D>,
+    ) -> bool;
+
+    /// How far each of eight parts is from the solid in the slabs, at least.
+    fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
+
+    /// Updates the contacts of a convex solid and a chain of segments, or of a ball and a surface; `false` where the
+    /// generic path must do it.
+    fn update_quickly(
+        contacts: &mut CompositeContacts<N, D>,
+        between: &Between<'_, N, D>,
+        request: &ManifoldRequest<N>,
+    ) -> bool;
+
+    /// The distance of a pair, and any number that is not positive for solids that overlap clearly.
+    fn distance(pair: &Pair<'_, N, D>, limit: N) -> Option<N>;
+
+    /// The distances of many pairs of convex solids, up to a limit.
+    fn distances(pairs: &mut [ConvexPair<'_, N, D>], limit: N, out: &mut [Option<N>]);
+
+    /// The separations of many pairs of convex solids, up to a limit.
+    fn separations(
+        pairs: &mut [ConvexPair<'_, N, D>],
+        limit: N,
+        out: &mut [Option<Separation<N, D>>],
+    );
+
+    /// How a solid sees a point; `None` where there is no closed form.
+    fn seen(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
+
+    /// The contact points of a pair.
+    fn contacts(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, D>);
+
+    /// The contact points of a pair whose separation is known.
+    fn between(
+        pair: &Pair<'_, N, D>,
+        separation: &Separation<N, D>,
+        request: &ManifoldRequest<N>,
+        out: &mut RawManifold<N, D>,
+    );
+
+    /// Contacts along the normal of a triangle; `false` where it makes none.
+    fn on_face(pair: &Pair<'_, N, D>, asked: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
+
+    /// Updates some pairs of a group, several at a time; `false` if that cannot be done.
+    fn update_lanes(solids: [&Solid<N, D>; 2], due: &mut DueContacts<'_, '_, N, D>) -> bool
+    where
+        N: Space<D>;
+
+    /// The same for pairs of a batch.
+    fn update_group(solids: [&Solid<N, D>; 2], group: &mut SolidGroup<'_, '_, N, D>) -> bool;
+
+    /// Two directions across a normal; the second is zero in 2D.
+    fn tangents(normal: &Vector<N, D>) -> [Vector<N, D>; 2];
+
+    /// The features that the nearest points of two convex solids lie on.
+    fn witness_features(pair: &Pair<'_, N, D>, separation: &Separation<N, D>) -> [FeatureId; 2];
+
+    /// The feature on one of the two solids alone.
+    fn witness_feature(
+        pair: &Pair<'_, N, D>,
+        separation: &Separation<N, D>,
+        tolerance: N,
+        is_second: bool,
+    ) -> FeatureId;
+
+    /// The feature of a triangle that a ball is over; within `tolerance` is rounding.
+    fn over(triangle: &Triangle<N, D>, center: &Point<N, D>, tolerance: N) -> Option<FeatureId>;
+
+    /// When the line of a ray is inside a solid.
+    fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
+
+    /// The point of the boundary of a solid that is nearest to a point.
+    fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D>;
+
+    /// Adds the drawing of a convex solid to a mesh.
+    #[cfg(feature = "debug_render")]
+    fn sketch(solid: Kind<'_, N, D>, sketch: &mut Sketch<N, D>);
+}
+
+#[expect(private_interfaces, reason = "for this crate alone")]
+impl<N: Real> ByDimension<N, 2> for Here {
+    fn separation(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
+        separation_in_plane(pair, limit)
+    }
+
+    fn gaps(
+        parts: &TiledParts<'_, N, 2>,
+        solid: Kind<'_, N, 2>,
+        pose12: &Pose<N, 2>,
+        prediction: N,
+        limit: N,
+        visit: GapVisitor<'_, N, 2>,
+    ) -> bool {
+        gaps2(parts, solid, pose12, prediction, limit, visit)
+    }
+
+    fn part_gaps(slabs: &AxisSlabs<N, 2>, tiles: &PartPacket<N, 2>, limit: N) -> [N; LANES] {
+        part_gaps2(slabs, tiles, limit)
+    }
+
+    fn update_quickly(
+        contacts: &mut CompositeContacts<N, 2>,
+        between: &Between<'_, N, 2>,
+        request: &ManifoldRequest<N>,
+    ) -> bool {
+        update_chain(contacts, between, request)
+    }
+
+    fn distance(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
+        distance_in_plane(pair, limit)
+    }
+
+    fn distances(pairs: &mut [ConvexPair<'_, N, 2>], limit: N, out: &mut [Option<N>]) {
+        distances2(pairs, limit, out);
+    }
+
+    fn separations(
+        pairs: &mut [ConvexPair<'_, N, 2>],
+        limit: N,
+        out: &mut [Option<Separation<N, 2>>],
+    ) {
+        separations2(pairs, limit, out);
+    }
+
+    fn seen(solid: Kind<'_, N, 2>, point: &Point<N, 2>) -> Option<Projection<N, 2>> {
+        seen_in_plane(solid, point)
+    }
+
+    fn contacts(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, 2>) {
+        contacts2(pair, request, out);
+    }
+
+    fn between(
+        pair: &Pair<'_, N, 2>,
+        separation: &Separation<N, 2>,
+        request: &ManifoldRequest<N>,
+        out: &mut RawManifold<N, 2>,
+    ) {
+        between2(pair, separation, request, out);
+    }
+
+    fn on_face(pair: &Pair<'_, N, 2>, asked: &OnFace<N, 2>, out: &mut RawManifold<N, 2>) -> bool {
+        on_face2(pair, asked, out)
+    }
+
+    fn update_lanes(solids: [&Solid<N, 2>; 2], due: &mut DueContacts<'_, '_, N, 2>) -> bool {
+        update_lanes2(solids, due)
+    }
+
+    fn update_group(solids: [&Solid<N, 2>; 2], group: &mut SolidGroup<'_, '_, N, 2>) -> bool {
+        update_group2(solids, group)
+    }
+
+    fn tangents(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
+        tangents2(normal)
+    }
+
+    fn witness_features(pair: &Pair<'_, N, 2>, separation: &Separation<N, 2>) -> [FeatureId; 2] {
+        witness_features2(pair, separation)
+    }
+
+    fn witness_feature(
+        pair: &Pair<'_, N, 2>,
+        separation: &Separation<N, 2>,
+        tolerance: N,
+        is_second: bool,
+    ) -> FeatureId {
+        witness_feature2(pair, separation, tolerance, is_second)
+    }
+
+    fn over(triangle: &Triangle<N, 2>, center: &Point<N, 2>, tolerance: N) -> Option<FeatureId> {
+        over2(triangle, center, tolerance)
+    }
+
+    fn ray_span(solid: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
+        ray2::span(solid, ray)
+    }
+
+    fn surface_point(solid: Kind<'_, N, 2>, point: &Point<N, 2>) -> SurfacePoint<N, 2> {
+        point2::surface_point(solid, point)
+    }
+
+    #[cfg(feature = "debug_render")]
+    fn sketch(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>) {
+        sketch2(solid, sketch);
+    }
+}
+
+#[expect(private_interfaces, reason = "for this crate alone")]
+impl<N: Real> ByDimension<N, 3> for Here {
+    fn separation(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
+        separation_in_space(pair, limit)
+    }
+
+    fn gaps(
+        parts: &TiledParts<'_, N, 3>,
+        solid: Kind<'_, N, 3>,
+        pose12: &Pose<N, 3>,
+        prediction: N,
+        limit: N,
+        visit: GapVisitor<'_, N, 3>,
+    ) -> bool {
+        gaps3(parts, solid, pose12, prediction, limit, visit)
+    }
+
+    fn part_gaps(slabs: &AxisSlabs<N, 3>, tiles: &PartPacket<N, 3>, limit: N) -> [N; LANES] {
+        part_gaps3(slabs, tiles, limit)
+    }
+
+    fn update_quickly(
+        contacts: &mut CompositeContacts<N, 3>,
+        between: &Between<'_, N, 3>,
+        request: &ManifoldRequest<N>,
+    ) -> bool {
+        update_on_surface(contacts, between, request)
+    }
+
+    fn distance(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+        distance_in_space(pair, limit)
+    }
+
+    fn distances(pairs: &mut [ConvexPair<'_, N, 3>], limit: N, out: &mut [Option<N>]) {
+        distances3(pairs, limit, out);
+    }
+
+    fn separations(
+        pairs: &mut [ConvexPair<'_, N, 3>],
+        limit: N,
+        out: &mut [Option<Separation<N, 3>>],
+    ) {
+        separations3(pairs, limit, out);
+    }
+
+    fn seen(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> Option<Projection<N, 3>> {
+        seen_in_space(solid, point)
+    }
+
+    fn contacts(pair: &Pair<'_, N, 3>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, 3>) {
+        contacts3(pair, request, out);
+    }
+
+    fn between(
+        pair: &Pair<'_, N, 3>,
+        separation: &Separation<N, 3>,
+        request: &ManifoldRequest<N>,
+        out: &mut RawManifold<N, 3>,
+    ) {
+        build3(pair, separation, request, out);
+    }
+
+    fn on_face(pair: &Pair<'_, N, 3>, asked: &OnFace<N, 3>, out: &mut RawManifold<N, 3>) -> bool {
+        on_face3(pair, asked, out)
+    }
+
+    fn update_lanes(solids: [&Solid<N, 3>; 2], due: &mut DueContacts<'_, '_, N, 3>) -> bool {
+        update_lanes3(solids, due)
+    }
+
+    fn update_group(solids: [&Solid<N, 3>; 2], group: &mut SolidGroup<'_, '_, N, 3>) -> bool {
+        update_group3(solids, group)
+    }
+
+    fn tangents(normal: &Vector<N, 3>) -> [Vector<N, 3>; 2] {
+        tangents3(normal)
+    }
+
+    fn witness_features(pair: &Pair<'_, N, 3>, separation: &Separation<N, 3>) -> [FeatureId; 2] {
+        witness_features3(pair, separation)
+    }
+
+    fn witness_feature(
+        pair: &Pair<'_, N, 3>,
+        separation: &Separation<N, 3>,
+        tolerance: N,
+        is_second: bool,
+    ) -> FeatureId {
+        witness_feature3(pair, separation, tolerance, is_second)
+    }
+
+    fn over(triangle: &Triangle<N, 3>, center: &Point<N, 3>, tolerance: N) -> Option<FeatureId> {
+        over3(triangle, center, tolerance)
+    }
+
+    fn ray_span(solid: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
+        ray3::span(solid, ray)
+    }
+
+    fn surface_point(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> SurfacePoint<N, 3> {
+        point3::surface_point(solid, point)
+    }
+
+    #[cfg(feature = "debug_render")]
+    fn sketch(solid: Kind<'_, N, 3>, sketch: &mut Sketch<N, 3>) {
+        sketch3(solid, sketch);
+    }
+}

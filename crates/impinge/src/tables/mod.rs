@@ -1,0 +1,121 @@
+//! What is compiled in this crate rather than in the caller, and what each dimension does in its own way.
+//!
+//! Generic code is compiled where it is first used with concrete types: in the crate of the user, at the level of
+//! optimisation of that crate, and again at each change there. So the public functions of the library are thin shells
+//! around *entries*: functions that this crate compiles for each scalar and dimension. [`compiled!`] makes them from a
+//! list of signatures. A program links those that it calls and what they reach.
+//!
+//! ```text
+//!   query::distance::<f32, 3>     generic, compiled in the user's crate
+//!     -> entries::distance_in_world::<f32, 3>     a shell, inlined
+//!          -> <Here as Entries<f32, 3>>::distance_in_world    not generic: compiled here, if its features are on
+//!               -> separation::distance_in_world::<f32, 3>    generic code again, compiled here with the entry
+//! ```
+//!
+//! Inside the library code that differs by dimension is a method of [`ByDimension`], which has one `impl` for each.
+//! This module stands beside the floors: it is the one place that floors below may see of floors above.
+
+mod by_dimension;
+#[cfg(feature = "f64")]
+mod double;
+pub(crate) mod entries;
+
+pub(crate) use self::by_dimension::ByDimension;
+
+/// Declares entries: a trait with a method for each, its four implementations for [`Here`], and for each a function that
+/// is generic over `N: Space<D>` and calls the method for `N` and `D`.
+///
+/// The signatures speak of `N` and `D`, which are concrete where the targets are named. Without the feature of a
+/// dimension its entries are compiled where they are used, which is nowhere.
+macro_rules! compiled {
+    (
+        $(#[$about:meta])*
+        trait $entries:ident;
+        $(
+            $(#[$meta:meta])*
+            fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $target:expr;
+        )*
+    ) => {
+        $(#[$about])*
+        #[allow(unnameable_types, private_interfaces, reason = "for this crate alone")]
+        pub trait $entries<N, const D: usize> {
+            $(
+                $(#[$meta])*
+                fn $name($($argument: $type),*) $(-> $result)?
+                where
+                    N: $crate::math::Space<D>;
+            )*
+        }
+
+        $(
+            $(#[$meta])*
+            #[inline(always)]
+            pub(crate) fn $name<N: $crate::math::Space<D>, const D: usize>(
+                $($argument: $type),*
+            ) $(-> $result)? {
+                <<N as $crate::tables::Compiled<D>>::Here as $entries<N, D>>::$name($($argument),*)
+            }
+        )*
+
+        $crate::tables::compiled! { @of f32, 2, "dim2", $entries;
+            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+        $crate::tables::compiled! { @of f32, 3, "dim3", $entries;
+            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+        #[cfg(feature = "f64")]
+        $crate::tables::compiled! { @of f64, 2, "dim2", $entries;
+            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+        #[cfg(feature = "f64")]
+        $crate::tables::compiled! { @of f64, 3, "dim3", $entries;
+            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+    };
+    (
+        @of $scalar:ty, $dimension:literal, $feature:literal, $entries:ident;
+        $(
+            $(#[$meta:meta])*
+            fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? = $target:expr;
+        )*
+    ) => {
+        const _: () = {
+            type N = $scalar;
+            const D: usize = $dimension;
+            #[allow(private_interfaces, reason = "for this crate alone")]
+            impl $entries<N, D> for $crate::tables::Here {
+                $(
+                    $(#[$meta])*
+                    #[cfg_attr(not(feature = $feature), inline)]
+                    fn $name($($argument: $type),*) $(-> $result)? {
+                        $target($($argument),*)
+                    }
+                )*
+            }
+        };
+    };
+}
+pub(crate) use compiled;
+
+/// Implements the entries and algorithms of all scalars and dimensions. It stands apart from the scalars so that a user's
+/// `N` has no methods that are ours.
+#[expect(unnameable_types, reason = "for this crate alone")]
+#[derive(Debug)]
+pub struct Here;
+
+/// A scalar in `D` dimensions for which there are entries. Sealed by being unnameable outside.
+#[expect(unnameable_types, reason = "for this crate alone")]
+pub trait Compiled<const D: usize>: Sized {
+    /// Always [`Here`].
+    type Here: entries::Entries<Self, D>
+        + crate::batch::BatchEntries<Self, D>
+        + crate::checker::CheckerEntries<Self, D>
+        + crate::partitioning::SearchEntries<Self, D>
+        + crate::shape::FieldEntries<Self, D>
+        + crate::shape::MeshEntries<Self, D>
+        + crate::world::WorldEntries<Self, D>;
+}
+
+impl Compiled<2> for f32 {
+    type Here = Here;
+}
+
+impl Compiled<3> for f32 {
+    type Here = Here;
+}

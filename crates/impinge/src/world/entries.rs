@@ -1,0 +1,141 @@
+//! The entries of worlds: all that knows nothing of the user's data.
+
+use super::bodies::WorldBody;
+use super::changes::{ChangeList, Readers};
+use super::dirty::{DirtyTree, DirtyVisitor};
+use super::{WorldBroadPhase, WorldError};
+use crate::bounding_volume::{Aabb, Ray};
+use crate::broad_phase::DBVTBroadPhase;
+use crate::math::{Point, Space};
+use crate::narrow_phase::{
+    CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType, Interaction, ObjectTable,
+};
+use crate::partitioning::Sweep;
+use crate::query::{PointProjection, RayIntersection};
+use crate::shape::ShapeHandle;
+use crate::tables::compiled;
+
+compiled! {
+    /// Worlds.
+    trait WorldEntries;
+
+    /// The broad phase of a new world.
+    fn new_broad_phase(margin: N) -> Box<WorldBroadPhase<N, D>> = boxed_broad_phase;
+
+    fn set_isometry(
+        body: &mut WorldBody<N, D>,
+        changes: &mut ChangeList<N, D>,
+        isometry: <N as Space<D>>::Isometry,
+    ) -> Result<(), WorldError> = WorldBody::set_isometry;
+
+    fn set_predicted(
+        body: &mut WorldBody<N, D>,
+        changes: &mut ChangeList<N, D>,
+        isometry: <N as Space<D>>::Isometry,
+        predicted: <N as Space<D>>::Isometry,
+    ) -> Result<(), WorldError> = WorldBody::set_predicted;
+
+    fn set_shape(
+        body: &mut WorldBody<N, D>,
+        changes: &mut ChangeList<N, D>,
+        shape: ShapeHandle<N, D>,
+    ) = WorldBody::set_shape;
+
+    fn set_query(
+        body: &mut WorldBody<N, D>,
+        changes: &mut ChangeList<N, D>,
+        query: GeometricQueryType<N>,
+    ) = WorldBody::set_query;
+
+    fn set_skin(body: &mut WorldBody<N, D>, changes: &mut ChangeList<N, D>, skin: N) =
+        WorldBody::set_skin;
+
+    fn flush(
+        changes: &mut ChangeList<N, D>,
+        body: &mut WorldBody<N, D>,
+        readers: &mut Readers<'_, N, D>,
+    ) = ChangeList::flush;
+
+    /// Making, changing and searching the tree of dirty objects.
+    fn new_dirty_tree(
+        has_all: bool,
+        boxes: &mut dyn Iterator<Item = (u32, Aabb<N, D>)>,
+    ) -> DirtyTree<D> = DirtyTree::new;
+
+    fn put_dirty(tree: &mut DirtyTree<D>, id: u32, aabb: &Aabb<N, D>) = DirtyTree::put;
+
+    fn take_dirty(tree: &mut DirtyTree<D>, id: u32) = DirtyTree::take;
+
+    fn dirty_by_time(
+        tree: &DirtyTree<D>,
+        sweep: &Sweep<N, D>,
+        limit: N,
+        found: &mut DirtyVisitor<'_, N>,
+    ) = DirtyTree::by_time;
+
+    fn dirty_by_distance(
+        tree: &DirtyTree<D>,
+        own: &Aabb<N, D>,
+        limit: N,
+        found: &mut DirtyVisitor<'_, N>,
+    ) = DirtyTree::by_distance;
+
+    /// A ray against one object.
+    fn cast_ray(
+        body: &WorldBody<N, D>,
+        ray: &Ray<N, D>,
+        latest: N,
+        solid: bool,
+    ) -> Option<RayIntersection<N, D>> = WorldBody::cast_ray;
+
+    /// The point of one object that is nearest to a point.
+    fn project(
+        body: &WorldBody<N, D>,
+        point: &Point<N, D>,
+        solid: bool,
+        farthest: N,
+    ) -> Option<(PointProjection<N, D>, N)> = WorldBody::project;
+
+    /// One object holds a point.
+    fn holds(body: &WorldBody<N, D>, point: &Point<N, D>) -> bool = WorldBody::holds;
+
+    fn update_pair(
+        narrow_phase: &mut DefaultNarrowPhase<N, D>,
+        table: &ObjectTable<N, D>,
+        key: [u32; 2],
+        events: &mut Events,
+    ) -> bool = DefaultNarrowPhase::update_pair;
+
+    fn pair_started(
+        narrow_phase: &mut DefaultNarrowPhase<N, D>,
+        table: &ObjectTable<N, D>,
+        first: u32,
+        second: u32,
+    ) = DefaultNarrowPhase::pair_started;
+
+    fn begin_and_end_pairs(
+        narrow_phase: &mut DefaultNarrowPhase<N, D>,
+        table: &ObjectTable<N, D>,
+        interactions: &[Interaction],
+        events: &mut Events,
+    ) = DefaultNarrowPhase::begin_and_end_pairs;
+
+    fn pair_stopped(
+        narrow_phase: &mut DefaultNarrowPhase<N, D>,
+        table: &ObjectTable<N, D>,
+        first: u32,
+        second: u32,
+        events: &mut Events,
+    ) = DefaultNarrowPhase::pair_stopped;
+
+    fn object_changed(
+        narrow_phase: &mut DefaultNarrowPhase<N, D>,
+        table: &ObjectTable<N, D>,
+        object: u32,
+        events: &mut Events,
+    ) = DefaultNarrowPhase::object_changed;
+}
+
+fn boxed_broad_phase<N: Space<D>, const D: usize>(margin: N) -> Box<WorldBroadPhase<N, D>> {
+    Box::new(DBVTBroadPhase::<N, Aabb<N, D>, CollisionObjectHandle>::new(margin))
+}
