@@ -4,6 +4,7 @@
 //! manifolds of those that are left are computed, boxes, balls, segments and capsules sorted by their kinds and eight at
 //! a time; the points are written down in the order of the pairs.
 
+use crate::math::order::sort_few;
 use crate::tables::ByDimension;
 use core::ops::Range;
 
@@ -71,7 +72,7 @@ fn update_all<N: Space<D>, const D: usize>(
             None => pair.update(request),
         }
     }
-    by_kinds.sort_unstable();
+    sort_few(&mut by_kinds, |one, other| one < other);
     for group in by_kinds.chunk_by(|one, other| one.0 == other.0) {
         let Some(solids) = pairs[group[0].1].as_ref().and_then(|pair| pair.solids) else {
             continue;

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use crate::math::Real;
+use crate::math::{Real, Space};
 use crate::query::ManifoldView;
 use crate::shape::FeatureId;
 
@@ -112,7 +112,10 @@ impl<N: Real, const D: usize> ManifoldRows<N, D> {
 
     /// Appends the points of one manifold to the pair under way.
     #[inline]
-    pub(super) fn push(&mut self, manifold: u32, view: &ManifoldView<'_, N, D>) {
+    pub(super) fn push(&mut self, manifold: u32, view: &ManifoldView<'_, N, D>)
+    where
+        N: Space<D>,
+    {
         for point in view.contacts() {
             self.manifold.push(manifold);
             self.point1.push(point.contact.world1.coords.into());

@@ -6,6 +6,7 @@
 //! much wider. A box of the one is compared in the frame of the other, so the axes of both frames part blocks in turn,
 //! and so do directions between them, along which what is in a block reaches as far as its box and its slab.
 
+use crate::math::order::sort_few;
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -310,7 +311,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
             let distance = max(gaps.distance(keys[lane as usize]), N::ZERO);
             near.push((distance, first + lane));
         }
-        near.sort_unstable_by_key(|(distance, at)| (distance.bits(), *at));
+        sort_few(&mut near, |one, other| one.0 < other.0 || one.0 == other.0 && one.1 < other.1);
         near
     }
 }

@@ -1,5 +1,6 @@
 //! The three questions about many configurations.
 
+use crate::math::order::sort_few;
 use core::ops::Range;
 
 use super::chain::{LANES, LaneRow};
@@ -94,7 +95,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         let all = self.checker.pairs_in_order();
         let mut all: Vec<_> =
             all.map(|pair| NearPair { lane, pair, is_certain: false, lower: 0.0 }).collect();
-        all.sort_unstable_by_key(|near| near.pair);
+        sort_few(&mut all, |one, other| one.pair < other.pair);
         all
     }
 }
@@ -223,9 +224,9 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
     fn nearest(&mut self, lane: usize, limit: N) -> Option<(N, (u32, Other))> {
         let bound = |near: &NearPair| max(near.lower, 0.0);
         let mut candidates = self.candidates(lane);
-        candidates.sort_unstable_by(|one, other| {
+        sort_few(&mut candidates, |one, other| {
             let order = bound(one).total_cmp(&bound(other));
-            order.then(one.pair.cmp(&other.pair))
+            order.then(one.pair.cmp(&other.pair)).is_lt()
         });
         let mut best: Option<(N, (u32, Other))> = None;
         for near in &candidates {

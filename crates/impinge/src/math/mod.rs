@@ -25,6 +25,7 @@ pub(crate) mod order;
 pub(crate) mod outward;
 mod pose;
 mod real;
+mod rotation;
 pub(crate) mod simd;
 mod space;
 pub(crate) mod trigonometry;
@@ -37,6 +38,8 @@ pub(crate) use filled::{Mapped, filled};
 pub use pose::Pose;
 pub use real::Real;
 pub(crate) use real::{f32_above, f32_below, f64_power_of_two_below};
+pub use rotation::AnyRotation;
+pub(crate) use rotation::{IsometryRef, pose_of};
 pub(crate) use simd::Wide;
 pub use space::Space;
 pub use vector::{

@@ -43,6 +43,7 @@ pub(crate) use query_type::{PackedQuery, PairQuery};
 pub use reuse::ReuseError;
 pub(crate) use state::{CompositeState, ContactState, KeptContacts, Posed, proximity_of};
 pub use stateless::contact_manifolds;
+pub(crate) use stateless::contact_manifolds_at;
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,

@@ -4,9 +4,10 @@ use super::generator::{PairManifoldGenerator, conforming_points};
 use super::state::Posed;
 use super::traits::ContactPrediction;
 use crate::collide::{AtIsometry, Placed};
-use crate::math::{AbstractRotation, Isometry, Space};
+use crate::math::{AnyRotation, Isometry, IsometryRef, Space};
 use crate::query::ContactManifold;
 use crate::shape::Shape;
+use crate::tables::entries;
 
 /// The contact manifolds of `g1` placed at `m1` with `g2` placed at `m2`: those that a new world has after its
 /// first update, with the same bits.
@@ -41,7 +42,7 @@ use crate::shape::Shape;
 /// let none = ContactPrediction::new(0.0, 0.0, 0.0);
 /// assert!(contact_manifolds(&here, &floor, &there, &parcel, &none, None).is_empty());
 /// ```
-pub fn contact_manifolds<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+pub fn contact_manifolds<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,
@@ -49,7 +50,20 @@ pub fn contact_manifolds<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
     prediction: &ContactPrediction<N>,
     max_points: Option<usize>,
 ) -> Vec<ContactManifold<N, D>> {
-    let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
+    entries::contact_manifolds(R::view(m1), g1, R::view(m2), g2, prediction, max_points)
+}
+
+/// See [`contact_manifolds`].
+#[inline]
+pub(crate) fn contact_manifolds_at<N: Space<D>, const D: usize>(
+    isometry1: IsometryRef<'_, N, D>,
+    shape1: &dyn Shape<N, D>,
+    isometry2: IsometryRef<'_, N, D>,
+    shape2: &dyn Shape<N, D>,
+    prediction: &ContactPrediction<N>,
+    max_points: Option<usize>,
+) -> Vec<ContactManifold<N, D>> {
+    let (one, other) = (AtIsometry::new(isometry1, shape1), AtIsometry::new(isometry2, shape2));
     let Some([placed1, placed2]) = Placed::within(&one, &other, prediction.linear()) else {
         return Vec::new();
     };
@@ -57,5 +71,5 @@ pub fn contact_manifolds<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>
         return Vec::new();
     }
     let generator = PairManifoldGenerator::new(max_points.unwrap_or(conforming_points::<D>()));
-    generator.once(&Posed::new([&placed1.pose, &placed2.pose], [g1, g2]), prediction)
+    generator.once(&Posed::new([&placed1.pose, &placed2.pose], [shape1, shape2]), prediction)
 }

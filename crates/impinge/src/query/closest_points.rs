@@ -1,7 +1,7 @@
 //! The points of two solids that are nearest to each other.
 
 use crate::collide::{AtIsometry, Placed};
-use crate::math::{AbstractRotation, Isometry, Point, Real, Space, max};
+use crate::math::{AnyRotation, Isometry, IsometryRef, Point, Real, Space, max};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -46,15 +46,27 @@ impl<N: Real, const D: usize> ClosestPoints<N, D> {
 /// arguments. A distance equal to `max_distance` counts as within; a negative or NaN
 /// `max_distance` counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite. Of composites the
 /// points lie on the nearest parts, which [`witness`](super::witness()) names.
-pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+pub fn closest_points<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> ClosestPoints<N, D> {
+    entries::closest_points(R::view(m1), g1, R::view(m2), g2, max_distance)
+}
+
+/// See [`closest_points`].
+#[inline]
+pub(crate) fn closest_points_at<N: Space<D>, const D: usize>(
+    isometry1: IsometryRef<'_, N, D>,
+    shape1: &dyn Shape<N, D>,
+    isometry2: IsometryRef<'_, N, D>,
+    shape2: &dyn Shape<N, D>,
+    max_distance: N,
+) -> ClosestPoints<N, D> {
     let limit = max(max_distance, N::ZERO);
-    let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
+    let (one, other) = (AtIsometry::new(isometry1, shape1), AtIsometry::new(isometry2, shape2));
     let found = Placed::within(&one, &other, limit)
         .and_then(|[placed1, placed2]| entries::touching_in_world(&placed1, &placed2, limit));
     match found {

@@ -2,7 +2,7 @@
 
 use crate::collide::{AtIsometry, Placed};
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
+use crate::math::{AnyRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -75,14 +75,26 @@ impl<N: Real, const D: usize> Contact<N, D> {
 /// let found = found.expect("the ball has sunk in");
 /// assert_eq!((found.depth, found.normal.y), (0.25, 1.0));
 /// ```
-pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+pub fn contact<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,
     g2: &dyn Shape<N, D>,
     prediction: N,
 ) -> Option<Contact<N, D>> {
-    let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
+    entries::contact(R::view(m1), g1, R::view(m2), g2, prediction)
+}
+
+/// See [`contact`].
+#[inline]
+pub(crate) fn contact_at<N: Space<D>, const D: usize>(
+    isometry1: IsometryRef<'_, N, D>,
+    shape1: &dyn Shape<N, D>,
+    isometry2: IsometryRef<'_, N, D>,
+    shape2: &dyn Shape<N, D>,
+    prediction: N,
+) -> Option<Contact<N, D>> {
+    let (one, other) = (AtIsometry::new(isometry1, shape1), AtIsometry::new(isometry2, shape2));
     let [placed1, placed2] = Placed::within(&one, &other, prediction)?;
     Contact::of_separation(&entries::contact_in_world(&placed1, &placed2, prediction)?)
 }

@@ -1,7 +1,7 @@
 //! How far apart two solids are.
 
 use crate::collide::{AtIsometry, Placed, Placing};
-use crate::math::{AbstractRotation, Isometry, Space, max};
+use crate::math::{AnyRotation, Isometry, IsometryRef, Space, max};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -23,13 +23,24 @@ use crate::tables::entries;
 /// let place = Isometry2::translation(5.0, 0.0);
 /// assert_eq!(distance(&Isometry2::identity(), &ball, &place, &cuboid), 2.0);
 /// ```
-pub fn distance<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+pub fn distance<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,
     g2: &dyn Shape<N, D>,
 ) -> N {
-    distance_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2))
+    entries::distance(R::view(m1), g1, R::view(m2), g2)
+}
+
+/// See [`distance`].
+#[inline]
+pub(crate) fn distance_at<N: Space<D>, const D: usize>(
+    isometry1: IsometryRef<'_, N, D>,
+    shape1: &dyn Shape<N, D>,
+    isometry2: IsometryRef<'_, N, D>,
+    shape2: &dyn Shape<N, D>,
+) -> N {
+    distance_between(&AtIsometry::new(isometry1, shape1), &AtIsometry::new(isometry2, shape2))
 }
 
 /// [`distance`] of shapes that are placed in any way.

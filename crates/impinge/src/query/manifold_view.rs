@@ -154,14 +154,43 @@ enum ViewSource<'a, N: Real, const D: usize> {
     Made(&'a ContactManifold<N, D>),
 }
 
-impl<N: Real, const D: usize> fmt::Debug for ManifoldView<'_, N, D> {
+impl<N: Space<D>, const D: usize> fmt::Debug for ManifoldView<'_, N, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let contacts: Vec<_> = self.contacts().collect();
         f.debug_struct("ManifoldView").field("contacts", &contacts).finish()
     }
 }
 
-impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
+/// The contacts of a view, each placed when it is asked for.
+struct Contacts<'a, N: Real, const D: usize> {
+    view: ManifoldView<'a, N, D>,
+    /// See [`ManifoldView::own_normal`].
+    normal: [Vector<N, D>; 2],
+    index: usize,
+    count: usize,
+}
+
+impl<N: Space<D>, const D: usize> Iterator for Contacts<'_, N, D> {
+    type Item = ContactPoint<N, D>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.index == self.count {
+            return None;
+        }
+        self.index += 1;
+        Some(entries::contact_of_view(&self.view, self.index - 1, &self.normal))
+    }
+
+    #[inline]
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.count - self.index, Some(self.count - self.index))
+    }
+}
+
+impl<N: Space<D>, const D: usize> ExactSizeIterator for Contacts<'_, N, D> {}
+
+impl<'a, N: Space<D>, const D: usize> ManifoldView<'a, N, D> {
     #[inline]
     pub(crate) fn of_convex(
         raw: &'a RawManifold<N, D>,
@@ -216,8 +245,7 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     /// The contacts, in the order in which they began.
     #[inline]
     pub fn contacts(self) -> impl ExactSizeIterator<Item = ContactPoint<N, D>> + 'a {
-        let normal = self.own_normal();
-        (0..self.len()).map(move |index| self.contact(index, &normal))
+        Contacts { view: self, normal: entries::own_normal(&self), index: 0, count: self.len() }
     }
 
     /// The contact of the largest depth, the first of equals.
@@ -235,7 +263,7 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
     /// The normal of what is kept, from the solid that is kept as the first, and turned to the world;
     /// nothing of use for manifolds that are made.
     #[inline]
-    fn own_normal(&self) -> [Vector<N, D>; 2] {
+    pub(crate) fn own_normal(&self) -> [Vector<N, D>; 2] {
         let (own, pose1) = match self.0 {
             ViewSource::Convex(raw, placement, _) => (raw.normal, placement.pose1),
             ViewSource::Patch(patch, placement, _) => (patch.normal, placement.pose1),
@@ -246,7 +274,7 @@ impl<'a, N: Real, const D: usize> ManifoldView<'a, N, D> {
 
     /// The contact at an index; `normal` is [`Self::own_normal`].
     #[inline]
-    fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
+    pub(crate) fn contact(&self, index: usize, normal: &[Vector<N, D>; 2]) -> ContactPoint<N, D> {
         match self.0 {
             ViewSource::Convex(raw, placement, _) => {
                 point(normal, &raw.points[index], [0; 2], &placement)

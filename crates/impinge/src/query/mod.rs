@@ -16,10 +16,12 @@ mod witness;
 
 pub use crate::bounding_volume::Ray;
 pub use crate::shape::{MassError, MassProperties};
+pub(crate) use closest_points::closest_points_at;
 pub use closest_points::{ClosestPoints, closest_points};
+pub(crate) use contact::contact_at;
 pub use contact::{Contact, contact};
 pub use distance::distance;
-pub(crate) use distance::{distance_between, distance_within};
+pub(crate) use distance::{distance_at, distance_between, distance_within};
 pub use impact::{
     ConstantVelocities, Impact, ImpactOptions, ImpactStatus, Moving, RigidMotion, impact,
     nonlinear_time_of_impact, time_of_impact,
@@ -33,9 +35,10 @@ pub(crate) use manifold_view::{PairRef, PlacedSolids};
 pub use mass::{mass_properties, mass_properties_with};
 pub(crate) use point::located_at;
 pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
+pub(crate) use proximity::proximity_at;
 pub use proximity::{Proximity, proximity};
 pub use ray::{RayBatch, RayCast, RayIntersection};
 pub(crate) use ray::{cast_at, cast_on, surely_misses};
 pub(crate) use witness::in_world as witness_in_world;
-pub(crate) use witness::witness_between;
 pub use witness::{Witness, witness};
+pub(crate) use witness::{witness_at, witness_between};

@@ -2,8 +2,9 @@
 
 use super::distance::distance_within;
 use crate::collide::AtIsometry;
-use crate::math::{AbstractRotation, Isometry, Real, Space, max};
+use crate::math::{AnyRotation, Isometry, IsometryRef, Real, Space, max};
 use crate::shape::Shape;
+use crate::tables::entries;
 
 /// Whether two solids touch, are near, or are neither.
 ///
@@ -43,14 +44,26 @@ impl Proximity {
 /// `margin` counts as zero. Half-spaces that overlap without bound intersect.
 /// [`Proximity::Disjoint`] if a pose is not finite. Of composites the nearest parts count; the search for
 /// them ends at any two that touch.
-pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+pub fn proximity<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,
     g2: &dyn Shape<N, D>,
     margin: N,
 ) -> Proximity {
-    let (one, other) = (AtIsometry::new(m1, g1), AtIsometry::new(m2, g2));
+    entries::proximity_at(R::view(m1), g1, R::view(m2), g2, margin)
+}
+
+/// See [`proximity`].
+#[inline]
+pub(crate) fn proximity_at<N: Space<D>, const D: usize>(
+    isometry1: IsometryRef<'_, N, D>,
+    shape1: &dyn Shape<N, D>,
+    isometry2: IsometryRef<'_, N, D>,
+    shape2: &dyn Shape<N, D>,
+    margin: N,
+) -> Proximity {
+    let (one, other) = (AtIsometry::new(isometry1, shape1), AtIsometry::new(isometry2, shape2));
     match distance_within(&one, &other, max(margin, N::ZERO)) {
         None => Proximity::Disjoint,
         Some(distance) => Proximity::within(distance),

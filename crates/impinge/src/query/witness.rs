@@ -5,7 +5,7 @@ use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::collide::separation::{placed, separation};
 use crate::collide::{AtIsometry, Pair, Placed, Placing};
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Point, Real, Space, Unit, Vector};
+use crate::math::{AnyRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -97,14 +97,31 @@ impl<N: Real, const D: usize> Witness<N, D> {
 /// assert_eq!((found.part1, found.part2), (0, 0), "convex solids");
 /// ```
 #[must_use]
-pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
+pub fn witness<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,
     g2: &dyn Shape<N, D>,
     max_distance: N,
 ) -> Option<Witness<N, D>> {
-    witness_between(&AtIsometry::new(m1, g1), &AtIsometry::new(m2, g2), max_distance, true)
+    entries::witness(R::view(m1), g1, R::view(m2), g2, max_distance)
+}
+
+/// See [`witness`].
+#[inline]
+pub(crate) fn witness_at<N: Space<D>, const D: usize>(
+    isometry1: IsometryRef<'_, N, D>,
+    shape1: &dyn Shape<N, D>,
+    isometry2: IsometryRef<'_, N, D>,
+    shape2: &dyn Shape<N, D>,
+    max_distance: N,
+) -> Option<Witness<N, D>> {
+    witness_between(
+        &AtIsometry::new(isometry1, shape1),
+        &AtIsometry::new(isometry2, shape2),
+        max_distance,
+        true,
+    )
 }
 
 /// [`witness`] of shapes that are placed in any way; without their features, which take long to find, these are faces

@@ -7,20 +7,21 @@ use crate::collide::{ManifoldRequest, Placed, mesh, separation};
 use crate::convex::Separation;
 #[cfg(feature = "debug_render")]
 use crate::debug_render::Sketch;
-use crate::math::Point;
+use crate::math::{self, IsometryRef, Point, Pose, Vector};
 use crate::narrow_phase::{
-    CompositeState, ContactState, DefaultNarrowPhase, Events, KeptContacts, ObjectTable, Posed,
-    proximity_of,
+    self, CompositeState, ContactPrediction, ContactState, DefaultNarrowPhase, Events,
+    KeptContacts, ObjectTable, Posed, proximity_of,
 };
 use crate::query::composite::{self, PartPoint, RayQuestion};
-use crate::query::point::SurfacePoint;
-use crate::query::ray::Span;
+use crate::query::point::{self, SurfacePoint};
+use crate::query::ray::{self, Span};
 use crate::query::{
-    ContactManifold, Flight, Impact, ImpactOptions, ManifoldView, Moving, Proximity,
-    RayIntersection, TrackedContact, Witness, impact_of_flight, impact_of_pair, time_of_pair,
+    self, ClosestPoints, Contact, ContactManifold, ContactPoint, Flight, Impact, ImpactOptions,
+    ManifoldView, Moving, PointLocation, PointProjection, Proximity, RayIntersection,
+    TrackedContact, Witness, impact_of_flight, impact_of_pair, time_of_pair,
     witness_in_world as witness_of_placed,
 };
-use crate::shape::{CompositeShape, Kind};
+use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 compiled! {
     /// Queries and pairs.
@@ -162,4 +163,128 @@ compiled! {
     /// Adds the drawing of a convex solid to a mesh.
     #[cfg(feature = "debug_render")]
     fn sketch(solid: Kind<'_, N, D>, sketch: &mut Sketch<N, D>) = <Here as ByDimension<N, D>>::sketch;
+}
+
+compiled! {
+    /// What is too small to be called in an optimised program.
+    inlined trait SmallEntries;
+
+    /// The pose that an isometry describes.
+    fn pose_of(isometry: IsometryRef<'_, N, D>) -> Pose<N, D> = math::pose_of;
+
+    /// The distance of two shapes.
+    fn distance(
+        isometry1: IsometryRef<'_, N, D>,
+        shape1: &dyn Shape<N, D>,
+        isometry2: IsometryRef<'_, N, D>,
+        shape2: &dyn Shape<N, D>,
+    ) -> N = query::distance_at;
+
+    /// Their contact, up to a prediction.
+    fn contact(
+        isometry1: IsometryRef<'_, N, D>,
+        shape1: &dyn Shape<N, D>,
+        isometry2: IsometryRef<'_, N, D>,
+        shape2: &dyn Shape<N, D>,
+        prediction: N,
+    ) -> Option<Contact<N, D>> = query::contact_at;
+
+    /// Their nearest points, up to a distance.
+    fn closest_points(
+        isometry1: IsometryRef<'_, N, D>,
+        shape1: &dyn Shape<N, D>,
+        isometry2: IsometryRef<'_, N, D>,
+        shape2: &dyn Shape<N, D>,
+        max_distance: N,
+    ) -> ClosestPoints<N, D> = query::closest_points_at;
+
+    /// Whether they intersect, are within a margin, or farther apart.
+    fn proximity_at(
+        isometry1: IsometryRef<'_, N, D>,
+        shape1: &dyn Shape<N, D>,
+        isometry2: IsometryRef<'_, N, D>,
+        shape2: &dyn Shape<N, D>,
+        margin: N,
+    ) -> Proximity = query::proximity_at;
+
+    /// Their nearest points with parts and features.
+    fn witness(
+        isometry1: IsometryRef<'_, N, D>,
+        shape1: &dyn Shape<N, D>,
+        isometry2: IsometryRef<'_, N, D>,
+        shape2: &dyn Shape<N, D>,
+        max_distance: N,
+    ) -> Option<Witness<N, D>> = query::witness_at;
+
+    /// Their manifolds, without memory.
+    fn contact_manifolds(
+        isometry1: IsometryRef<'_, N, D>,
+        shape1: &dyn Shape<N, D>,
+        isometry2: IsometryRef<'_, N, D>,
+        shape2: &dyn Shape<N, D>,
+        prediction: &ContactPrediction<N>,
+        max_points: Option<usize>,
+    ) -> Vec<ContactManifold<N, D>> = narrow_phase::contact_manifolds_at;
+
+    /// A shape that moves.
+    fn moving<'a>(
+        isometry: IsometryRef<'_, N, D>,
+        velocity: &Vector<N, D>,
+        shape: &'a dyn Shape<N, D>,
+    ) -> Moving<'a, N, D> = Moving::at;
+
+    /// The first hit of a ray in the frame of a shape.
+    fn cast_on(
+        shape: Geometry<'_, N, D>,
+        ray: &Ray<N, D>,
+        max_time: N,
+        solid: bool,
+    ) -> Option<RayIntersection<N, D>> = ray::cast_on;
+
+    /// A ray in the frame of a shape that stands at a pose.
+    fn ray_within(ray: &Ray<N, D>, pose: &Pose<N, D>) -> Ray<N, D> = Ray::inverse_transformed_by;
+
+    /// A direction in the world.
+    fn turned_vector(pose: &Pose<N, D>, local: &Vector<N, D>) -> Vector<N, D> = Pose::vector;
+
+    /// A point in the frame of a shape that stands at a pose.
+    fn point_within(pose: &Pose<N, D>, outer: &Point<N, D>) -> Point<N, D> = Pose::inverse_point;
+
+    /// The nearest point of the boundary of a shape, in its frame.
+    fn project_on(
+        shape: Geometry<'_, N, D>,
+        point: &Point<N, D>,
+    ) -> (PointProjection<N, D>, FeatureId) = point::project_on;
+
+    /// The same with the place on the part.
+    fn locate_on(
+        shape: Geometry<'_, N, D>,
+        point: &Point<N, D>,
+        solid: bool,
+    ) -> (PointProjection<N, D>, PointLocation<N>) = point::locate_on;
+
+    /// The distance of a point from the boundary of a shape, negative inside, in its frame.
+    fn signed_distance_on(shape: Geometry<'_, N, D>, point: &Point<N, D>) -> N =
+        point::signed_distance_on;
+
+    /// A shape holds a point, in its frame.
+    fn holds(shape: Geometry<'_, N, D>, point: &Point<N, D>) -> bool = point::holds;
+
+    /// A projection in the world.
+    fn placed_projection(
+        local: &PointProjection<N, D>,
+        pose: &Pose<N, D>,
+        point: &Point<N, D>,
+        solid: bool,
+    ) -> PointProjection<N, D> = point::placed;
+
+    /// The normal of a manifold that is read in place, as it is kept and in the world.
+    fn own_normal(view: &ManifoldView<'_, N, D>) -> [Vector<N, D>; 2] = ManifoldView::own_normal;
+
+    /// A contact of a manifold that is read in place, in the world.
+    fn contact_of_view(
+        view: &ManifoldView<'_, N, D>,
+        index: usize,
+        normal: &[Vector<N, D>; 2],
+    ) -> ContactPoint<N, D> = ManifoldView::contact;
 }

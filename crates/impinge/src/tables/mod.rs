@@ -25,15 +25,26 @@ pub(crate) use self::by_dimension::ByDimension;
 /// Declares entries: a trait with a method for each, its four implementations for [`Here`], and for each a function that
 /// is generic over `N: Space<D>` and calls the method for `N` and `D`.
 ///
+/// An `inlined trait` has entries that are too small to be called: where the user's build has no debug assertions the
+/// generic code is compiled into the caller. In a debug build, which optimises nothing of the caller's, a call is many
+/// times as fast, whether this crate is optimised there or not.
+///
 /// The signatures speak of `N` and `D`, which are concrete where the targets are named. Without the feature of a
 /// dimension its entries are compiled where they are used, which is nowhere.
 macro_rules! compiled {
+    ($(#[$about:meta])* trait $entries:ident; $($list:tt)*) => {
+        $crate::tables::compiled! { @list called; $(#[$about])* trait $entries; $($list)* }
+    };
+    ($(#[$about:meta])* inlined trait $entries:ident; $($list:tt)*) => {
+        $crate::tables::compiled! { @list inlined; $(#[$about])* trait $entries; $($list)* }
+    };
     (
+        @list $mode:ident;
         $(#[$about:meta])*
         trait $entries:ident;
         $(
             $(#[$meta:meta])*
-            fn $name:ident($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $target:expr;
+            fn $name:ident $(<$life:lifetime>)? ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $target:expr;
         )*
     ) => {
         $(#[$about])*
@@ -41,7 +52,7 @@ macro_rules! compiled {
         pub trait $entries<N, const D: usize> {
             $(
                 $(#[$meta])*
-                fn $name($($argument: $type),*) $(-> $result)?
+                fn $name$(<$life>)?($($argument: $type),*) $(-> $result)?
                 where
                     N: $crate::math::Space<D>;
             )*
@@ -50,29 +61,39 @@ macro_rules! compiled {
         $(
             $(#[$meta])*
             #[inline(always)]
-            pub(crate) fn $name<N: $crate::math::Space<D>, const D: usize>(
+            pub(crate) fn $name<$($life,)? N: $crate::math::Space<D>, const D: usize>(
                 $($argument: $type),*
             ) $(-> $result)? {
-                <<N as $crate::tables::Compiled<D>>::Here as $entries<N, D>>::$name($($argument),*)
+                $crate::tables::compiled! { @$mode $entries, $name, $target, ($($argument),*) }
             }
         )*
 
         $crate::tables::compiled! { @of f32, 2, "dim2", $entries;
-            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+            $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
         $crate::tables::compiled! { @of f32, 3, "dim3", $entries;
-            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+            $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
         #[cfg(feature = "f64")]
         $crate::tables::compiled! { @of f64, 2, "dim2", $entries;
-            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+            $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
         #[cfg(feature = "f64")]
         $crate::tables::compiled! { @of f64, 3, "dim3", $entries;
-            $( $(#[$meta])* fn $name($($argument: $type),*) $(-> $result)? = $target; )* }
+            $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
+    };
+    (@called $entries:ident, $name:ident, $target:expr, ($($argument:ident),*)) => {
+        <<N as $crate::tables::Compiled<D>>::Here as $entries<N, D>>::$name($($argument),*)
+    };
+    (@inlined $entries:ident, $name:ident, $target:expr, ($($argument:ident),*)) => {
+        if cfg!(debug_assertions) {
+            $crate::tables::compiled! { @called $entries, $name, $target, ($($argument),*) }
+        } else {
+            $target($($argument),*)
+        }
     };
     (
         @of $scalar:ty, $dimension:literal, $feature:literal, $entries:ident;
         $(
             $(#[$meta:meta])*
-            fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? = $target:expr;
+            fn $name:ident $(<$life:lifetime>)? ($($argument:ident: $type:ty),*) $(-> $result:ty)? = $target:expr;
         )*
     ) => {
         const _: () = {
@@ -83,7 +104,7 @@ macro_rules! compiled {
                 $(
                     $(#[$meta])*
                     #[cfg_attr(not(feature = $feature), inline)]
-                    fn $name($($argument: $type),*) $(-> $result)? {
+                    fn $name$(<$life>)?($($argument: $type),*) $(-> $result)? {
                         $target($($argument),*)
                     }
                 )*
@@ -104,6 +125,7 @@ pub struct Here;
 pub trait Compiled<const D: usize>: Sized {
     /// Always [`Here`].
     type Here: entries::Entries<Self, D>
+        + entries::SmallEntries<Self, D>
         + crate::batch::BatchEntries<Self, D>
         + crate::checker::CheckerEntries<Self, D>
         + crate::partitioning::SearchEntries<Self, D>

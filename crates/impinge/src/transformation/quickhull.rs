@@ -7,6 +7,7 @@
 
 use super::lattice::{area_vector, volume};
 use super::span::{distance_from_segment, larger, precedes};
+use crate::math::order::sort_few;
 use crate::math::{Mapped, Point, Vector};
 
 type P3 = Point<f64, 3>;
@@ -274,7 +275,7 @@ impl<'a> HullSurface<'a> {
 
     /// Puts a fan of facets from the border to a point; returns the first of them.
     fn replace(&mut self, point: u32) -> u32 {
-        self.horizon.sort_unstable_by_key(|side| side.from);
+        sort_few(&mut self.horizon, |one, other| one.from < other.from);
         let first = index_of(self.facets.len());
         for (created, side) in (first..).zip(&self.horizon) {
             self.fan[at(side.from)] = created;

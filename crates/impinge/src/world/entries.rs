@@ -3,7 +3,8 @@
 use super::bodies::WorldBody;
 use super::changes::{ChangeList, Readers};
 use super::dirty::{DirtyTree, DirtyVisitor};
-use super::{WorldBroadPhase, WorldError};
+use super::objects::Slot;
+use super::{ContactViewPiece, ContactViews, WorldBroadPhase, WorldError, narrow_phase};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::DBVTBroadPhase;
 use crate::math::{Point, Space};
@@ -98,6 +99,20 @@ compiled! {
 
     /// One object holds a point.
     fn holds(body: &WorldBody<N, D>, point: &Point<N, D>) -> bool = WorldBody::holds;
+
+    /// All manifolds where they lie; the slots tell the handles of the objects.
+    fn contact_views<'a>(
+        narrow_phase: &'a DefaultNarrowPhase<N, D>,
+        table: &'a ObjectTable<N, D>,
+        slots: &'a [Slot],
+    ) -> ContactViews<'a, N, D> = narrow_phase::views_of;
+
+    fn contact_view_pieces<'a>(
+        narrow_phase: &'a DefaultNarrowPhase<N, D>,
+        table: &'a ObjectTable<N, D>,
+        slots: &'a [Slot],
+        pieces: usize,
+    ) -> Vec<ContactViewPiece<'a, N, D>> = narrow_phase::view_pieces_of;
 
     fn update_pair(
         narrow_phase: &mut DefaultNarrowPhase<N, D>,

@@ -1,11 +1,11 @@
 //! The narrow phase as a world sees it: given pairs, asked for contacts and proximities.
 
-use super::CollisionObjects;
-use super::entries;
+use super::objects::{Slot, handle_at};
+use super::{CollisionObjects, entries};
 use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactPair, DefaultNarrowPhase, Events, IdAllocator, Interaction,
-    ProximityPair, Views,
+    ObjectTable, ProximityPair, Views,
 };
 use crate::query::{ContactManifold, ManifoldView};
 
@@ -284,7 +284,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         handle: CollisionObjectHandle,
     ) -> Vec<CollisionObjectHandle> {
         let partners = self.partners(handle.index());
-        partners.into_iter().map(|index| objects.handle_at(index)).collect()
+        partners.into_iter().map(|index| handle_at(objects.slots(), index)).collect()
     }
 
     fn ids(&mut self) -> Option<&mut IdAllocator> {
@@ -314,7 +314,7 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactPairs<'a, N, D> {
         let pairs = Self::contact_pairs(self, objects.table());
-        Box::new(pairs.map(named(objects)))
+        Box::new(pairs.map(named(objects.slots())))
     }
 
     fn contact_manifolds<'a>(
@@ -322,20 +322,14 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactManifolds<'a, N, D> {
         let manifolds = Self::contact_manifolds(self, objects.table());
-        Box::new(manifolds.map(named(objects)))
+        Box::new(manifolds.map(named(objects.slots())))
     }
 
     fn contact_views<'a>(
         &'a self,
         objects: &'a CollisionObjects<N, D, T>,
     ) -> ContactViews<'a, N, D> {
-        let views = Self::contact_views(self, objects.table());
-        // Each by itself: a chain of both is slower to read.
-        if views.is_plain {
-            Box::new(views.plain(named(objects)))
-        } else {
-            Box::new(views.particular(named(objects)))
-        }
+        entries::contact_views(self, objects.table(), objects.slots())
     }
 
     fn contact_view_pieces<'a>(
@@ -346,25 +340,50 @@ impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for DefaultNarrowPhase
     where
         T: Sync,
     {
-        let pieces = Self::contact_view_pieces(self, objects.table(), pieces);
-        let boxed = |views: Views<'a, N, D>| -> ContactViewPiece<'a, N, D> {
-            if views.is_plain {
-                Box::new(views.plain(named(objects)))
-            } else {
-                Box::new(views.particular(named(objects)))
-            }
-        };
-        pieces.map(boxed).collect()
+        entries::contact_view_pieces(self, objects.table(), objects.slots(), pieces)
     }
 
     fn proximity_pairs<'a>(&'a self, objects: &'a CollisionObjects<N, D, T>) -> ProximityPairs<'a> {
-        Box::new(Self::proximity_pairs(self).map(named(objects)))
+        Box::new(Self::proximity_pairs(self).map(named(objects.slots())))
+    }
+}
+
+/// See [`NarrowPhase::contact_views`].
+pub(super) fn views_of<'a, N: Space<D>, const D: usize>(
+    narrow_phase: &'a DefaultNarrowPhase<N, D>,
+    table: &'a ObjectTable<N, D>,
+    slots: &'a [Slot],
+) -> ContactViews<'a, N, D> {
+    // A piece may be sent to another thread, which all of them may.
+    named_views(narrow_phase.contact_views(table), slots)
+}
+
+/// See [`NarrowPhase::contact_view_pieces`].
+pub(super) fn view_pieces_of<'a, N: Space<D>, const D: usize>(
+    narrow_phase: &'a DefaultNarrowPhase<N, D>,
+    table: &'a ObjectTable<N, D>,
+    slots: &'a [Slot],
+    pieces: usize,
+) -> Vec<ContactViewPiece<'a, N, D>> {
+    let pieces = narrow_phase.contact_view_pieces(table, pieces);
+    pieces.map(|views| named_views(views, slots)).collect()
+}
+
+/// Views with the handles of their objects. Each kind by itself: a chain of both is slower to read.
+fn named_views<'a, N: Space<D>, const D: usize>(
+    views: Views<'a, N, D>,
+    slots: &'a [Slot],
+) -> ContactViewPiece<'a, N, D> {
+    if views.is_plain {
+        Box::new(views.plain(named(slots)))
+    } else {
+        Box::new(views.particular(named(slots)))
     }
 }
 
 /// Turns indices of living objects, and what goes with them, into their handles.
-fn named<N: Space<D>, const D: usize, T, F>(
-    objects: &CollisionObjects<N, D, T>,
+fn named<F>(
+    slots: &[Slot],
 ) -> impl Fn((u32, u32, F)) -> (CollisionObjectHandle, CollisionObjectHandle, F) + Copy {
-    |(first, second, found)| (objects.handle_at(first), objects.handle_at(second), found)
+    |(first, second, found)| (handle_at(slots, first), handle_at(slots, second), found)
 }

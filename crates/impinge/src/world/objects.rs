@@ -45,11 +45,17 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
 
 /// What an index of a handle stands for.
 #[derive(Clone, Copy, Debug)]
-struct Slot {
+pub(crate) struct Slot {
     /// That of the object here, or of the next one.
     generation: Generation,
     /// Where the object is, or [`NOWHERE`].
     place: u32,
+}
+
+/// The handle of the object at an index, which there is.
+#[inline]
+pub(super) fn handle_at(slots: &[Slot], index: u32) -> CollisionObjectHandle {
+    CollisionObjectHandle::new(index, slots[index as usize].generation)
 }
 
 /// The index that stands for no object.
@@ -165,10 +171,10 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         both.is_some_and(|(one, two)| one.can_interact(two))
     }
 
-    /// The handle of the object at an index, which there is.
+    /// What the indices of handles stand for.
     #[inline]
-    pub(super) fn handle_at(&self, index: u32) -> CollisionObjectHandle {
-        CollisionObjectHandle::new(index, self.slots[index as usize].generation)
+    pub(super) fn slots(&self) -> &[Slot] {
+        &self.slots
     }
 
     /// The objects, in order of their handles.

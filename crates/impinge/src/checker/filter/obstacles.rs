@@ -6,7 +6,7 @@ use super::{MAX_LENGTH, margin};
 use crate::checker::body::Obstacle;
 use crate::checker::frames::FrameTree;
 use crate::collide::Placed;
-use crate::math::order::order_of;
+use crate::math::order::{order_of, sort_few};
 use crate::math::{Pose, Real, Space, Vector};
 use crate::query::distance_between;
 use crate::shape::{Ball, Shape};
@@ -86,7 +86,8 @@ impl<const D: usize> Surroundings<D> {
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
             all.push(InReach { gap, obstacle: index, number, wanted, radius });
         }
-        all.sort_by_key(|within| (order_of(within.gap), within.obstacle));
+        let key = |within: &InReach| (order_of(within.gap), within.obstacle);
+        sort_few(&mut all, |one, other| key(one) < key(other));
         all
     }
 

@@ -7,7 +7,7 @@ use super::cover::{CoverBall, around, cover};
 use super::{MAX_LENGTH, margin};
 use crate::checker::chain::{LANES, LaneRow, Node};
 use crate::checker::frames::{FrameTree, OnNode};
-use crate::math::order::order_of;
+use crate::math::order::{order_of, sort_few};
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Space, Vector};
 use crate::shape::Shape;
 
@@ -176,7 +176,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             return self.add_group(&bodies);
         }
         let axis = longest_axis(&bodies);
-        bodies.sort_by_key(|body| (order_of(body.balls[0].center[axis]), body.number));
+        let key = |body: &Covered<N, D>| (order_of(body.balls[0].center[axis]), body.number);
+        sort_few(&mut bodies, |one, other| key(one) < key(other));
         // Full groups are fewer.
         let half = bodies.len().div_ceil(2);
         let full = half.next_multiple_of(LANES);
@@ -213,9 +214,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     fn cross(&mut self, pairs: &[[u32; 2]]) {
         let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
         for pair in pairs {
-            let mut places = pair.mapped(|body| self.places[body as usize]);
-            places.sort_unstable();
-            let [(group1, balls1), (group2, balls2)] = places;
+            let [one, other] = pair.mapped(|body| self.places[body as usize]);
+            let ((group1, balls1), (group2, balls2)) = (one.min(other), one.max(other));
             let wanted = by_groups.entry([group1, group2]).or_default();
             for (ball, others) in wanted.iter_mut().enumerate() {
                 *others |= if balls1 >> ball & 1 == 1 { balls2 } else { 0 };

@@ -2,6 +2,7 @@
 
 use crate::checker::chain::{LANES, LaneRow};
 use crate::math::lanes::bits;
+use crate::math::order::sort_few;
 use crate::math::simd::Simd;
 use crate::math::{Wide, max, min};
 
@@ -220,9 +221,9 @@ impl CollisionSearch {
             let outer = self.outer;
             self.near.retain(|near| near.lower <= outer[near.lane]);
         }
-        self.near.sort_unstable_by(|one, other| {
+        sort_few(&mut self.near, |one, other| {
             let order = (one.lane, one.pair).cmp(&(other.lane, other.pair));
-            order.then(one.lower.total_cmp(&other.lower))
+            order.then(one.lower.total_cmp(&other.lower)).is_lt()
         });
         self.near.dedup_by(|later, kept| {
             let is_same = (later.lane, later.pair) == (kept.lane, kept.pair);

@@ -12,6 +12,7 @@ use crate::collide::separation::{
 };
 use crate::convex::Separation;
 use crate::math::lanes::{load, with_lanes};
+use crate::math::order::sort_few;
 use crate::math::simd::{Level, Simd};
 use crate::math::{Point, Real, Wide};
 use crate::shape::{Geometry, Kind, ShapeKind};
@@ -95,7 +96,7 @@ fn each_packet<'a, N: Real>(
     mut work: impl FnMut(&[ConvexPair<'a, N, 3>]),
 ) {
     if !pairs.is_sorted_by_key(ConvexPair::kinds) {
-        pairs.sort_unstable_by_key(ConvexPair::kinds);
+        sort_few(pairs, |one, other| one.kinds() < other.kinds());
     }
     for same in pairs.chunk_by(|one, other| one.kinds() == other.kinds()) {
         same.chunks(LANES).for_each(&mut work);

@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 
 use super::super::RawPoint;
 use super::patch::{Merging, Piece};
-use crate::math::order::{order_of, sort_keyed};
+use crate::math::order::{order_of, sort_few, sort_keyed};
 use crate::math::{Mapped, Real, Vector, min};
 
 /// Normals that differ by more than this, as vectors, are those of different patches; points that
@@ -67,7 +67,7 @@ fn pieces_by_group(
 
 /// In the order of the first parts.
 fn sort_by_parts(groups: &mut [PieceGroup]) {
-    groups.sort_unstable_by_key(|group| group.first);
+    sort_few(groups, |one, other| one.first < other.first);
 }
 
 /// The patches that some pieces make.
@@ -195,7 +195,7 @@ impl NormalCells {
             return Self { cells, of_pieces, order };
         }
         order.extend(pieces.iter().map(|piece| cell_of(&piece.normal)).zip(0..));
-        order.sort_unstable();
+        sort_few(&mut order, |one, other| one < other);
         of_pieces.resize(pieces.len(), 0);
         for &(number, piece) in &order {
             if cells.last().is_none_or(|last: &NormalCell| last.number != number) {

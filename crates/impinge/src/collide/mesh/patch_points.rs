@@ -4,6 +4,7 @@
 //! A patch has few points, most often those of one piece. So all is done in place, in lists that the
 //! patches of a shape share.
 
+use crate::math::order::sort_few;
 use crate::tables::ByDimension;
 use smallvec::SmallVec;
 
@@ -159,7 +160,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// parts.
     fn drop_copies(&self, members: &mut Members<N>) {
         let near = N::lit(4.0) * self.merging.tolerance;
-        sort(members);
+        sort_few(members, is_before);
         // The first ones are those kept.
         let (mut count, mut is_exchanged) = (0, false);
         for next in 0..members.len() {
@@ -182,7 +183,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         members.truncate(count);
         if is_exchanged {
             // An exchange may have taken a point past its neighbours.
-            sort(members);
+            sort_few(members, is_before);
         }
     }
 
@@ -216,23 +217,9 @@ fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vecto
     [first * cosine + second * sine, second * cosine - first * sine]
 }
 
-/// Sorts points along the first tangent, then along the second; equal ones stay as they are.
+/// Along the first tangent, then along the second.
 #[inline]
-fn sort<N: Real>(members: &mut [Member<N>]) {
-    if members.len() > FEW {
-        return members.sort_by(by_place);
-    }
-    for next in 1..members.len() {
-        let mut at = next;
-        while at > 0 && by_place(&members[at], &members[at - 1]).is_lt() {
-            members.swap(at - 1, at);
-            at -= 1;
-        }
-    }
-}
-
-#[inline]
-fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
+fn is_before<N: Real>(a: &Member<N>, b: &Member<N>) -> bool {
     let (a, b) = (&a.flat, &b.flat);
-    ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))
+    ordering(a.x, b.x).then_with(|| ordering(a.y, b.y)).is_lt()
 }

@@ -1,5 +1,6 @@
 //! How far a composite is from another shape: as far as the nearest of its parts.
 
+use crate::math::order::sort_few;
 use crate::tables::ByDimension;
 use smallvec::SmallVec;
 
@@ -235,8 +236,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         let slabs = self.slabs_of(which, own);
         self.add_gaps(&slabs, self.parts[1 - which], &mut near);
         self.slabs = Some(slabs);
-        near.sort_unstable_by(|(one, part1), (other, part2)| {
-            one.as_f64().total_cmp(&other.as_f64()).then(part1.cmp(part2))
+        sort_few(&mut near, |(one, part1), (other, part2)| {
+            one.as_f64().total_cmp(&other.as_f64()).then(part1.cmp(part2)).is_lt()
         });
         for (gap, other) in near {
             let is_beyond = gap > self.visitor.limit() || self.visitor.bound() < N::ZERO;

@@ -5,7 +5,7 @@ use crate::collide::far::are_beyond;
 use crate::collide::pair::{Ordered, Placed, Placing};
 use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::convex::Separation;
-use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
+use crate::math::{IsometryRef, Pose, Real, Space, Vector};
 use crate::shape::{Geometry, Shape};
 use crate::tables::ByDimension;
 
@@ -114,20 +114,8 @@ pub(crate) fn placed<N: Real, const D: usize>(
 impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     /// A shape where the user's isometry puts it.
     #[inline]
-    pub(crate) fn new<R: AbstractRotation<N, D>>(
-        isometry: &Isometry<N, R, D>,
-        shape: &'a dyn Shape<N, D>,
-    ) -> Self {
-        Self::at(isometry, shape.geometry())
-    }
-
-    #[inline]
-    fn at<R: AbstractRotation<N, D>>(
-        isometry: &Isometry<N, R, D>,
-        shape: Geometry<'a, N, D>,
-    ) -> Self {
-        let pose =
-            if shape.turns() { Pose::from_isometry(isometry) } else { Pose::unturned(isometry) };
+    pub(crate) fn new(isometry: IsometryRef<'_, N, D>, shape: Geometry<'a, N, D>) -> Self {
+        let pose = if shape.turns() { isometry.pose() } else { isometry.unturned() };
         Self { pose, shape }
     }
 
@@ -162,21 +150,19 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
 
 /// A shape where the user's isometry puts it.
 #[derive(Clone, Copy)]
-pub(crate) struct AtIsometry<'i, 'a, N: Real, R, const D: usize> {
-    isometry: &'i Isometry<N, R, D>,
+pub(crate) struct AtIsometry<'i, 'a, N: Space<D>, const D: usize> {
+    isometry: IsometryRef<'i, N, D>,
     shape: Geometry<'a, N, D>,
 }
 
-impl<'i, 'a, N: Real, R, const D: usize> AtIsometry<'i, 'a, N, R, D> {
+impl<'i, 'a, N: Space<D>, const D: usize> AtIsometry<'i, 'a, N, D> {
     #[inline]
-    pub(crate) fn new(isometry: &'i Isometry<N, R, D>, shape: &'a dyn Shape<N, D>) -> Self {
+    pub(crate) fn new(isometry: IsometryRef<'i, N, D>, shape: &'a dyn Shape<N, D>) -> Self {
         Self { isometry, shape: shape.geometry() }
     }
 }
 
-impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Placing<'a, N, D>
-    for AtIsometry<'_, 'a, N, R, D>
-{
+impl<'a, N: Space<D>, const D: usize> Placing<'a, N, D> for AtIsometry<'_, 'a, N, D> {
     #[inline]
     fn shape(&self) -> Geometry<'a, N, D> {
         self.shape
@@ -184,11 +170,11 @@ impl<'a, N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Placing<'a, N, 
 
     #[inline]
     fn translation(&self) -> Vector<N, D> {
-        self.isometry.translation.vector
+        self.isometry.translation()
     }
 
     #[inline]
     fn placed(&self) -> Placed<'a, N, D> {
-        Placed::at(self.isometry, self.shape)
+        Placed::new(self.isometry, self.shape)
     }
 }

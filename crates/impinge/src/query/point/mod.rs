@@ -33,7 +33,7 @@ pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
 
 use super::composite::{Near, PartPoint};
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
+use crate::math::{AnyRotation, Isometry, Point, Pose, Real, Space, max};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 use crate::tables::entries;
 
@@ -92,7 +92,7 @@ pub struct PointProjection<N: Real, const D: usize> {
 /// assert_eq!(cube.distance_to_point(&place, &point, true), 3.0);
 /// assert_eq!(cube.distance_to_point(&place, &Point::new(10.5, 0.0, 0.0), false), -0.5, "inside");
 /// ```
-pub trait PointQuery<N: Real, const D: usize> {
+pub trait PointQuery<N: Space<D>, const D: usize> {
     /// The nearest point of the boundary, and the feature that it lies on, in the local frame.
     ///
     /// The other methods derive from it. [`PointProjection::point`] is on the boundary even if the
@@ -132,69 +132,69 @@ pub trait PointQuery<N: Real, const D: usize> {
     /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame.
     ///
     /// For a solid, a point inside is its own projection, to the bit.
-    fn project_point<R: AbstractRotation<N, D>>(
+    fn project_point<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
         solid: bool,
     ) -> PointProjection<N, D> {
-        let pose = Pose::from_isometry(m);
-        let (local, _) = self.project_local_point(&pose.inverse_point(point));
-        placed(&local, &pose, point, solid)
+        let pose = R::view(m).pose();
+        let (local, _) = self.project_local_point(&entries::point_within(&pose, point));
+        entries::placed_projection(&local, &pose, point, solid)
     }
 
     /// The distance from the solid placed at `m` to the point.
     ///
     /// For a solid it is zero inside; for a boundary it is negative inside: minus the distance to
     /// the nearest point of the boundary.
-    fn distance_to_point<R: AbstractRotation<N, D>>(
+    fn distance_to_point<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
         solid: bool,
     ) -> N {
-        let local = Pose::from_isometry(m).inverse_point(point);
+        let local = entries::point_within(&R::view(m).pose(), point);
         let distance = self.signed_distance_to_local_point(&local);
         // By comparison, so that the distance of nothing stays what it is.
         if solid && distance < N::ZERO { N::ZERO } else { distance }
     }
 
     /// The point lies in the solid placed at `m`, or on its boundary.
-    fn contains_point<R: AbstractRotation<N, D>>(
+    fn contains_point<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
     ) -> bool {
-        self.contains_local_point(&Pose::from_isometry(m).inverse_point(point))
+        self.contains_local_point(&entries::point_within(&R::view(m).pose(), point))
     }
 
     /// The nearest point of the boundary of the solid placed at `m`, in the world frame, and the
     /// feature that it lies on.
-    fn project_point_with_feature<R: AbstractRotation<N, D>>(
+    fn project_point_with_feature<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
     ) -> (PointProjection<N, D>, FeatureId) {
-        let pose = Pose::from_isometry(m);
-        let (local, feature) = self.project_local_point(&pose.inverse_point(point));
-        (placed(&local, &pose, point, false), feature)
+        let pose = R::view(m).pose();
+        let (local, feature) = self.project_local_point(&entries::point_within(&pose, point));
+        (entries::placed_projection(&local, &pose, point, false), feature)
     }
 
     /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame, and where
     /// on the solid it lies: [`Self::project_local_point_with_location`].
-    fn project_point_with_location<R: AbstractRotation<N, D>>(
+    fn project_point_with_location<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
         solid: bool,
     ) -> (PointProjection<N, D>, PointLocation<N>) {
-        located_at(self, &Pose::from_isometry(m), point, solid)
+        located_at(self, &R::view(m).pose(), point, solid)
     }
 }
 
 /// [`PointQuery::project_point_with_location`] at a pose.
 #[inline]
-pub(crate) fn located_at<N: Real, const D: usize>(
+pub(crate) fn located_at<N: Space<D>, const D: usize>(
     shape: &(impl PointQuery<N, D> + ?Sized),
     pose: &Pose<N, D>,
     point: &Point<N, D>,
@@ -206,7 +206,7 @@ pub(crate) fn located_at<N: Real, const D: usize>(
 }
 
 /// The projection in the world frame.
-fn placed<N: Real, const D: usize>(
+pub(crate) fn placed<N: Real, const D: usize>(
     local: &PointProjection<N, D>,
     pose: &Pose<N, D>,
     point: &Point<N, D>,
@@ -269,13 +269,7 @@ impl<N: Real, const D: usize> PointProjection<N, D> {
 
 impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for S {
     fn project_local_point(&self, point: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
-        match self.geometry().as_composite() {
-            None => entries::surface_point(self.geometry().0, point).projection(point),
-            Some(parts) => match entries::nearest_part(parts, point, false) {
-                None => (nowhere(point), FeatureId::Face(0)),
-                Some(found) => (found.projection(), found.feature),
-            },
-        }
+        entries::project_on(self.geometry(), point)
     }
 
     fn project_local_point_with_location(
@@ -283,38 +277,69 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> PointQuery<N, D> for 
         point: &Point<N, D>,
         solid: bool,
     ) -> (PointProjection<N, D>, PointLocation<N>) {
-        let Some(parts) = self.geometry().as_composite() else {
-            let (nearest, feature) = self.project_local_point(point);
-            let projected = nearest.of_solid(point, solid);
-            let on_boundary = (projected == nearest).then_some(feature);
-            let barycentric = Barycentric::of(self.geometry(), &projected.point, on_boundary);
-            return (projected, PointLocation { part: 0, feature, barycentric });
-        };
-        let found = entries::nearest_part(parts, point, false);
-        let nothing = PointLocation {
-            part: 0,
-            feature: FeatureId::Face(0),
-            barycentric: Barycentric::Undefined,
-        };
-        found.map_or((nowhere(point), nothing), |found| {
-            (found.projection().of_solid(point, solid), found.location(parts, point, solid))
-        })
+        entries::locate_on(self.geometry(), point, solid)
     }
 
     fn signed_distance_to_local_point(&self, point: &Point<N, D>) -> N {
-        if let Some(parts) = self.geometry().as_composite() {
-            let found = entries::nearest_part(parts, point, false);
-            return found.map_or(N::INFINITY, |found| found.distance);
-        }
-        let (nearest, _) = self.project_local_point(point);
-        let distance = length(&(point - nearest.point));
-        // Subtracting from zero, so that the boundary is at plain zero.
-        if nearest.is_inside { N::ZERO - distance } else { distance }
+        entries::signed_distance_on(self.geometry(), point)
     }
 
     fn contains_local_point(&self, point: &Point<N, D>) -> bool {
-        holds(self.geometry(), point)
+        entries::holds(self.geometry(), point)
     }
+}
+
+/// See [`PointQuery::project_local_point`].
+#[inline]
+pub(crate) fn project_on<N: Space<D>, const D: usize>(
+    shape: Geometry<'_, N, D>,
+    point: &Point<N, D>,
+) -> (PointProjection<N, D>, FeatureId) {
+    match shape.as_composite() {
+        None => entries::surface_point(shape.0, point).projection(point),
+        Some(parts) => match entries::nearest_part(parts, point, false) {
+            None => (nowhere(point), FeatureId::Face(0)),
+            Some(found) => (found.projection(), found.feature),
+        },
+    }
+}
+
+/// See [`PointQuery::project_local_point_with_location`].
+#[inline]
+pub(crate) fn locate_on<N: Space<D>, const D: usize>(
+    shape: Geometry<'_, N, D>,
+    point: &Point<N, D>,
+    solid: bool,
+) -> (PointProjection<N, D>, PointLocation<N>) {
+    let Some(parts) = shape.as_composite() else {
+        let (nearest, feature) = project_on(shape, point);
+        let projected = nearest.of_solid(point, solid);
+        let on_boundary = (projected == nearest).then_some(feature);
+        let barycentric = Barycentric::of(shape, &projected.point, on_boundary);
+        return (projected, PointLocation { part: 0, feature, barycentric });
+    };
+    let found = entries::nearest_part(parts, point, false);
+    let nothing =
+        PointLocation { part: 0, feature: FeatureId::Face(0), barycentric: Barycentric::Undefined };
+    found.map_or((nowhere(point), nothing), |found| {
+        (found.projection().of_solid(point, solid), found.location(parts, point, solid))
+    })
+}
+
+/// See [`PointQuery::signed_distance_to_local_point`].
+#[inline]
+pub(crate) fn signed_distance_on<N: Space<D>, const D: usize>(
+    shape: Geometry<'_, N, D>,
+    point: &Point<N, D>,
+) -> N {
+    if let Some(parts) = shape.as_composite() {
+        let found = entries::nearest_part(parts, point, false);
+        return found.map_or(N::INFINITY, |found| found.distance);
+    }
+    let (nearest, _) = project_on(shape, point);
+    let distance = length(&(point - nearest.point));
+    // Subtracting from zero, so that the boundary is at plain zero.
+    if nearest.is_inside { N::ZERO - distance } else { distance }
 }
 
 /// See [`PointQuery::contains_local_point`].

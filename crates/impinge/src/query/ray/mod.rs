@@ -38,7 +38,7 @@ use super::PointProjection;
 use super::composite::RayQuestion;
 use super::point::length;
 use crate::bounding_volume::Ray;
-use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max_component};
+use crate::math::{AnyRotation, Isometry, Point, Pose, Real, Space, Vector, max_component};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 /// Where and when a ray first meets a solid.
@@ -105,7 +105,7 @@ pub struct RayIntersection<N: Real, const D: usize> {
 /// assert_eq!(cube.toi_with_ray(&place, &inner, true), Some(0.0), "solid");
 /// assert_eq!(cube.toi_with_ray(&place, &inner, false), Some(1.0), "where it leaves");
 /// ```
-pub trait RayCast<N: Real, const D: usize> {
+pub trait RayCast<N: Space<D>, const D: usize> {
     /// The same as [`Self::cast_local_ray_until`] without a longest time.
     fn cast_local_ray(&self, ray: &Ray<N, D>, solid: bool) -> Option<RayIntersection<N, D>> {
         self.cast_local_ray_until(ray, N::INFINITY, solid)
@@ -157,17 +157,17 @@ pub trait RayCast<N: Real, const D: usize> {
     /// # Panics
     /// If there are not as many places as rays.
     #[track_caller]
-    fn cast_rays<R: AbstractRotation<N, D>>(
+    fn cast_rays<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         batch: &RayBatch<'_, N, D>,
         hits: &mut [Option<RayIntersection<N, D>>],
     ) {
-        let pose = Pose::from_isometry(m);
+        let pose = R::view(m).pose();
         let local: Vec<_> = batch.rays.iter().map(|r| r.inverse_transformed_by(&pose)).collect();
         self.cast_local_rays(&RayBatch { rays: &local, ..*batch }, hits);
         for hit in hits.iter_mut().flatten() {
-            hit.normal = pose.vector(&hit.normal);
+            hit.normal = entries::turned_vector(&pose, &hit.normal);
         }
     }
 
@@ -191,7 +191,7 @@ pub trait RayCast<N: Real, const D: usize> {
     }
 
     /// The same as [`Self::first_hit_with_ray`] without a longest time.
-    fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
+    fn toi_and_normal_with_ray<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -203,14 +203,14 @@ pub trait RayCast<N: Real, const D: usize> {
     /// The first hit on the solid placed at `m`, with its normal in the world frame, if it is at `max_time`
     /// or before; no hit is if that is negative or NaN. The time is in units of the ray's direction.
     #[doc(alias = "toi_and_normal_with_ray")]
-    fn first_hit_with_ray<R: AbstractRotation<N, D>>(
+    fn first_hit_with_ray<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
         max_time: N,
         solid: bool,
     ) -> Option<RayIntersection<N, D>> {
-        cast_at(self, &Pose::from_isometry(m), ray, max_time, solid)
+        cast_at(self, &R::view(m).pose(), ray, max_time, solid)
     }
 
     /// The first hit by `max_time` that `counts`, on the shape placed at `m`; the others are passed by. Of a
@@ -237,7 +237,7 @@ pub trait RayCast<N: Real, const D: usize> {
     /// assert_eq!(hit(|feature| feature != FeatureId::Face(0)), Some((4.0, -1.0)), "the far wall, from inside");
     /// assert_eq!(hit(|feature| feature != FeatureId::Face(1)), Some((2.0, -1.0)), "from outside");
     /// ```
-    fn first_hit_where<R: AbstractRotation<N, D>>(
+    fn first_hit_where<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -263,37 +263,33 @@ pub trait RayCast<N: Real, const D: usize> {
     /// assert_eq!((hits[0].toi, hits[0].part, hits[0].normal), (4.0, 0, -Vector::x()));
     /// assert!(ball.all_hits_with_ray(&place, &ray, 3.0, true).is_empty(), "too early");
     /// ```
-    fn all_hits_with_ray<R: AbstractRotation<N, D>>(
+    fn all_hits_with_ray<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
         max_time: N,
         solid: bool,
     ) -> Vec<RayIntersection<N, D>> {
-        let pose = Pose::from_isometry(m);
-        let mut hits = self.local_ray_hits(&ray.inverse_transformed_by(&pose), max_time, solid);
-        hits.iter_mut().for_each(|hit| hit.normal = pose.vector(&hit.normal));
+        let pose = R::view(m).pose();
+        let mut hits = self.local_ray_hits(&entries::ray_within(ray, &pose), max_time, solid);
+        hits.iter_mut().for_each(|hit| hit.normal = entries::turned_vector(&pose, &hit.normal));
         hits
     }
 
     /// The time alone of [`Self::first_hit_with_ray`] without a longest time.
-    fn toi_with_ray<R: AbstractRotation<N, D>>(
+    fn toi_with_ray<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
         solid: bool,
     ) -> Option<N> {
-        let local = ray.inverse_transformed_by(&Pose::from_isometry(m));
+        let local = entries::ray_within(ray, &R::view(m).pose());
         self.cast_local_ray(&local, solid).map(|hit| hit.toi)
     }
 
     /// The ray meets the solid placed at `m`.
-    fn intersects_ray<R: AbstractRotation<N, D>>(
-        &self,
-        m: &Isometry<N, R, D>,
-        ray: &Ray<N, D>,
-    ) -> bool {
-        let local = ray.inverse_transformed_by(&Pose::from_isometry(m));
+    fn intersects_ray<R: AnyRotation<N, D>>(&self, m: &Isometry<N, R, D>, ray: &Ray<N, D>) -> bool {
+        let local = entries::ray_within(ray, &R::view(m).pose());
         self.intersects_local_ray(&local, N::INFINITY)
     }
 }
@@ -305,7 +301,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         max_time: N,
         solid: bool,
     ) -> Option<RayIntersection<N, D>> {
-        cast_on(self.geometry(), ray, max_time, solid)
+        entries::cast_on(self.geometry(), ray, max_time, solid)
     }
 
     fn cast_local_rays(
@@ -339,7 +335,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         hits
     }
 
-    fn first_hit_where<R: AbstractRotation<N, D>>(
+    fn first_hit_where<R: AnyRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -347,10 +343,10 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         solid: bool,
         counts: impl Fn(&RayIntersection<N, D>) -> bool,
     ) -> Option<RayIntersection<N, D>> {
-        let pose = Pose::from_isometry(m);
-        let local = ray.inverse_transformed_by(&pose);
+        let pose = R::view(m).pose();
+        let local = entries::ray_within(ray, &pose);
         let in_world = |hit: RayIntersection<N, D>| RayIntersection {
-            normal: pose.vector(&hit.normal),
+            normal: entries::turned_vector(&pose, &hit.normal),
             ..hit
         };
         let counts = |hit: &RayIntersection<N, D>| counts(&in_world(*hit));
@@ -376,7 +372,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
 
 /// [`RayCast::first_hit_with_ray`] at a pose.
 #[inline]
-pub(crate) fn cast_at<N: Real, const D: usize>(
+pub(crate) fn cast_at<N: Space<D>, const D: usize>(
     shape: &(impl RayCast<N, D> + ?Sized),
     pose: &Pose<N, D>,
     ray: &Ray<N, D>,
@@ -385,7 +381,7 @@ pub(crate) fn cast_at<N: Real, const D: usize>(
 ) -> Option<RayIntersection<N, D>> {
     let local = ray.inverse_transformed_by(pose);
     let hit = shape.cast_local_ray_until(&local, max_time, solid)?;
-    Some(RayIntersection { normal: pose.vector(&hit.normal), ..hit })
+    Some(RayIntersection { normal: entries::turned_vector(&pose, &hit.normal), ..hit })
 }
 
 /// See [`RayCast::cast_local_ray_until`].

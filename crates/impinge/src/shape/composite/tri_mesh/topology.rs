@@ -1,5 +1,6 @@
 //! Which triangles share a side.
 
+use crate::math::order::sort_few;
 use crate::math::{Mapped, Point, Real};
 use crate::shape::composite::joints::Joints;
 
@@ -88,7 +89,7 @@ impl Topology {
         let mut start = 0;
         for end in ends {
             let own = &mut sides[core::mem::replace(&mut start, end)..end];
-            own.sort_unstable();
+            sort_few(own, |one, other| one < other);
             for group in own.chunk_by(|a, b| a.0 == b.0) {
                 link(group, &mut across);
                 let forward = group.iter().filter(|side| side.3).count();

@@ -1,0 +1,80 @@
+//! The rotations that an isometry of the user's may have.
+
+use super::na::{Rotation, UnitComplex, UnitQuaternion};
+use super::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
+use crate::tables::entries;
+
+/// A rotation of nalgebra: a unit complex number, a unit quaternion or a rotation matrix. Sealed.
+///
+/// Functions that take an isometry take it with any of them.
+pub trait AnyRotation<N: Space<D>, const D: usize>: AbstractRotation<N, D> + Sized {
+    /// An isometry with its kind of rotation as a value, so that functions for all kinds can be compiled once.
+    #[doc(hidden)]
+    fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D>;
+}
+
+/// An isometry with one of the rotations of nalgebra.
+#[expect(unnameable_types, reason = "for this crate alone")]
+#[derive(Clone, Copy, Debug)]
+pub enum IsometryRef<'i, N: Space<D>, const D: usize> {
+    /// The user's usual type of a pose.
+    Own(&'i N::Isometry),
+    /// One with a rotation matrix.
+    ByMatrix(&'i Isometry<N, Rotation<N, D>, D>),
+}
+
+impl<N: Real> AnyRotation<N, 2> for UnitComplex<N> {
+    #[inline(always)]
+    fn view(isometry: &Isometry<N, Self, 2>) -> IsometryRef<'_, N, 2> {
+        IsometryRef::Own(isometry)
+    }
+}
+
+impl<N: Real> AnyRotation<N, 3> for UnitQuaternion<N> {
+    #[inline(always)]
+    fn view(isometry: &Isometry<N, Self, 3>) -> IsometryRef<'_, N, 3> {
+        IsometryRef::Own(isometry)
+    }
+}
+
+impl<N: Space<D>, const D: usize> AnyRotation<N, D> for Rotation<N, D> {
+    #[inline(always)]
+    fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D> {
+        IsometryRef::ByMatrix(isometry)
+    }
+}
+
+impl<N: Space<D>, const D: usize> IsometryRef<'_, N, D> {
+    /// The pose that the isometry describes.
+    #[inline]
+    pub(crate) fn pose(self) -> Pose<N, D> {
+        entries::pose_of(self)
+    }
+
+    /// See [`Pose::unturned`].
+    #[inline]
+    pub(crate) fn unturned(self) -> Pose<N, D> {
+        match self {
+            Self::Own(isometry) => N::unturned(isometry),
+            Self::ByMatrix(isometry) => Pose::unturned(isometry),
+        }
+    }
+
+    /// Where it takes the origin.
+    #[inline]
+    pub(crate) fn translation(self) -> Vector<N, D> {
+        match self {
+            Self::Own(isometry) => N::translation(isometry),
+            Self::ByMatrix(isometry) => isometry.translation.vector,
+        }
+    }
+}
+
+/// See [`IsometryRef::pose`].
+#[inline]
+pub(crate) fn pose_of<N: Space<D>, const D: usize>(isometry: IsometryRef<'_, N, D>) -> Pose<N, D> {
+    match isometry {
+        IsometryRef::Own(isometry) => N::pose(isometry),
+        IsometryRef::ByMatrix(isometry) => Pose::from_isometry(isometry),
+    }
+}
