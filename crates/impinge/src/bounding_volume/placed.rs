@@ -28,7 +28,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
 
     /// The box around a solid that is symmetric about the local origin, placed at `pose`. `reach` is how far it
     /// reaches along each outer axis: sums of magnitudes, each off by at most four units of its rounding.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn around_turned(pose: &Pose<N, D>, mut reach: Vector<N, D>) -> Self {
         if !pose.is_aligned() {
             for axis in 0..D {

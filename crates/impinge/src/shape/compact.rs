@@ -3,8 +3,9 @@
 //!
 //! A query of a world reads the copy; the answer is that of the solid itself.
 
-use crate::math::{Real, Vector, filled};
-use crate::shape::{Ball, Cuboid, Geometry, Kind, ShapeHandle};
+use crate::bounding_volume::Aabb;
+use crate::math::{Pose, Real, Space, Vector, filled};
+use crate::shape::{Ball, Cuboid, Geometry, Kind, Shape, ShapeHandle};
 
 /// A copy of the numbers of a ball or a box, of which worlds have most; of any other shape only that it
 /// is one.
@@ -23,6 +24,21 @@ impl<N: Real, const D: usize> Compact<N, D> {
             numbers = filled(|axis| cuboid.half_extents()[axis]);
         }
         Self(numbers)
+    }
+
+    /// The box of the shape, which is `own`, at a pose.
+    #[inline(always)]
+    pub(crate) fn aabb(&self, own: &ShapeHandle<N, D>, pose: &Pose<N, D>) -> Aabb<N, D>
+    where
+        N: Space<D>,
+    {
+        if self.0[0] < N::ZERO {
+            own.aabb(pose)
+        } else if self.0[1] < N::ZERO {
+            Ball::of_radius(self.0[0]).aabb(pose)
+        } else {
+            Cuboid::<N, D>::reaching(self.0.into()).aabb(pose)
+        }
     }
 
     /// Asks the shape, which is `own`; looks at that only if the numbers do not tell all.

@@ -131,6 +131,7 @@ pub trait Compiled<const D: usize>: Sized {
         + crate::partitioning::SearchEntries<Self, D>
         + crate::shape::FieldEntries<Self, D>
         + crate::shape::MeshEntries<Self, D>
+        + crate::world::SmallWorldEntries<Self, D>
         + crate::world::WorldEntries<Self, D>;
 }
 

@@ -108,7 +108,12 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
 
     /// The exact box of the shape where the object is now.
     pub(crate) fn aabb(&self) -> Aabb<N, D> {
-        aabb_at(&*self.shape, &N::pose(&self.isometry))
+        self.aabb_at(&N::pose(&self.isometry))
+    }
+
+    /// Its box where it stands at a pose.
+    pub(super) fn aabb_at(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
+        usable(self.solid.aabb(&self.shape, pose))
     }
 
     /// See [`GeometricQueryType::query_limit`].
@@ -152,7 +157,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         check_pose(&pose, Some(self.handle))?;
         self.state &= !PREDICTED;
         self.isometry = isometry;
-        let aabb = aabb_at(&*self.shape, &pose);
+        let aabb = self.aabb_at(&pose);
         list.note_box(self, aabb);
         Ok(())
     }
@@ -170,7 +175,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         self.state |= PREDICTED;
         self.isometry = isometry;
         list.predict(self.index(), predicted);
-        let aabb = aabb_at(&*self.shape, &pose);
+        let aabb = self.aabb_at(&pose);
         list.note_box(self, aabb);
         Ok(())
     }
@@ -216,9 +221,13 @@ pub(super) fn aabb_at<N: Real, const D: usize>(
     shape: &dyn Shape<N, D>,
     pose: &Pose<N, D>,
 ) -> Aabb<N, D> {
-    let aabb = shape.aabb(pose);
-    let usable = (0..D).all(|axis| aabb.mins()[axis] <= aabb.maxs()[axis]);
-    if usable { aabb } else { Aabb::unbounded() }
+    usable(shape.aabb(pose))
+}
+
+/// A box; the box of everything where its numbers go beyond the scalar's range.
+fn usable<N: Real, const D: usize>(aabb: Aabb<N, D>) -> Aabb<N, D> {
+    let is_usable = (0..D).all(|axis| aabb.mins()[axis] <= aabb.maxs()[axis]);
+    if is_usable { aabb } else { Aabb::unbounded() }
 }
 
 /// The box grown by `limit`, what an object wants to know of others, so that two boxes meet whenever the

@@ -129,7 +129,7 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
         match self.prediction(body) {
             None => grown(aabb, limit),
             Some(next) => {
-                let next = aabb_at(&*body.shape, &N::pose(next));
+                let next = body.aabb_at(&N::pose(next));
                 grown(&aabb.merged(&next), limit)
             }
         }

@@ -4,16 +4,20 @@ use super::bodies::WorldBody;
 use super::changes::{ChangeList, Readers};
 use super::dirty::{DirtyTree, DirtyVisitor};
 use super::objects::Slot;
+use super::queries::cast::Cast;
+use super::queries::shape;
 use super::{ContactViewPiece, ContactViews, WorldBroadPhase, WorldError, narrow_phase};
 use crate::bounding_volume::{Aabb, Ray};
 use crate::broad_phase::DBVTBroadPhase;
-use crate::math::{Point, Space};
+use crate::collide::Placed;
+use crate::convex::Separation;
+use crate::math::{Point, Space, Vector};
 use crate::narrow_phase::{
     CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType, Interaction, ObjectTable,
 };
 use crate::partitioning::Sweep;
-use crate::query::{PointProjection, RayIntersection};
-use crate::shape::ShapeHandle;
+use crate::query::{Impact, ImpactOptions, PointProjection, RayIntersection};
+use crate::shape::{Geometry, Shape, ShapeHandle};
 use crate::tables::compiled;
 
 compiled! {
@@ -149,6 +153,51 @@ compiled! {
         object: u32,
         events: &mut Events,
     ) = DefaultNarrowPhase::object_changed;
+}
+
+compiled! {
+    /// What queries ask of one object, and is too small to be called in an optimised program.
+    inlined trait SmallWorldEntries;
+
+    /// The box of an object meets another box.
+    fn meets(body: &WorldBody<N, D>, aabb: &Aabb<N, D>) -> bool = shape::meets;
+
+    /// A shape where an isometry puts it.
+    fn placed_at<'a>(
+        position: &<N as Space<D>>::Isometry,
+        shape: Geometry<'a, N, D>,
+    ) -> Placed<'a, N, D> = Placed::of_isometry;
+
+    /// The box of a shape that stands at an isometry; `None` if that is not finite.
+    fn around(
+        position: &<N as Space<D>>::Isometry,
+        shape: &dyn Shape<N, D>,
+    ) -> Option<Aabb<N, D>> = shape::around;
+
+    /// A shape touches an object.
+    fn touches(placed: &Placed<'_, N, D>, body: &WorldBody<N, D>) -> bool = shape::touches;
+
+    /// The separation of a shape from an object, up to a limit.
+    fn separation_from(
+        placed: &Placed<'_, N, D>,
+        body: &WorldBody<N, D>,
+        limit: N,
+    ) -> Option<Separation<N, D>> = shape::separation_from;
+
+    /// A shape on its way.
+    fn new_cast<'a>(
+        position: &<N as Space<D>>::Isometry,
+        velocity: &Vector<N, D>,
+        shape: &'a dyn Shape<N, D>,
+        options: &ImpactOptions<N>,
+    ) -> Option<Cast<'a, N, D>> = Cast::new;
+
+    /// When it hits an object.
+    fn cast_impact(
+        cast: &Cast<'_, N, D>,
+        body: &WorldBody<N, D>,
+        latest: N,
+    ) -> Option<(N, Impact<N, D>)> = Cast::impact;
 }
 
 fn boxed_broad_phase<N: Space<D>, const D: usize>(margin: N) -> Box<WorldBroadPhase<N, D>> {

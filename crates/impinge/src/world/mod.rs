@@ -33,7 +33,7 @@ mod validate;
 pub(crate) use bodies::{WorldBody, WorldBroadPhase};
 pub use collision_world::CollisionWorld;
 pub(crate) use dirty::{DirtyTree, DirtyVisitor};
-pub(crate) use entries::WorldEntries;
+pub(crate) use entries::{SmallWorldEntries, WorldEntries};
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;
 pub use groups::{CollisionGroups, GroupError};

@@ -13,7 +13,6 @@
 //! their points, also where many choices are as good: of the eight corners that two squares turned by 45° share,
 //! either four span as much.
 
-use crate::math::order::sort_few;
 use core::cmp::Ordering;
 
 use smallvec::SmallVec;
@@ -343,9 +342,7 @@ fn with_sides<N: Real>(
 
 /// The corners of the convex hull, counter-clockwise.
 fn hull<N: Real>(points: &mut [Projected<N>], tolerance: N) -> Projections<N> {
-    sort_few(points, |a, b| {
-        ordering(a.at.x, b.at.x).then_with(|| ordering(a.at.y, b.at.y)).is_lt()
-    });
+    points.sort_by(|a, b| ordering(a.at.x, b.at.x).then_with(|| ordering(a.at.y, b.at.y)));
     let mut ring = Projections::new();
     chain(points.iter(), &mut ring);
     if points.len() > 1 {

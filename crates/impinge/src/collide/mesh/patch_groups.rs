@@ -195,7 +195,7 @@ impl NormalCells {
             return Self { cells, of_pieces, order };
         }
         order.extend(pieces.iter().map(|piece| cell_of(&piece.normal)).zip(0..));
-        sort_few(&mut order, |one, other| one < other);
+        order.sort_unstable();
         of_pieces.resize(pieces.len(), 0);
         for &(number, piece) in &order {
             if cells.last().is_none_or(|last: &NormalCell| last.number != number) {

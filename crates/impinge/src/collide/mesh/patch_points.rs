@@ -4,7 +4,6 @@
 //! A patch has few points, most often those of one piece. So all is done in place, in lists that the
 //! patches of a shape share.
 
-use crate::math::order::sort_few;
 use crate::tables::ByDimension;
 use smallvec::SmallVec;
 
@@ -160,7 +159,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
     /// parts.
     fn drop_copies(&self, members: &mut Members<N>) {
         let near = N::lit(4.0) * self.merging.tolerance;
-        sort_few(members, is_before);
+        sort(members);
         // The first ones are those kept.
         let (mut count, mut is_exchanged) = (0, false);
         for next in 0..members.len() {
@@ -183,7 +182,7 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         members.truncate(count);
         if is_exchanged {
             // An exchange may have taken a point past its neighbours.
-            sort_few(members, is_before);
+            sort(members);
         }
     }
 
@@ -217,9 +216,23 @@ fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vecto
     [first * cosine + second * sine, second * cosine - first * sine]
 }
 
-/// Along the first tangent, then along the second.
+/// Sorts points along the first tangent, then along the second; equal ones stay as they are.
 #[inline]
-fn is_before<N: Real>(a: &Member<N>, b: &Member<N>) -> bool {
+fn sort<N: Real>(members: &mut [Member<N>]) {
+    if members.len() > FEW {
+        return members.sort_by(by_place);
+    }
+    for next in 1..members.len() {
+        let mut at = next;
+        while at > 0 && by_place(&members[at], &members[at - 1]).is_lt() {
+            members.swap(at - 1, at);
+            at -= 1;
+        }
+    }
+}
+
+#[inline]
+fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);
-    ordering(a.x, b.x).then_with(|| ordering(a.y, b.y)).is_lt()
+    ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))
 }

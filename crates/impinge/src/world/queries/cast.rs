@@ -9,6 +9,7 @@ use crate::math::{Space, Vector, max};
 use crate::query::{Impact, ImpactOptions, Moving, impact};
 use crate::shape::Shape;
 use crate::world::bodies::{WorldBody, grown};
+use crate::world::entries;
 use crate::world::{CollisionObject, CollisionWorld};
 
 /// Solids that move through the world along a straight line and do not turn, while its objects stay
@@ -62,9 +63,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         options: &ImpactOptions<N>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Option<(&CollisionObject<N, D, T>, Impact<N, D>)> {
-        let cast = Cast::new(position, velocity, shape, options)?;
-        let found = self
-            .best(&cast.probe, options.max_time, filter, &|body, latest| cast.impact(body, latest));
+        let cast = entries::new_cast(position, velocity, shape, options)?;
+        let found = self.best(&cast.probe, options.max_time, filter, &|body, latest| {
+            entries::cast_impact(&cast, body, latest)
+        });
         found.map(|(object, _, impact)| (object, impact))
     }
 
@@ -81,7 +83,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         options: &ImpactOptions<N>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
-        let Some(cast) = Cast::new(position, velocity, shape, options) else { return Vec::new() };
+        let Some(cast) = entries::new_cast(position, velocity, shape, options) else {
+            return Vec::new();
+        };
         self.ranked_impacts(&cast, RankRange::for_all(options.max_time), filter)
     }
 
@@ -91,13 +95,15 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         room: RankRange<N>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<(&CollisionObject<N, D, T>, Impact<N, D>)> {
-        let found = self.rank(&cast.probe, room, filter, &|body, latest| cast.impact(body, latest));
+        let found = self.rank(&cast.probe, room, filter, &|body, latest| {
+            entries::cast_impact(cast, body, latest)
+        });
         found.into_iter().map(|(object, _, impact)| (object, impact)).collect()
     }
 }
 
 /// A moving solid and what its box asks for.
-struct Cast<'a, N: Space<D>, const D: usize> {
+pub(crate) struct Cast<'a, N: Space<D>, const D: usize> {
     probe: WorldProbe<N, D>,
     moving: Moving<'a, N, D>,
     options: ImpactOptions<N>,
@@ -105,7 +111,7 @@ struct Cast<'a, N: Space<D>, const D: usize> {
 
 impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
     /// `None` if the position or velocity is not finite.
-    fn new(
+    pub(crate) fn new(
         position: &N::Isometry,
         velocity: &Vector<N, D>,
         shape: &'a dyn Shape<N, D>,
@@ -125,7 +131,7 @@ impl<'a, N: Space<D>, const D: usize> Cast<'a, N, D> {
 
 impl<N: Space<D>, const D: usize> Cast<'_, N, D> {
     /// When the solid hits an object, and how; `None` if that is after `latest`.
-    fn impact(&self, body: &WorldBody<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
+    pub(crate) fn impact(&self, body: &WorldBody<N, D>, latest: N) -> Option<(N, Impact<N, D>)> {
         let options = self.options.with_max_time(latest);
         let at_rest = Vector::<N, D>::zeros();
         let found = body.ask(|shape| {

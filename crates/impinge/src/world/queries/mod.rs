@@ -3,14 +3,14 @@
 //! The broad phase answers as of the last update, and a tree of dirty objects for those whose boxes changed since,
 //! so every change is seen at once; what they propose is tested again exactly, by the queries for one solid and two.
 
-mod cast;
+pub(super) mod cast;
 mod filter;
 mod one;
 mod point;
 mod ranking;
 mod ray;
 mod search;
-mod shape;
+pub(super) mod shape;
 
 use core::fmt;
 

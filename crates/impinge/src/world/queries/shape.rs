@@ -9,8 +9,9 @@ use crate::convex::Separation;
 use crate::math::{Space, max};
 use crate::query::ClosestPoints;
 use crate::shape::Shape;
-use crate::tables::entries;
+use crate::tables::entries::{distance_in_world, separation_in_world};
 use crate::world::bodies::{WorldBody, aabb_at, grown};
+use crate::world::entries;
 use crate::world::{CollisionGroups, CollisionObject, CollisionWorld};
 
 /// Solids and boxes, in the world frame.
@@ -39,7 +40,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, N, D, T> {
         let aabb = *aabb;
-        self.meeting(&aabb, filter).filter(move |object| object.body.aabb().intersects(&aabb))
+        self.meeting(&aabb, filter).filter(move |object| entries::meets(&object.body, &aabb))
     }
 
     /// The objects that touch or overlap a solid, in order of their handles.
@@ -73,9 +74,9 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         shape: &'s dyn Shape<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> impl Iterator<Item = &'a CollisionObject<N, D, T>> + use<'a, 's, N, D, T> {
-        let placed = Placed::of_isometry(position, shape.geometry());
-        let near = around(position, shape).map(|aabb| self.meeting(&aabb, filter));
-        near.into_iter().flatten().filter(move |object| touches(&placed, &object.body))
+        let placed = entries::placed_at(position, shape.geometry());
+        let near = entries::around(position, shape).map(|aabb| self.meeting(&aabb, filter));
+        near.into_iter().flatten().filter(move |object| entries::touches(&placed, &object.body))
     }
 
     /// An object touches or overlaps a solid: whether [`Self::objects_overlapping`] has any. The search ends at the
@@ -106,10 +107,10 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         shape: &dyn Shape<N, D>,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> bool {
-        let placed = Placed::of_isometry(position, shape.geometry());
-        around(position, shape).is_some_and(|aabb| {
+        let placed = entries::placed_at(position, shape.geometry());
+        entries::around(position, shape).is_some_and(|aabb| {
             self.any_met(&WorldProbe::Near(aabb), N::ZERO, |object| {
-                self.allows(object, filter) && touches(&placed, &object.body)
+                self.allows(object, filter) && entries::touches(&placed, &object.body)
             })
         })
     }
@@ -190,11 +191,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         max_distance: N,
         filter: &QueryFilter<'_, N, D, T>,
     ) -> Vec<NearObject<'_, N, D, T>> {
-        let Some(aabb) = around(position, shape) else { return Vec::new() };
-        let placed = Placed::of_isometry(position, shape.geometry());
+        let Some(aabb) = entries::around(position, shape) else { return Vec::new() };
+        let placed = entries::placed_at(position, shape.geometry());
         let room = RankRange { count, limit: max_distance };
         let found = self.rank(&WorldProbe::Near(aabb), room, filter, &|body, farthest| {
-            let found = separation(&placed, body, farthest)?;
+            let found = entries::separation_from(&placed, body, farthest)?;
             Some((max(found.distance, N::ZERO), found))
         });
         let neighbor = |(object, distance, found): (_, _, Separation<N, D>)| {
@@ -208,7 +209,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
 
 /// The box of a placed solid, grown by what rounding may have taken from it; `None` if the position is
 /// not finite.
-pub(super) fn around<N: Space<D>, const D: usize>(
+pub(crate) fn around<N: Space<D>, const D: usize>(
     position: &N::Isometry,
     shape: &dyn Shape<N, D>,
 ) -> Option<Aabb<N, D>> {
@@ -217,21 +218,33 @@ pub(super) fn around<N: Space<D>, const D: usize>(
 }
 
 /// A solid touches or overlaps an object: by no more than that is certain, and by any parts that do.
-fn touches<N: Space<D>, const D: usize>(placed: &Placed<'_, N, D>, body: &WorldBody<N, D>) -> bool {
+pub(crate) fn touches<N: Space<D>, const D: usize>(
+    placed: &Placed<'_, N, D>,
+    body: &WorldBody<N, D>,
+) -> bool {
     body.ask(|shape| {
         let object = Placed::of_isometry(&body.isometry, shape);
-        entries::distance_in_world(placed, &object, N::ZERO).is_some()
+        distance_in_world(placed, &object, N::ZERO).is_some()
     })
 }
 
 /// How far a solid is from an object, `None` beyond `limit`.
-fn separation<N: Space<D>, const D: usize>(
+pub(crate) fn separation_from<N: Space<D>, const D: usize>(
     placed: &Placed<'_, N, D>,
     body: &WorldBody<N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
     body.ask(|shape| {
         let object = Placed::of_isometry(&body.isometry, shape);
-        entries::separation_in_world(placed, &object, limit)
+        separation_in_world(placed, &object, limit)
     })
+}
+
+/// The box of an object meets another box.
+#[inline]
+pub(crate) fn meets<N: Space<D>, const D: usize>(
+    body: &WorldBody<N, D>,
+    aabb: &Aabb<N, D>,
+) -> bool {
+    body.aabb().intersects(aabb)
 }
