@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use crate::math::{AnyRotation, Isometry, Pose, Real, Space, Vector};
+use crate::math::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
 
 /// What places a shape: a [`Pose`], nalgebra's isometries, or a type of your own.
 ///
@@ -47,7 +47,9 @@ impl<N: Real, const D: usize> AsPose<N, D> for Pose<N, D> {
     }
 }
 
-impl<N: Space<D>, R: AnyRotation<N, D> + Sync, const D: usize> AsPose<N, D> for Isometry<N, R, D> {
+impl<N: Space<D>, R: AbstractRotation<N, D> + Sync, const D: usize> AsPose<N, D>
+    for Isometry<N, R, D>
+{
     #[inline]
     fn to_pose(&self) -> Pose<N, D> {
         Pose::from_isometry(self)

@@ -32,13 +32,13 @@ pub(crate) mod trigonometry;
 mod vector;
 
 pub use nalgebra as na;
-pub use nalgebra::{AbstractRotation, Isometry, Isometry2, Isometry3, Unit};
+pub use nalgebra::{Isometry, Isometry2, Isometry3, Unit};
 
 pub(crate) use filled::{Mapped, filled};
 pub use pose::Pose;
 pub use real::Real;
 pub(crate) use real::{f32_above, f32_below, f64_power_of_two_below};
-pub use rotation::AnyRotation;
+pub use rotation::AbstractRotation;
 pub(crate) use rotation::{IsometryRef, pose_of};
 pub(crate) use simd::Wide;
 pub use space::Space;

@@ -1,16 +1,19 @@
 //! The rotations that an isometry of the user's may have.
 
-use super::na::{Rotation, UnitComplex, UnitQuaternion};
-use super::{AbstractRotation, Isometry, Pose, Real, Space, Vector};
+use super::na::{self, Rotation, UnitComplex, UnitQuaternion};
+use super::{Isometry, Pose, Real, Space, Vector};
 use crate::tables::entries;
 
 /// A rotation of nalgebra: a unit complex number, a unit quaternion or a rotation matrix. Sealed.
 ///
-/// Functions that take an isometry take it with any of them.
-pub trait AnyRotation<N: Space<D>, const D: usize>: AbstractRotation<N, D> + Sized {
+/// Functions that take an isometry take it with any of them. What a rotation can do is in the trait of nalgebra that has
+/// this name, too.
+pub trait AbstractRotation<N: Real, const D: usize>: na::AbstractRotation<N, D> {
     /// An isometry with its kind of rotation as a value, so that functions for all kinds can be compiled once.
     #[doc(hidden)]
-    fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D>;
+    fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D>
+    where
+        N: Space<D>;
 }
 
 /// An isometry with one of the rotations of nalgebra.
@@ -23,23 +26,26 @@ pub enum IsometryRef<'i, N: Space<D>, const D: usize> {
     ByMatrix(&'i Isometry<N, Rotation<N, D>, D>),
 }
 
-impl<N: Real> AnyRotation<N, 2> for UnitComplex<N> {
+impl<N: Real> AbstractRotation<N, 2> for UnitComplex<N> {
     #[inline(always)]
     fn view(isometry: &Isometry<N, Self, 2>) -> IsometryRef<'_, N, 2> {
         IsometryRef::Own(isometry)
     }
 }
 
-impl<N: Real> AnyRotation<N, 3> for UnitQuaternion<N> {
+impl<N: Real> AbstractRotation<N, 3> for UnitQuaternion<N> {
     #[inline(always)]
     fn view(isometry: &Isometry<N, Self, 3>) -> IsometryRef<'_, N, 3> {
         IsometryRef::Own(isometry)
     }
 }
 
-impl<N: Space<D>, const D: usize> AnyRotation<N, D> for Rotation<N, D> {
+impl<N: Real, const D: usize> AbstractRotation<N, D> for Rotation<N, D> {
     #[inline(always)]
-    fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D> {
+    fn view(isometry: &Isometry<N, Self, D>) -> IsometryRef<'_, N, D>
+    where
+        N: Space<D>,
+    {
         IsometryRef::ByMatrix(isometry)
     }
 }

@@ -4,7 +4,7 @@ use super::generator::{PairManifoldGenerator, conforming_points};
 use super::state::Posed;
 use super::traits::ContactPrediction;
 use crate::collide::{AtIsometry, Placed};
-use crate::math::{AnyRotation, Isometry, IsometryRef, Space};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Space};
 use crate::query::ContactManifold;
 use crate::shape::Shape;
 use crate::tables::entries;
@@ -42,7 +42,7 @@ use crate::tables::entries;
 /// let none = ContactPrediction::new(0.0, 0.0, 0.0);
 /// assert!(contact_manifolds(&here, &floor, &there, &parcel, &none, None).is_empty());
 /// ```
-pub fn contact_manifolds<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
+pub fn contact_manifolds<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,

@@ -1,7 +1,7 @@
 //! The points of two solids that are nearest to each other.
 
 use crate::collide::{AtIsometry, Placed};
-use crate::math::{AnyRotation, Isometry, IsometryRef, Point, Real, Space, max};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Point, Real, Space, max};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -46,7 +46,7 @@ impl<N: Real, const D: usize> ClosestPoints<N, D> {
 /// arguments. A distance equal to `max_distance` counts as within; a negative or NaN
 /// `max_distance` counts as zero. [`ClosestPoints::Disjoint`] if a pose is not finite. Of composites the
 /// points lie on the nearest parts, which [`witness`](super::witness()) names.
-pub fn closest_points<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
+pub fn closest_points<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,

@@ -2,7 +2,7 @@
 
 use crate::collide::{AtIsometry, Placed};
 use crate::convex::Separation;
-use crate::math::{AnyRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -75,7 +75,7 @@ impl<N: Real, const D: usize> Contact<N, D> {
 /// let found = found.expect("the ball has sunk in");
 /// assert_eq!((found.depth, found.normal.y), (0.25, 1.0));
 /// ```
-pub fn contact<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
+pub fn contact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,

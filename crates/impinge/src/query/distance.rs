@@ -1,7 +1,7 @@
 //! How far apart two solids are.
 
 use crate::collide::{AtIsometry, Placed, Placing};
-use crate::math::{AnyRotation, Isometry, IsometryRef, Space, max};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Space, max};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -23,7 +23,7 @@ use crate::tables::entries;
 /// let place = Isometry2::translation(5.0, 0.0);
 /// assert_eq!(distance(&Isometry2::identity(), &ball, &place, &cuboid), 2.0);
 /// ```
-pub fn distance<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
+pub fn distance<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,

@@ -2,7 +2,7 @@
 
 use super::distance::distance_within;
 use crate::collide::AtIsometry;
-use crate::math::{AnyRotation, Isometry, IsometryRef, Real, Space, max};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Real, Space, max};
 use crate::shape::Shape;
 use crate::tables::entries;
 
@@ -44,7 +44,7 @@ impl Proximity {
 /// `margin` counts as zero. Half-spaces that overlap without bound intersect.
 /// [`Proximity::Disjoint`] if a pose is not finite. Of composites the nearest parts count; the search for
 /// them ends at any two that touch.
-pub fn proximity<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
+pub fn proximity<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,

@@ -5,7 +5,7 @@ use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::collide::separation::{placed, separation};
 use crate::collide::{AtIsometry, Pair, Placed, Placing};
 use crate::convex::Separation;
-use crate::math::{AnyRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector};
 use crate::shape::{FeatureId, Shape};
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -97,7 +97,7 @@ impl<N: Real, const D: usize> Witness<N, D> {
 /// assert_eq!((found.part1, found.part2), (0, 0), "convex solids");
 /// ```
 #[must_use]
-pub fn witness<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
+pub fn witness<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     g1: &dyn Shape<N, D>,
     m2: &Isometry<N, R, D>,

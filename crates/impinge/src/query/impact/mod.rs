@@ -28,7 +28,7 @@ use crate::collide::far::Apart;
 use crate::collide::pair::{Ordered, Pair, Placed, order};
 use crate::collide::parts::Between;
 use crate::math::{
-    AnyRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector, max, max_component,
+    AbstractRotation, Isometry, IsometryRef, Point, Real, Space, Unit, Vector, max, max_component,
 };
 use crate::shape::{FeatureId, Shape};
 
@@ -54,7 +54,7 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
     /// The shape that stands at `position` at time zero and moves by `velocity`, in the world frame,
     /// per unit of time.
     #[must_use]
-    pub fn new<R: AnyRotation<N, D>>(
+    pub fn new<R: AbstractRotation<N, D>>(
         position: &Isometry<N, R, D>,
         velocity: &Vector<N, D>,
         shape: &'a dyn Shape<N, D>,
@@ -74,7 +74,7 @@ impl<'a, N: Space<D>, const D: usize> Moving<'a, N, D> {
 
     /// The shape that stays at `position`.
     #[must_use]
-    pub fn still<R: AnyRotation<N, D>>(
+    pub fn still<R: AbstractRotation<N, D>>(
         position: &Isometry<N, R, D>,
         shape: &'a dyn Shape<N, D>,
     ) -> Self {
@@ -343,7 +343,7 @@ pub fn impact<N: Space<D>, const D: usize>(
 /// assert_eq!(toi(-Vector::x()), None, "the other way");
 /// ```
 #[must_use]
-pub fn time_of_impact<N: Space<D>, R: AnyRotation<N, D>, const D: usize>(
+pub fn time_of_impact<N: Space<D>, R: AbstractRotation<N, D>, const D: usize>(
     m1: &Isometry<N, R, D>,
     v1: &Vector<N, D>,
     g1: &dyn Shape<N, D>,

@@ -33,7 +33,7 @@ pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
 
 use super::composite::{Near, PartPoint};
-use crate::math::{AnyRotation, Isometry, Point, Pose, Real, Space, max};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 use crate::tables::entries;
 
@@ -132,7 +132,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame.
     ///
     /// For a solid, a point inside is its own projection, to the bit.
-    fn project_point<R: AnyRotation<N, D>>(
+    fn project_point<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
@@ -147,7 +147,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     ///
     /// For a solid it is zero inside; for a boundary it is negative inside: minus the distance to
     /// the nearest point of the boundary.
-    fn distance_to_point<R: AnyRotation<N, D>>(
+    fn distance_to_point<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
@@ -160,7 +160,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
     }
 
     /// The point lies in the solid placed at `m`, or on its boundary.
-    fn contains_point<R: AnyRotation<N, D>>(
+    fn contains_point<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
@@ -170,7 +170,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
 
     /// The nearest point of the boundary of the solid placed at `m`, in the world frame, and the
     /// feature that it lies on.
-    fn project_point_with_feature<R: AnyRotation<N, D>>(
+    fn project_point_with_feature<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,
@@ -182,7 +182,7 @@ pub trait PointQuery<N: Space<D>, const D: usize> {
 
     /// The nearest point of the solid (or of its boundary) placed at `m`, in the world frame, and where
     /// on the solid it lies: [`Self::project_local_point_with_location`].
-    fn project_point_with_location<R: AnyRotation<N, D>>(
+    fn project_point_with_location<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         point: &Point<N, D>,

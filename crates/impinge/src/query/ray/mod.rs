@@ -38,7 +38,7 @@ use super::PointProjection;
 use super::composite::RayQuestion;
 use super::point::length;
 use crate::bounding_volume::Ray;
-use crate::math::{AnyRotation, Isometry, Point, Pose, Real, Space, Vector, max_component};
+use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, Vector, max_component};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 
 /// Where and when a ray first meets a solid.
@@ -157,7 +157,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     /// # Panics
     /// If there are not as many places as rays.
     #[track_caller]
-    fn cast_rays<R: AnyRotation<N, D>>(
+    fn cast_rays<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         batch: &RayBatch<'_, N, D>,
@@ -191,7 +191,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     }
 
     /// The same as [`Self::first_hit_with_ray`] without a longest time.
-    fn toi_and_normal_with_ray<R: AnyRotation<N, D>>(
+    fn toi_and_normal_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -203,7 +203,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     /// The first hit on the solid placed at `m`, with its normal in the world frame, if it is at `max_time`
     /// or before; no hit is if that is negative or NaN. The time is in units of the ray's direction.
     #[doc(alias = "toi_and_normal_with_ray")]
-    fn first_hit_with_ray<R: AnyRotation<N, D>>(
+    fn first_hit_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -237,7 +237,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     /// assert_eq!(hit(|feature| feature != FeatureId::Face(0)), Some((4.0, -1.0)), "the far wall, from inside");
     /// assert_eq!(hit(|feature| feature != FeatureId::Face(1)), Some((2.0, -1.0)), "from outside");
     /// ```
-    fn first_hit_where<R: AnyRotation<N, D>>(
+    fn first_hit_where<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -263,7 +263,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     /// assert_eq!((hits[0].toi, hits[0].part, hits[0].normal), (4.0, 0, -Vector::x()));
     /// assert!(ball.all_hits_with_ray(&place, &ray, 3.0, true).is_empty(), "too early");
     /// ```
-    fn all_hits_with_ray<R: AnyRotation<N, D>>(
+    fn all_hits_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -277,7 +277,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     }
 
     /// The time alone of [`Self::first_hit_with_ray`] without a longest time.
-    fn toi_with_ray<R: AnyRotation<N, D>>(
+    fn toi_with_ray<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,
@@ -288,7 +288,11 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     }
 
     /// The ray meets the solid placed at `m`.
-    fn intersects_ray<R: AnyRotation<N, D>>(&self, m: &Isometry<N, R, D>, ray: &Ray<N, D>) -> bool {
+    fn intersects_ray<R: AbstractRotation<N, D>>(
+        &self,
+        m: &Isometry<N, R, D>,
+        ray: &Ray<N, D>,
+    ) -> bool {
         let local = entries::ray_within(ray, &R::view(m).pose());
         self.intersects_local_ray(&local, N::INFINITY)
     }
@@ -335,7 +339,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         hits
     }
 
-    fn first_hit_where<R: AnyRotation<N, D>>(
+    fn first_hit_where<R: AbstractRotation<N, D>>(
         &self,
         m: &Isometry<N, R, D>,
         ray: &Ray<N, D>,

@@ -5,6 +5,7 @@ use crate::support::query_support;
 
 use composite_support::scenes::Maker;
 use composite_support::{Piece, Pieces, Slow};
+use impinge::math::na::{UnitComplex, UnitQuaternion};
 use impinge::math::{AbstractRotation, Isometry2, Isometry3, Point, Pose, Real, Space, Vector};
 use impinge::procedural::space as surfaces;
 use impinge::query::{Ray, RayCast, RayIntersection};
@@ -54,7 +55,7 @@ fn through_closed<N: Real>(world: f64) -> usize {
         let Closed { mesh, middle } = closed::<N>(which, own);
         let by = Vector::<N, 3>::new(N::lit(world), N::lit(world), N::lit(-world));
         for shot in 0..1500 {
-            let turn = if shot % 2 == 0 { random.turn3() } else { AbstractRotation::identity() };
+            let turn = if shot % 2 == 0 { random.turn3() } else { UnitQuaternion::identity() };
             let m = Isometry3::from_parts(by.into(), turn);
             let part = u32::try_from(random.bits() % u64::from(mesh.num_parts())).expect("few");
             let corners = *mesh.triangle(part).corners();
@@ -115,7 +116,7 @@ fn through_grid<N: Real>(world: f64) -> usize {
     let field = grid::<N>();
     let by = Vector::<N, 3>::new(N::lit(world), N::lit(-world), N::lit(world));
     let mesh = meshed(&field, &by);
-    let m = Isometry3::from_parts(by.into(), AbstractRotation::identity());
+    let m = Isometry3::from_parts(by.into(), UnitQuaternion::identity());
     let here = Isometry3::identity();
     let mut shots = 0;
     for _ in 0..18_000 {
@@ -175,7 +176,7 @@ fn through_round<N: Real>(world: f64, own: f64) {
     let random = &mut Random(5, false);
     let (line, mesh, points, middle) = round::<N>(own);
     let by = Vector::<N, 2>::new(N::lit(world), N::lit(world));
-    let m = Isometry2::from_parts(by.into(), AbstractRotation::identity());
+    let m = Isometry2::from_parts(by.into(), UnitComplex::identity());
     for shot in 0..1000 {
         let at = shot % 20;
         let share = N::lit([0.0, 0.5, random.within(0.0, 1.0)][shot / 20 % 3]);

@@ -3,7 +3,8 @@
 
 use crate::support::query_support;
 
-use impinge::math::{AbstractRotation, Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
+use impinge::math::na::{UnitComplex, UnitQuaternion};
+use impinge::math::{Isometry2, Isometry3, Point, Real, Space, Unit, Vector};
 use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::{Ray, RayBatch, RayCast, RayIntersection};
 use impinge::shape::{Ball, CompositeShape, Part, Plane, Polyline, Shape, ShapeHandle, TriMesh};
@@ -228,6 +229,6 @@ fn worlds<N: Space<D>, const D: usize>(place: impl Fn(Vector<N, D>) -> N::Isomet
 
 #[test]
 fn worlds_answer_many_rays_as_one_by_one() {
-    worlds::<f32, 2>(|v| Isometry2::from_parts(v.into(), AbstractRotation::identity()));
-    worlds::<f64, 3>(|v| Isometry3::from_parts(v.into(), AbstractRotation::identity()));
+    worlds::<f32, 2>(|v| Isometry2::from_parts(v.into(), UnitComplex::identity()));
+    worlds::<f64, 3>(|v| Isometry3::from_parts(v.into(), UnitQuaternion::identity()));
 }
