@@ -54,7 +54,11 @@
 //!
 //! # Features
 //!
-//! * `f64` (default): the library compiled for `f64` too.
+//! * `dim2` and `dim3` (both default): the plane and space. Who needs one of them writes
+//!   `default-features = false, features = ["dim3"]`; what is off is not compiled.
+//! * `batch` (default): batches and checkers compiled in the library; without it they are compiled in
+//!   your crate, where it uses them.
+//! * `f64`: `f64` as a scalar beside `f32`.
 //! * `parallel`: updates and batches on several threads, with the same bits.
 //! * `debug_render`: drawing worlds, shapes and queries with a back end of yours.
 //! * `serde`: `Serialize` and `Deserialize` for plain values.

@@ -14,7 +14,7 @@ type Done = Result<(), BatchError>;
 
 compiled! {
     /// Batches.
-    trait BatchEntries;
+    trait BatchEntries where feature = "batch";
 
     fn distances(pairs: &PairBatch<'_, N, D>, control: &Control<'_>, out: &mut [N]) -> Done =
         pairs::distances;

@@ -12,7 +12,7 @@ type Done = Result<(), BatchError>;
 
 compiled! {
     /// Checkers.
-    trait CheckerEntries;
+    trait CheckerEntries where feature = "batch";
 
     /// The poses of what is on the nodes of a tree.
     fn place(

@@ -29,17 +29,22 @@ pub(crate) use self::by_dimension::ByDimension;
 /// generic code is compiled into the caller. In a debug build, which optimises nothing of the caller's, a call is many
 /// times as fast, whether this crate is optimised there or not.
 ///
+/// A list `where feature = "…"` is compiled here only with that feature, too.
+///
 /// The signatures speak of `N` and `D`, which are concrete where the targets are named. Without the feature of a
 /// dimension its entries are compiled where they are used, which is nowhere.
 macro_rules! compiled {
     ($(#[$about:meta])* trait $entries:ident; $($list:tt)*) => {
-        $crate::tables::compiled! { @list called; $(#[$about])* trait $entries; $($list)* }
+        $crate::tables::compiled! { @list called, all(); $(#[$about])* trait $entries; $($list)* }
+    };
+    ($(#[$about:meta])* trait $entries:ident where $needed:meta; $($list:tt)*) => {
+        $crate::tables::compiled! { @list called, $needed; $(#[$about])* trait $entries; $($list)* }
     };
     ($(#[$about:meta])* inlined trait $entries:ident; $($list:tt)*) => {
-        $crate::tables::compiled! { @list inlined; $(#[$about])* trait $entries; $($list)* }
+        $crate::tables::compiled! { @list inlined, all(); $(#[$about])* trait $entries; $($list)* }
     };
     (
-        @list $mode:ident;
+        @list $mode:ident, $needed:meta;
         $(#[$about:meta])*
         trait $entries:ident;
         $(
@@ -68,15 +73,15 @@ macro_rules! compiled {
             }
         )*
 
-        $crate::tables::compiled! { @of f32, 2, "dim2", $entries;
+        $crate::tables::compiled! { @of f32, 2, all(feature = "dim2", $needed), $entries;
             $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
-        $crate::tables::compiled! { @of f32, 3, "dim3", $entries;
-            $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
-        #[cfg(feature = "f64")]
-        $crate::tables::compiled! { @of f64, 2, "dim2", $entries;
+        $crate::tables::compiled! { @of f32, 3, all(feature = "dim3", $needed), $entries;
             $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
         #[cfg(feature = "f64")]
-        $crate::tables::compiled! { @of f64, 3, "dim3", $entries;
+        $crate::tables::compiled! { @of f64, 2, all(feature = "dim2", $needed), $entries;
+            $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
+        #[cfg(feature = "f64")]
+        $crate::tables::compiled! { @of f64, 3, all(feature = "dim3", $needed), $entries;
             $( $(#[$meta])* fn $name $(<$life>)? ($($argument: $type),*) $(-> $result)? = $target; )* }
     };
     (@called $entries:ident, $name:ident, $target:expr, ($($argument:ident),*)) => {
@@ -90,7 +95,7 @@ macro_rules! compiled {
         }
     };
     (
-        @of $scalar:ty, $dimension:literal, $feature:literal, $entries:ident;
+        @of $scalar:ty, $dimension:literal, $needed:meta, $entries:ident;
         $(
             $(#[$meta:meta])*
             fn $name:ident $(<$life:lifetime>)? ($($argument:ident: $type:ty),*) $(-> $result:ty)? = $target:expr;
@@ -103,7 +108,7 @@ macro_rules! compiled {
             impl $entries<N, D> for $crate::tables::Here {
                 $(
                     $(#[$meta])*
-                    #[cfg_attr(not(feature = $feature), inline)]
+                    #[cfg_attr(not($needed), inline)]
                     fn $name$(<$life>)?($($argument: $type),*) $(-> $result)? {
                         $target($($argument),*)
                     }

@@ -1,6 +1,6 @@
 //! The order of the modules and the rules of the house, read off the sources.
 //!
-//! A module imports only from floors below its own, or from itself. `tables.rs` is the one hook that
+//! A module imports only from floors below its own, or from itself. `tables/` is the one hook that
 //! reaches upwards, `lib.rs` names the modules, and tests may look anywhere.
 
 use std::fs;
