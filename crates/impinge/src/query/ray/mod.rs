@@ -385,7 +385,7 @@ pub(crate) fn cast_at<N: Space<D>, const D: usize>(
 ) -> Option<RayIntersection<N, D>> {
     let local = ray.inverse_transformed_by(pose);
     let hit = shape.cast_local_ray_until(&local, max_time, solid)?;
-    Some(RayIntersection { normal: entries::turned_vector(&pose, &hit.normal), ..hit })
+    Some(RayIntersection { normal: entries::turned_vector(pose, &hit.normal), ..hit })
 }
 
 /// See [`RayCast::cast_local_ray_until`].
