@@ -1,8 +1,7 @@
 //! Arrays made by a function of the index, or of the elements of another one.
 //!
 //! [`core::array::from_fn`] and `map` drop what they have made if the function panics, at any type. For numbers that is
-//! of no use, and costs five nested functions for each closure: with them a tenth of the library was made of arrays, and
-//! a build without optimisation spent most of its steps there.
+//! of no use, and costs five nested functions for each closure: a tenth of the code that the compiler was given.
 
 /// The array of the values of a function at each index.
 #[inline(always)]

@@ -28,7 +28,6 @@ mod removed;
 mod skin;
 mod step;
 mod substep;
-mod validate;
 
 pub(crate) use bodies::{WorldBody, WorldBroadPhase};
 pub use collision_world::CollisionWorld;

@@ -4,6 +4,7 @@
 //!
 //! The full table, of all kinds and beside another library, is `bench/accuracy.md`.
 
+use crate::support::samples::samples;
 use impinge::math::na::{Quaternion, Translation, UnitQuaternion};
 use impinge::math::{Isometry3, Point, Real, Space, Vector};
 use impinge::query::contact;
@@ -197,7 +198,7 @@ impl Coaxial {
 /// The worst of some settings, changed again and again where that makes it worse.
 fn worst_coaxial<N: Space<3>>(seed: u64) -> (f64, String) {
     const KEPT: usize = 3;
-    let (tries, changes) = (searched(150), searched(150));
+    let (tries, changes) = (samples(15), samples(15));
     let mut random = Random::new(seed);
     let mut kept: Vec<(f64, Coaxial)> = Vec::new();
     for index in 0..tries + changes {
@@ -219,12 +220,6 @@ fn worst_coaxial<N: Space<3>>(seed: u64) -> (f64, String) {
     }
     let worst = kept.iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("some are kept");
     (worst.0, format!("{:?}", worst.1))
-}
-
-/// As many settings as the variable `IMPINGE_WORST` says, or some.
-fn searched(some: usize) -> usize {
-    let asked = std::env::var("IMPINGE_WORST").ok();
-    asked.map_or(some, |asked| asked.parse().expect("IMPINGE_WORST is a number of settings"))
 }
 
 #[test]

@@ -4,6 +4,7 @@
 //! Sizes are ordinary, zero or hardly more than zero; solids stand straight, all but straight or anyhow;
 //! places are those of the origin, near it, on the axis, on a grid, or any.
 
+use crate::support::samples::samples;
 use impinge::math::na::{Quaternion, Translation, UnitQuaternion};
 use impinge::math::{Isometry3, Point, Real, Space, Vector};
 use impinge::query::contact;
@@ -20,10 +21,9 @@ const THIN: [f64; 10] = [0.0, 1e-14, 1e-10, 1e-8, 1e-7, 1e-5, 1e-4, 1e-3, 1e-2, 
 /// Segments, capsules, triangles, boxes, hulls.
 const KINDS: usize = 5;
 
-/// As many pairs are tried: some, or as many as the variable `IMPINGE_DEPTHS` says.
+/// How many pairs are tried.
 fn rounds() -> u64 {
-    let asked = std::env::var("IMPINGE_DEPTHS").ok();
-    asked.map_or(300, |asked| asked.parse().expect("IMPINGE_DEPTHS is a number of pairs"))
+    samples(30) as u64
 }
 
 /// As the scalar has it.

@@ -5,6 +5,7 @@ pub(crate) mod composite_support;
 pub(crate) mod growth;
 pub(crate) mod part_search;
 pub(crate) mod query_support;
+pub(crate) mod samples;
 pub(crate) mod scene_stage;
 pub(crate) mod shape_table;
 pub(crate) mod slides;

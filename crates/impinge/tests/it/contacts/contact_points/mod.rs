@@ -3,6 +3,7 @@
 //! turned anyhow, and with axes along the normal or all but along it.
 
 use crate::support::query_support;
+use crate::support::samples::samples;
 
 pub(crate) mod forms;
 pub(crate) mod turns;
@@ -37,10 +38,9 @@ fn allowed<N: Real>(names: [&str; 2]) -> f64 {
     if is_round && N::EPSILON.as_f64() < 1e-10 { ROUND } else { UNITS }
 }
 
-/// How many pairs of each two kinds are tried: a few, or as many as the variable `IMPINGE_POINTS` says.
+/// How many pairs of each two kinds are tried.
 fn rounds() -> usize {
-    let asked = std::env::var("IMPINGE_POINTS").ok();
-    asked.map_or(12, |asked| asked.parse().expect("IMPINGE_POINTS is a number of pairs"))
+    samples(2)
 }
 
 /// Signed distances in parts of the least size, and the middle of one in that of the other.

@@ -11,6 +11,7 @@
 //! for in `case_manifolds.rs`.
 
 use crate::contacts::contact_points::{forms, turns};
+use crate::support::samples::samples;
 
 mod answers;
 mod laws;
@@ -34,11 +35,9 @@ use turns::{turns2, turns3};
 /// How many pairs of a world there are: part of a batch, one but for one, a batch, and one more.
 const BATCHES: [usize; 4] = [1, 7, 8, 9];
 
-/// How many times twenty scenes of each two kinds are asked: once, or as often as the variable
-/// `IMPINGE_CONTRACT` says.
+/// How many times twenty scenes of each two kinds are asked: once, and in a run of a night a few times.
 fn rounds() -> u64 {
-    let asked = std::env::var("IMPINGE_CONTRACT").ok();
-    asked.map_or(1, |asked| asked.parse().expect("IMPINGE_CONTRACT is a number of rounds"))
+    1 + samples(1) as u64 / 100
 }
 
 /// All scenes of two kinds; every other one with the second kind first.
