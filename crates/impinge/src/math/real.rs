@@ -10,7 +10,7 @@ use crate::tables::Compiled;
 /// Sealed: the kernels are compiled in this crate for these two types and no other.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scalar of impinge",
-    label = "neither `f32` nor `f64`",
+    label = "neither `f32` nor, with the feature `f64` of impinge, `f64`",
     note = "scalars are `f32` and, with the feature `f64`, `f64`; generic code asks for `N: Real`"
 )]
 pub trait Real: RealField + Scalar + Copy + Default + Compiled<2> + Compiled<3> + Eight {
