@@ -55,7 +55,7 @@ compiled! {
         out: ImpactColumns<'_, N, D>,
     ) -> Done = pairs::impacts;
 
-    /// Of a prediction, and how many points a manifold has at most.
+    /// `asked` has the prediction and the greatest number of points of a manifold.
     fn manifolds(
         pairs: &PairBatch<'_, N, D>,
         asked: (&ContactPrediction<N>, Option<usize>),

@@ -35,7 +35,7 @@ compiled! {
         pairs: &[[u32; 2]],
     ) -> Surroundings<D> = Surroundings::new;
 
-    /// Of configurations, and a clearance.
+    /// `asked` has the configurations and the clearance.
     fn are_free(
         checker: &Checker<N, D>,
         asked: (&[N], N),
@@ -50,7 +50,7 @@ compiled! {
         out: &mut [[u32; 2]],
     ) -> Done = answers::first_pairs;
 
-    /// Of configurations, a limit, and how many are wanted for each.
+    /// `asked` has the configurations, the limit, and the number of pairs wanted for each.
     fn nearest(
         checker: &Checker<N, D>,
         asked: (&[N], N, usize),

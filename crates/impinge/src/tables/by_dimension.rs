@@ -1,4 +1,4 @@
-//! What each dimension does in its own way.
+//! The algorithms that differ between 2D and 3D.
 
 use super::Here;
 use crate::batch::{SolidGroup, update_group2, update_group3};
@@ -89,7 +89,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     where
         N: Space<D>;
 
-    /// The same for pairs of a batch.
+    /// Computes some pairs of a batch, several at a time; `false` if that cannot be done.
     fn update_group(solids: [&Solid<N, D>; 2], group: &mut SolidGroup<'_, '_, N, D>) -> bool;
 
     /// Two directions across a normal; the second is zero in 2D.

@@ -354,7 +354,6 @@ pub(super) fn views_of<'a, N: Space<D>, const D: usize>(
     table: &'a ObjectTable<N, D>,
     slots: &'a [Slot],
 ) -> ContactViews<'a, N, D> {
-    // A piece may be sent to another thread, which all of them may.
     named_views(narrow_phase.contact_views(table), slots)
 }
 

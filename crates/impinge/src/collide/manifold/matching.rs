@@ -138,8 +138,8 @@ fn match_many<N: Real, const D: usize>(
 /// Visits the numbers of old points of a pair, given by bits, and those of the new points, given by bits, that they are
 /// now, where none is on the features of an old one: only which are near is to be found.
 ///
-/// `moved` is the square of the way from an old point to a new one, where the length that is near is 1. `same_vertex` tells which of
-/// some new points are on the vertex of the second solid that an old point is on, so that they have not moved on it.
+/// `moved` is the square of the way from an old point to a new one, where the length that is near is 1. `same_vertex`
+/// gives the new points that lie on the same vertex of the second solid as an old point: they have not moved there.
 #[inline(always)]
 pub(in crate::collide) fn each_near<N: Real>(
     [old, new]: [u32; 2],

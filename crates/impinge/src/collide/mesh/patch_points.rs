@@ -13,6 +13,7 @@ use super::patch_groups::Lead;
 use crate::collide::manifold::ids::in_order;
 use crate::collide::manifold::reduce::{self, Projections, a_deepest, ordering, projected};
 use crate::collide::manifold::{deepest_of, slack_level};
+use crate::math::order::sort_few;
 use crate::math::{Real, Space, Vector};
 
 /// So many points need no memory for their outline but that of the function.
@@ -222,13 +223,7 @@ fn sort<N: Real>(members: &mut [Member<N>]) {
     if members.len() > FEW {
         return members.sort_by(by_place);
     }
-    for next in 1..members.len() {
-        let mut at = next;
-        while at > 0 && by_place(&members[at], &members[at - 1]).is_lt() {
-            members.swap(at - 1, at);
-            at -= 1;
-        }
-    }
+    sort_few(members, |one, other| by_place(one, other).is_lt());
 }
 
 #[inline]

@@ -1,7 +1,6 @@
 //! The parts of two shapes, placed for computing with them.
 
 use crate::tables::ByDimension;
-use crate::tables::entries;
 use core::cell::OnceCell;
 
 use super::gather::Nearby;
@@ -147,7 +146,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
                     && faces.all(|face| face.offset - face.normal.dot(&point.coords) > depth)
             }
             first => {
-                let found = entries::surface_point(first, point);
+                let found = <N::Algorithms>::surface_point(first, point);
                 found.is_inside && (found.point - point).norm() > depth
             }
         }

@@ -5,7 +5,7 @@ use crate::collide::parts::bounds::{around_point, loosened};
 use crate::math::{Point, Real, Space, Vector, max};
 use crate::query::point::{SurfacePoint, length};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Part, PartSolid};
-use crate::tables::entries;
+use crate::tables::ByDimension;
 
 /// A point as the nearest part of a composite sees it.
 #[derive(Clone, Copy, Debug)]
@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize> Near<'_, N, D> {
     /// The nearest point of the part; `None` if there is none, or the numbers end.
     fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
         let Geometry(kind) = self.part.solid.geometry();
-        let found = entries::surface_point(kind, &self.asked);
+        let found = <N::Algorithms>::surface_point(kind, &self.asked);
         let (projected, feature) = found.projection(&self.asked);
         let local = projected.point;
         let apart = length(&(self.asked - local));

@@ -1,4 +1,4 @@
-//! What differs by dimension in the integration of shapes.
+//! Integrals over shapes that differ by dimension.
 
 use super::enclosed::{enclosed2, enclosed3};
 use super::outline::{self, round_polygon};

@@ -5,7 +5,7 @@ use crate::collide::Pair;
 use crate::collide::separation::separation;
 use crate::math::{Point, Pose, Space};
 use crate::shape::{Ball, FeatureId, Geometry, Kind, RoundedSolid};
-use crate::tables::entries;
+use crate::tables::ByDimension;
 
 /// Beyond the nearest point of what is rounded. A radius of zero changes nothing.
 pub(super) fn surface_point<N: Space<D>, const D: usize>(
@@ -14,7 +14,7 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
 ) -> SurfacePoint<N, D> {
     let (inner, radius) = (solid.inner(), solid.radius());
     if radius == N::ZERO {
-        return entries::surface_point(inner.0, point);
+        return <N::Algorithms>::surface_point(inner.0, point);
     }
     // As seen by a ball of no radius: near the surface and inside it knows the normal better than the
     // difference of two points does.
@@ -38,5 +38,5 @@ fn feature_below<N: Space<D>, const D: usize>(
     inner: Geometry<'_, N, D>,
     place: &Point<N, D>,
 ) -> FeatureId {
-    entries::surface_point(inner.0, place).feature
+    <N::Algorithms>::surface_point(inner.0, place).feature
 }

@@ -7,7 +7,7 @@ use crate::collide::Pair;
 use crate::collide::separation::separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{Ball, Geometry, Kind, RoundedSolid, ShapeKind};
-use crate::tables::entries;
+use crate::tables::ByDimension;
 
 /// Searched by the distances of what is rounded; without a radius the line and that.
 pub(super) fn span<N: Space<D>, const D: usize>(
@@ -16,7 +16,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
 ) -> Option<Span<N, D>> {
     let inner = solid.inner();
     if solid.radius() == N::ZERO {
-        return entries::ray_span(inner.0, ray);
+        return <N::Algorithms>::ray_span(inner.0, ray);
     }
     let point = Ball::new(N::ZERO);
     let see = |place: &Vector<N, D>| {
@@ -26,7 +26,7 @@ pub(super) fn span<N: Space<D>, const D: usize>(
         Some((found.distance, -found.normal))
     };
     let name = |place: &Vector<N, D>, _: &Vector<N, D>| {
-        entries::surface_point(inner.0, &Point::from(*place)).feature
+        <N::Algorithms>::surface_point(inner.0, &Point::from(*place)).feature
     };
     let radius = solid.reach() + solid.rounding();
     RaySolid { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)

@@ -34,7 +34,7 @@ pub(super) trait Naming {
     /// The candidate with the features of a point, among those that there are.
     fn slot<N: Real, const D: usize>(&self, point: &RawPoint<N, D>, valid: u32) -> Option<usize>;
 
-    /// Those of some candidates that are on a feature of the second box, if it is a vertex.
+    /// The candidates that lie on a feature of the second box, if it is a vertex; else none.
     #[inline(always)]
     fn on_vertex(&self, feature: FeatureId, among: u32) -> u32 {
         if !matches!(feature, FeatureId::Vertex(_)) {

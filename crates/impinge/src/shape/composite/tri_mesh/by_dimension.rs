@@ -1,4 +1,4 @@
-//! What a mesh does differently in 2D and 3D.
+//! Algorithms of meshes that differ between 2D and 3D.
 
 use super::rays::RayBounds;
 use super::{TriMesh, surface3};
