@@ -11,46 +11,30 @@ use super::gaps::Gaps;
 use super::slabs::Slabs;
 use super::triangles::{ShearedLine, Triangles};
 use super::{Block, Bounds, LANES};
-use crate::math::simd::{Level, Vectors};
+use crate::math::simd::{Level, ON_ARRAYS};
 
 /// Which vectors the kernels use. The results do not depend on it.
 #[derive(Clone, Copy, Debug)]
-pub struct Lanes(pub(super) Choice);
-
-/// See [`Lanes`].
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Choice {
-    Scalar,
-    /// Sixteen lanes are one register of AVX-512, which halves the instructions of a lane.
-    #[cfg(target_arch = "x86_64")]
-    Avx512(fearless_simd::Avx512),
-    Vectors(Vectors),
-}
+pub struct Lanes(pub(super) Level);
 
 impl Lanes {
     /// The widest vectors of this machine.
     #[must_use]
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(avx512) = fearless_simd::Level::new().as_avx512() {
-            return Self(Choice::Avx512(avx512));
-        }
-        Self(Level::new().vectors().map_or(Choice::Scalar, Choice::Vectors))
+        Self(Level::new())
     }
 
     /// No vectors: the definition that the others are tested against.
-    #[must_use]
-    pub const fn scalar() -> Self {
-        Self(Choice::Scalar)
+    #[cfg(test)]
+    pub(crate) const fn scalar() -> Self {
+        Self(Level::Arrays)
     }
 
-    /// Everything that runs on this machine, for tests.
+    /// Everything that is compiled for this machine, for tests.
     #[must_use]
     pub fn available() -> Vec<Self> {
-        let mut all = vec![Self::scalar(), Self::detect()];
-        let vectors = Level::available().into_iter().filter_map(Level::vectors);
-        all.extend(vectors.map(|vectors| Self(Choice::Vectors(vectors))));
-        all
+        let is_compiled = |level: &Level| ON_ARRAYS || !matches!(level, Level::Arrays);
+        Level::available().into_iter().filter(is_compiled).map(Self).collect()
     }
 }
 
@@ -64,23 +48,22 @@ impl Default for Lanes {
 macro_rules! with_kernel {
     ($lanes:expr, $kernel:ident => $body:expr) => {
         match $lanes.0 {
-            $crate::bvh::kernel::Choice::Scalar => {
-                let $kernel = $crate::bvh::kernel::Scalar;
-                $body
-            }
-            #[cfg(target_arch = "x86_64")]
-            $crate::bvh::kernel::Choice::Avx512(simd) => {
-                fearless_simd::Simd::vectorize(simd, #[inline(always)] || {
-                    let $kernel = $crate::bvh::kernel::WideBlock(simd);
-                    $body
-                })
-            }
-            $crate::bvh::kernel::Choice::Vectors(vectors) => {
+            $crate::math::simd::Level::Wide(vectors) => {
                 $crate::math::lanes::with_vectors!(vectors, simd => {
                     let $kernel = $crate::bvh::kernel::WideBlock(simd);
                     $body
                 })
             }
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+            $crate::math::simd::Level::Sse2(simd) => $crate::math::lanes::vectorized!(simd, {
+                let $kernel = $crate::bvh::kernel::WideBlock(simd);
+                $body
+            }),
+            $crate::math::simd::Level::Arrays if $crate::math::simd::ON_ARRAYS => {
+                let $kernel = $crate::bvh::kernel::Scalar;
+                $body
+            }
+            $crate::math::simd::Level::Arrays => unreachable!("this target has vectors"),
         }
     };
 }
@@ -259,7 +242,7 @@ fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
     }
 }
 
-/// The kernels in vectors of sixteen (one register, two or four).
+/// The kernels in vectors of sixteen (two registers or four).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WideBlock<S>(pub(super) S);
 

@@ -12,13 +12,30 @@ use crate::math::filled;
 /// `$body` is compiled for each instruction set, so it is a call of a kernel.
 macro_rules! with_lanes {
     ($level:expr, $simd:ident => $body:expr) => {
-        match $crate::math::simd::Level::vectors($level) {
-            Some(vectors) => $crate::math::lanes::with_vectors!(vectors, $simd => $body),
-            None if $crate::math::simd::ON_ARRAYS => {
+        match $level {
+            $crate::math::simd::Level::Wide(vectors) => {
+                $crate::math::lanes::with_vectors!(vectors, $simd => $body)
+            }
+            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+            $crate::math::simd::Level::Sse2($simd) => $crate::math::lanes::vectorized!($simd, $body),
+            $crate::math::simd::Level::Arrays if $crate::math::simd::ON_ARRAYS => {
                 let $simd = $crate::math::arrays::Arrays;
                 $body
             }
-            None => unreachable!("every machine of this target has vectors"),
+            $crate::math::simd::Level::Arrays => unreachable!("this target has vectors"),
+        }
+    };
+}
+
+/// Runs `$body` with `$simd` bound to what treats the lanes of a [`Run`](super::simd::Run).
+macro_rules! in_lanes {
+    ($run:expr, $simd:ident => $body:expr) => {
+        match $run.vectors {
+            Some(vectors) => $crate::math::lanes::with_vectors!(vectors, $simd => $body),
+            None => {
+                let $simd = $crate::math::lone::OneLane($run.first);
+                $body
+            }
         }
     };
 }
@@ -28,34 +45,33 @@ macro_rules! with_vectors {
     ($vectors:expr, $simd:ident => $body:expr) => {
         match $vectors {
             #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
-            $crate::math::simd::Vectors::Avx2($simd) => fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            ),
-            #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
-            $crate::math::simd::Vectors::Sse2($simd) => fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            ),
+            $crate::math::simd::Vectors::Avx2($simd) => {
+                $crate::math::lanes::vectorized!($simd, $body)
+            }
             #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
-            $crate::math::simd::Vectors::Neon($simd) => fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            ),
+            $crate::math::simd::Vectors::Neon($simd) => {
+                $crate::math::lanes::vectorized!($simd, $body)
+            }
             #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-            $crate::math::simd::Vectors::Simd128($simd) => fearless_simd::Simd::vectorize(
-                $simd,
-                #[inline(always)]
-                || $body,
-            ),
+            $crate::math::simd::Vectors::Simd128($simd) => {
+                $crate::math::lanes::vectorized!($simd, $body)
+            }
         }
     };
 }
 
-pub(crate) use {with_lanes, with_vectors};
+/// Compiles `$body` for an instruction set.
+macro_rules! vectorized {
+    ($simd:ident, $body:expr) => {
+        fearless_simd::Simd::vectorize(
+            $simd,
+            #[inline(always)]
+            || $body,
+        )
+    };
+}
+
+pub(crate) use {in_lanes, vectorized, with_lanes, with_vectors};
 
 /// The same number in all lanes.
 #[inline(always)]

@@ -1,25 +1,56 @@
-//! A vector of one number: a kernel compiled for it computes a lone pair with the bits of a lane.
+//! A vector of one number: a kernel compiled for it computes one lane, with the bits of that lane among eight.
 
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
 };
 
-use super::Real;
-use super::na::ComplexField;
+use super::na::{ComplexField, RealField};
 use super::simd::{Simd, SimdMask, Wide};
+use super::{Vector, filled};
+
+/// The lane that is computed: of eight numbers it reads the one in the lane, and it writes its own to all eight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OneLane(pub(crate) usize);
+
+impl Simd for OneLane {
+    type F32x8 = Lone<f32>;
+    type F64x8 = Lone<f64>;
+}
 
 /// One number as a vector.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lone<N>(pub(crate) N);
+#[allow(unnameable_types, unreachable_pub, reason = "in the interface of `Eight`")]
+pub struct Lone<N>(pub(crate) N);
 
-/// One truth value as a mask.
+impl<N: RealField + Copy> Lone<N> {
+    /// A vector of which each coordinate is one.
+    #[inline(always)]
+    pub(crate) fn each<const D: usize>(vector: &Vector<N, D>) -> [Self; D] {
+        filled(
+            #[inline(always)]
+            |axis| Self(vector[axis]),
+        )
+    }
+
+    /// The vector of some coordinates.
+    #[inline(always)]
+    pub(crate) fn vector<const D: usize>(coordinates: &[Self; D]) -> Vector<N, D> {
+        Vector::<N, D>::from_fn(
+            #[inline(always)]
+            |axis, _| coordinates[axis].0,
+        )
+    }
+}
+
+/// One truth value as a mask, the same in all eight lanes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct LoneMask(bool);
+#[allow(unnameable_types, unreachable_pub, reason = "in the interface of `Eight`")]
+pub struct LoneMask(pub(crate) bool);
 
 /// Operators of the number inside.
 macro_rules! by_number {
     ($($operator:ident $method:ident),*) => {$(
-        impl<N: Real> $operator for Lone<N> {
+        impl<N: RealField + Copy> $operator for Lone<N> {
             type Output = Self;
 
             #[inline(always)]
@@ -32,14 +63,14 @@ macro_rules! by_number {
 
 by_number!(Add add, Sub sub, Mul mul, Div div);
 
-impl<N: Real> AddAssign for Lone<N> {
+impl<N: RealField + Copy> AddAssign for Lone<N> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         self.0 += other.0;
     }
 }
 
-impl<N: Real> Neg for Lone<N> {
+impl<N: RealField + Copy> Neg for Lone<N> {
     type Output = Self;
 
     #[inline(always)]
@@ -48,23 +79,23 @@ impl<N: Real> Neg for Lone<N> {
     }
 }
 
-impl<N: Real, S: Simd> Wide<S> for Lone<N> {
+impl<N: RealField + Copy> Wide<OneLane> for Lone<N> {
     type Scalar = N;
     type Mask = LoneMask;
 
     #[inline(always)]
-    fn all(_: S, value: N) -> Self {
+    fn all(_: OneLane, value: N) -> Self {
         Self(value)
     }
 
     #[inline(always)]
-    fn load(_: S, numbers: &[N]) -> Self {
-        Self(numbers[0])
+    fn load(OneLane(lane): OneLane, numbers: &[N]) -> Self {
+        Self(numbers[lane])
     }
 
     #[inline(always)]
     fn store(self, numbers: &mut [N]) {
-        numbers[0] = self.0;
+        numbers.fill(self.0);
     }
 
     #[inline(always)]
@@ -108,12 +139,12 @@ impl<N: Real, S: Simd> Wide<S> for Lone<N> {
     }
 }
 
-impl<S: Simd> SimdMask<S> for LoneMask {
+impl SimdMask<OneLane> for LoneMask {
     const LEN: usize = 1;
 
     #[inline(always)]
     fn to_bitmask(self) -> u64 {
-        u64::from(self.0)
+        if self.0 { 0xff } else { 0 }
     }
 
     #[inline(always)]

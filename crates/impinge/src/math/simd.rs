@@ -1,8 +1,15 @@
 //! Eight numbers side by side: the vectors that kernels compute in, and which of them a target has.
 //!
-//! A kernel is one source over [`Simd`] and [`Wide`]. [`with_lanes!`](super::lanes::with_lanes) compiles it for
-//! the instruction sets of the target, or for [`Arrays`](super::arrays::Arrays) where the target has none. All
-//! operations are those of IEEE 754, so that each lane has the bits that a scalar would have.
+//! A kernel is one source over [`Simd`] and [`Wide`]. All operations are those of IEEE 754, so that each lane has the
+//! bits that a scalar would have. There are two sorts:
+//!
+//! * in some a lane is a pair, a part or a configuration, which never looks at its neighbours. [`in_lanes!`] runs them
+//!   with the vectors of the target, or one lane after the other where there are none: [`Level::runs`];
+//! * in the others the lanes are features of one solid, of which the best is chosen. [`with_lanes!`] runs them with
+//!   all lanes on every target, on [`Arrays`](super::arrays::Arrays) where there are no vectors.
+//!
+//! [`in_lanes!`]: super::lanes::in_lanes
+//! [`with_lanes!`]: super::lanes::with_lanes
 
 use core::ops::{
     Add, AddAssign, BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, Div, Mul, Neg, Not, Sub,
@@ -17,20 +24,25 @@ use fearless_simd::{Select, SimdBase, SimdFloat};
 ))]
 use super::halves::Halves;
 
-/// The vectors that kernels use: those of an instruction set, or none. No result depends on it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Level(pub(crate) Option<Vectors>);
-
-/// An instruction set for which kernels are compiled.
+/// The vectors of this machine. No result depends on it.
 ///
-/// Of x86 AVX2, and SSE2 of the baseline: what lies between brings little, and eight lanes gain nothing from
-/// wider registers, whereas each set is one more copy of all kernels.
+/// Of x86 AVX2, and SSE2 of the baseline for some kernels: what lies between brings little, and eight lanes gain
+/// nothing from wider registers, whereas each set is one more copy of all kernels.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Level {
+    Wide(Vectors),
+    /// Vectors of four `f32`. Kernels whose lanes are pairs run one lane at a time instead: half the code.
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    Sse2(fearless_simd::Sse2),
+    /// No vectors, and tests.
+    Arrays,
+}
+
+/// An instruction set in which kernels gain from lanes whatever these are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Vectors {
     #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
     Avx2(fearless_simd::Avx2),
-    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
-    Sse2(fearless_simd::Sse2),
     #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
     Neon(fearless_simd::Neon),
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
@@ -53,41 +65,70 @@ impl Level {
     pub(crate) fn new() -> Self {
         let level = fearless_simd::Level::new();
         #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
-        let vectors = match level.as_avx2() {
-            Some(avx2) => Some(Vectors::Avx2(avx2)),
-            None => level.as_sse2().map(Vectors::Sse2),
+        let best = match (level.as_avx2(), level.as_sse2()) {
+            (Some(avx2), _) => Self::Wide(Vectors::Avx2(avx2)),
+            (None, Some(sse2)) => Self::Sse2(sse2),
+            (None, None) => Self::Arrays,
         };
         #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
-        let vectors = level.as_neon().map(Vectors::Neon);
+        let best = level.as_neon().map_or(Self::Arrays, |neon| Self::Wide(Vectors::Neon(neon)));
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
-        let vectors = level.as_wasm_simd128().map(Vectors::Simd128);
+        let best =
+            level.as_wasm_simd128().map_or(Self::Arrays, |simd| Self::Wide(Vectors::Simd128(simd)));
         #[cfg(not(any(
             all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"),
             all(target_arch = "aarch64", target_feature = "neon"),
             all(target_arch = "wasm32", target_feature = "simd128")
         )))]
-        let vectors = {
+        let best = {
             let _ = level;
-            None
+            Self::Arrays
         };
-        Self(vectors)
+        best
     }
 
-    /// Those of an instruction set; none without.
+    /// In which runs a kernel treats the first lanes of a packet: all at once, or one after the other.
     #[inline]
-    pub(crate) const fn vectors(self) -> Option<Vectors> {
-        self.0
+    pub(crate) fn runs(self, lanes: usize) -> impl Iterator<Item = Run> {
+        let (step, vectors) = match self {
+            Self::Wide(vectors) => (lanes.max(1), Some(vectors)),
+            _ => (1, None),
+        };
+        (0..lanes).step_by(step).map(move |first| Run { vectors, first, end: first + step })
     }
 
     /// Everything that runs on this machine, the best first and last without vectors, for tests.
     pub(crate) fn available() -> Vec<Self> {
         let mut all = vec![Self::new()];
         #[cfg(target_arch = "x86_64")]
-        all.extend(
-            fearless_simd::Level::new().as_sse2().map(|sse2| Self(Some(Vectors::Sse2(sse2)))),
-        );
-        all.push(Self(None));
+        all.extend(fearless_simd::Level::new().as_sse2().map(Self::Sse2));
+        all.push(Self::Arrays);
         all
+    }
+}
+
+/// Lanes that a kernel treats at once: all that count, with vectors, or one of them ([`OneLane`](super::lone::OneLane)).
+///
+/// A kernel that is run so stores for its lanes what it found; what it stores for the others means nothing. Each lane
+/// has the same bits in either way, since none looks at its neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    pub(crate) vectors: Option<Vectors>,
+    pub(crate) first: usize,
+    end: usize,
+}
+
+impl Run {
+    /// Its lanes.
+    #[inline]
+    pub(crate) fn lanes(&self) -> core::ops::Range<usize> {
+        self.first..self.end
+    }
+
+    /// Those of some bits, one for each lane, that are of its lanes.
+    #[inline]
+    pub(crate) fn of_bits(&self, bits: u8) -> u8 {
+        self.lanes().fold(0, |own, lane| own | bits & 1 << lane)
     }
 }
 

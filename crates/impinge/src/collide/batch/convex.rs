@@ -11,9 +11,9 @@ use crate::collide::separation::{
     apart, distance_in_plane, distance_in_space, is_usual, separation_in_plane, separation_in_space,
 };
 use crate::convex::Separation;
-use crate::math::lanes::{load, with_lanes};
+use crate::math::lanes::{load, with_vectors};
 use crate::math::order::sort_few;
-use crate::math::simd::{Level, Simd};
+use crate::math::simd::{Level, Simd, Vectors};
 use crate::math::{Point, Real, Wide};
 use crate::shape::{Geometry, Kind, ShapeKind};
 
@@ -61,9 +61,9 @@ pub(crate) fn distances3<N: Real>(
     out: &mut [Option<N>],
 ) {
     each_packet(pairs, |packet| {
-        let found = if are(packet, is_segment) {
-            SegmentPacket::new(packet).distances(limit)
-        } else if are(packet, apart::is_faceted) {
+        let found = if let Some(vectors) = lanes_for(packet, is_segment) {
+            SegmentPacket::new(vectors, packet).distances(limit)
+        } else if lanes_for(packet, apart::is_faceted).is_some() {
             apart::distances(packet.iter().map(|one| &one.pair), limit)
         } else {
             [None; LANES]
@@ -79,9 +79,9 @@ pub(crate) fn separations3<N: Real>(
     out: &mut [Option<Separation<N, 3>>],
 ) {
     each_packet(pairs, |packet| {
-        let found = if are(packet, is_segment) {
-            SegmentPacket::new(packet).separations(limit)
-        } else if are(packet, apart::is_faceted) {
+        let found = if let Some(vectors) = lanes_for(packet, is_segment) {
+            SegmentPacket::new(vectors, packet).separations(limit)
+        } else if lanes_for(packet, apart::is_faceted).is_some() {
             apart::separations(packet.iter().map(|one| &one.pair), limit)
         } else {
             [None; LANES]
@@ -103,11 +103,15 @@ fn each_packet<'a, N: Real>(
     }
 }
 
-/// Both solids of these pairs of the same kinds are of some, and there are enough for lanes: a packet costs as much as
-/// three or four lone pairs.
-fn are<N: Real>(packet: &[ConvexPair<'_, N, 3>], is_one: fn(&Kind<'_, N, 3>) -> bool) -> bool {
+/// The vectors for these pairs of the same kinds, if both solids are of some and there are enough for lanes: a packet
+/// costs as much as three or four lone pairs.
+fn lanes_for<N: Real>(
+    packet: &[ConvexPair<'_, N, 3>],
+    is_one: fn(&Kind<'_, N, 3>) -> bool,
+) -> Option<Vectors> {
     let Pair { first, second, .. } = &packet[0].pair;
-    packet.len() >= LANES / 2 && is_one(first) && is_one(second)
+    let Level::Wide(vectors) = Level::new() else { return None };
+    (packet.len() >= LANES / 2 && is_one(first) && is_one(second)).then_some(vectors)
 }
 
 const fn is_segment<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
@@ -139,7 +143,7 @@ struct SegmentPacket<N: Real> {
 }
 
 impl<N: Real> SegmentPacket<N> {
-    fn new(packet: &[ConvexPair<'_, N, 3>]) -> Self {
+    fn new(vectors: Vectors, packet: &[ConvexPair<'_, N, 3>]) -> Self {
         let row = [N::ZERO; LANES];
         let mut found = Self {
             ends: [[[Point::origin(); 2]; 2]; LANES],
@@ -160,7 +164,7 @@ impl<N: Real> SegmentPacket<N> {
             }
             found.ends[lane] = [ends1, ends2];
         }
-        with_lanes!(Level::new(), simd => found.search::<_, N::Lanes<_>>(simd, &ends));
+        with_vectors!(vectors, simd => found.search::<_, N::Lanes<_>>(simd, &ends));
         found
     }
 

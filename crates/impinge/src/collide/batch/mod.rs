@@ -35,8 +35,8 @@ use self::segments3::Segments3;
 pub(crate) use self::solid::Solid;
 use super::Pair;
 use crate::collide::{ManifoldRequest, RawManifold};
-use crate::math::lanes::with_lanes;
-use crate::math::simd::{Level, Simd};
+use crate::math::lanes::in_lanes;
+use crate::math::simd::{Level, Run, Simd};
 use crate::math::{Mapped, Pose, Real, Space, Wide};
 use crate::shape::Geometry;
 
@@ -85,7 +85,7 @@ trait Batch<N: Real, const D: usize> {
     /// Puts the numbers of a pair into a lane; answers whether the pair is one for this algorithm.
     fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool;
 
-    /// Everything that goes for eight pairs at once.
+    /// Everything that goes for eight pairs at once, or for one of them.
     fn find<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         inputs: &Inputs<N, D>,
@@ -204,7 +204,9 @@ fn build<B: Batch<N, D>, N: Space<D>, const D: usize>(
     let (mut inputs, mut found) = (Inputs::new(), B::blank());
     let poses = [&Pose::identity(), &pair.pose12];
     inputs.put::<B>(0, &PairQuestion { poses, solids: solids.each_ref(), request });
-    find_at::<B, N, D>(Level::new(), &inputs, &mut found);
+    for run in Level::new().runs(1) {
+        find::<B, N, D>(run, &inputs, &mut found);
+    }
     if !B::settle(&found, 0, request.max_points, raw) {
         B::fall_back(pair, request, raw);
     }
@@ -222,25 +224,27 @@ fn update_at<B: Batch<N, D>, P: KeptPairs<N, D>, N: Real, const D: usize>(
     now.gather::<B, P>(pairs, 0);
     while now.count > 0 {
         next.gather::<B, P>(pairs, now.first + now.count);
-        find_at::<B, N, D>(level, now, &mut found);
-        for lane in 0..now.count {
-            let index = now.first + lane;
-            if !B::settle(&found, lane, now.max_points[lane & (LANES - 1)], pairs.raw(index)) {
-                let (question, raw) = pairs.parts(index);
-                B::fall_back(&question.pair(), question.request, raw);
+        for run in level.runs(now.count) {
+            find::<B, N, D>(run, now, &mut found);
+            for lane in run.lanes() {
+                let index = now.first + lane;
+                if !B::settle(&found, lane, now.max_points[lane & (LANES - 1)], pairs.raw(index)) {
+                    let (question, raw) = pairs.parts(index);
+                    B::fall_back(&question.pair(), question.request, raw);
+                }
+                pairs.end(index);
             }
-            pairs.end(index);
         }
         core::mem::swap(&mut now, &mut next);
     }
 }
 
-/// [`Batch::find`] with the vectors of an instruction set, compiled once for all that keep pairs.
+/// [`Batch::find`] of some lanes, compiled once for all that keep pairs.
 #[inline(never)]
-fn find_at<B: Batch<N, D>, N: Real, const D: usize>(
-    level: Level,
+fn find<B: Batch<N, D>, N: Real, const D: usize>(
+    run: Run,
     inputs: &Inputs<N, D>,
     found: &mut B::Found,
 ) {
-    with_lanes!(level, simd => B::find::<_, N::Lanes<_>>(simd, inputs, found));
+    in_lanes!(run, simd => B::find::<_, N::Lanes<_>>(simd, inputs, found));
 }

@@ -5,7 +5,7 @@
 
 use super::cull::{least_length, relative_slack};
 use crate::collide::packet::{LANES, PartPacket};
-use crate::math::lanes::{bits, dot, either, lit, load, minus, norm, spread, with_lanes};
+use crate::math::lanes::{bits, dot, either, in_lanes, lit, load, minus, norm, spread};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Matrix, Real, Vector, Wide, filled, min};
 
@@ -41,13 +41,19 @@ impl<N: Real, const D: usize> LowerBoundQuery<N, D> {
     }
 }
 
-/// [`bounds`] with the vectors of an instruction set; the answers do not depend on it.
+/// [`bounds`] of all lanes, on the level of which the answers do not depend.
 fn at<N: Real, const D: usize>(
     level: Level,
     tiles: &PartPacket<N, D>,
     query: &LowerBoundQuery<N, D>,
 ) -> LowerBounds<N> {
-    with_lanes!(level, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, query))
+    let mut all = LowerBounds { near: 0, from_middle: N::INFINITY };
+    for run in level.runs(LANES) {
+        let found = in_lanes!(run, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, query));
+        all.near |= run.of_bits(found.near);
+        all.from_middle = min(found.from_middle, all.from_middle);
+    }
+    all
 }
 
 #[inline(always)]

@@ -6,7 +6,7 @@
 
 use super::slabs::{AxisSlabs, rounding_unit};
 use crate::collide::packet::{LANES, PartPacket};
-use crate::math::lanes::{bits, cross, dot, load, minus, spread, with_lanes};
+use crate::math::lanes::{bits, cross, dot, in_lanes, load, minus, spread};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
 
@@ -14,13 +14,19 @@ use crate::math::{Real, Vector, Wide};
 type Corners<V, const D: usize> = [[V; D]; 3];
 
 /// How far each of eight parts in the plane is from what is in the slabs, or less; overlaps count as negative. Where no
-/// gap along the slabs is within the limit others are not asked.
+/// gap along the slabs is within the limit others are not asked, so that gaps beyond it may differ by level.
 pub(crate) fn part_gaps2<N: Real>(
     slabs: &AxisSlabs<N, 2>,
     tiles: &PartPacket<N, 2>,
     limit: N,
 ) -> [N; LANES] {
-    with_lanes!(Level::new(), simd => in_plane::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit))
+    let mut gaps = [N::ZERO; LANES];
+    for run in Level::new().runs(LANES) {
+        let found =
+            in_lanes!(run, simd => in_plane::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
+        gaps[run.lanes()].copy_from_slice(&found[run.lanes()]);
+    }
+    gaps
 }
 
 /// [`part_gaps2`], in 3D.
@@ -29,7 +35,13 @@ pub(crate) fn part_gaps3<N: Real>(
     tiles: &PartPacket<N, 3>,
     limit: N,
 ) -> [N; LANES] {
-    with_lanes!(Level::new(), simd => in_space::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit))
+    let mut gaps = [N::ZERO; LANES];
+    for run in Level::new().runs(LANES) {
+        let found =
+            in_lanes!(run, simd => in_space::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
+        gaps[run.lanes()].copy_from_slice(&found[run.lanes()]);
+    }
+    gaps
 }
 
 #[inline(always)]

@@ -30,11 +30,10 @@ use super::flat_core::FlatCore;
 use super::{Algorithm, hulls};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units, safe_reach};
-use crate::math::arrays::Arrays;
 use crate::math::lanes::{LanePose, minus};
-use crate::math::lone::Lone;
-use crate::math::simd::{Level, SimdMask};
-use crate::math::{Point, Pose, Real, Vector, Wide};
+use crate::math::lone::{Lone, LoneMask, OneLane};
+use crate::math::simd::Level;
+use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{Kind, SupportMap};
 
 /// How many pairs are treated at once.
@@ -81,7 +80,8 @@ fn each<'p, 'a: 'p, N: Real, T: Copy>(
     settle: impl Fn(&GapResult<N>, &Pair<'a, N, 3>) -> Option<T>,
 ) -> [Option<Option<T>>; LANES] {
     let mut settled = [None; LANES];
-    if let Some(results) = packet::results(Level::new(), pairs.clone(), limit, with_overlap) {
+    let Level::Wide(vectors) = Level::new() else { return settled };
+    if let Some(results) = packet::results(vectors, pairs.clone(), limit, with_overlap) {
         for ((settled, result), pair) in settled.iter_mut().zip(&results).zip(pairs) {
             *settled = Some(settle(result, pair));
         }
@@ -147,11 +147,12 @@ fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapRe
     let Some(solids) = FlatPair::of(pair) else { return GapResult::Unproved };
     let cores = [solids.lone_core(0), solids.lone_core(1)];
     let translation = pair.pose12.translation * solids.units.shrink;
-    let pose12 = LanePose::of(Arrays, &Pose { rotation: pair.pose12.rotation, translation });
-    let [middle1, middle2] = [lone(&solids.middles[0]), lone(&solids.middles[1])];
-    let between = minus::<Arrays, _, 3>(&pose12.point::<Arrays>(&middle2), &middle1);
+    let lane = OneLane(0);
+    let pose12 = LanePose::of(lane, &Pose { rotation: pair.pose12.rotation, translation });
+    let [middle1, middle2] = [Lone::each(&solids.middles[0]), Lone::each(&solids.middles[1])];
+    let between = minus(&pose12.point(&middle2), &middle1);
     let limit = Lone(solids.limit_of_cores(limit));
-    let found = LaneCores { cores, pose12, between, limit }.gap(Arrays, with_overlap);
+    let found = LaneCores { cores, pose12, between, limit }.gap(lane, with_overlap);
     solids.lone_result(&found)
 }
 
@@ -202,7 +203,7 @@ impl<'a, N: Real> FlatPair<'a, N> {
         let shrink = self.units.shrink;
         match (self.solids[which], vertices(&self.solids[which])) {
             (FlatCore::Cuboid(cuboid), _) => {
-                LaneCore::Cuboid(lone(&(cuboid.half_extents() * shrink)))
+                LaneCore::Cuboid(Lone::each(&(cuboid.half_extents() * shrink)))
             }
             (_, found) => {
                 let points = found.expect("the others have vertices");
@@ -232,27 +233,16 @@ impl<'a, N: Real> FlatPair<'a, N> {
     }
 
     #[inline]
-    fn lone_result(
-        &self,
-        found: &LaneGap<Lone<N>, <Lone<N> as Wide<Arrays>>::Mask>,
-    ) -> GapResult<N> {
-        let is = |mask| SimdMask::<Arrays>::any_true(mask);
-        let known = [is(found.is_beyond), is(found.is_overlap), is(found.is_apart)];
-        let vector = |v: &[Lone<N>; 3]| Vector::<N, 3>::new(v[0].0, v[1].0, v[2].0);
+    fn lone_result(&self, found: &LaneGap<Lone<N>, LoneMask>) -> GapResult<N> {
+        let known = [found.is_beyond.0, found.is_overlap.0, found.is_apart.0];
         let [point1, point2] = &found.points;
         self.result(known, || Separation {
             distance: found.distance.0,
-            normal: vector(&found.normal),
-            point1: Point::from(vector(point1)),
-            point2: Point::from(vector(point2)),
+            normal: Lone::vector(&found.normal),
+            point1: Point::from(Lone::vector(point1)),
+            point2: Point::from(Lone::vector(point2)),
         })
     }
-}
-
-/// A vector of a lone pair.
-#[inline(always)]
-fn lone<N: Real>(v: &Vector<N, 3>) -> [Lone<N>; 3] {
-    [Lone(v[0]), Lone(v[1]), Lone(v[2])]
 }
 
 /// The vertices of a solid that has more than ends or half extents.

@@ -6,8 +6,8 @@ use super::{FlatPair, GapResult, LANES, vertices};
 use crate::collide::Pair;
 use crate::collide::separation::flat_core::FlatCore;
 use crate::convex::Separation;
-use crate::math::lanes::{LanePose, load, minus, with_lanes};
-use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::lanes::{LanePose, load, minus, with_vectors};
+use crate::math::simd::{Simd, SimdMask, Vectors};
 use crate::math::{Point, Real, Vector, Wide, filled};
 
 /// A vector in each lane, by coordinates.
@@ -40,7 +40,7 @@ struct PacketGap<N: Real> {
 /// The results of up to eight pairs of the same kinds as [`super::result`] has them, to the bit, with the vectors of an
 /// instruction set, on which they do not depend; `None` if the pairs do not fit into lanes.
 pub(super) fn results<'p, 'a: 'p, N: Real>(
-    level: Level,
+    vectors: Vectors,
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>>,
     limit: N,
     with_overlap: bool,
@@ -50,7 +50,7 @@ pub(super) fn results<'p, 'a: 'p, N: Real>(
         return None;
     }
     let mut found = PacketGap::new();
-    with_lanes!(level, simd => packet.search::<_, N::Lanes<_>>(simd, with_overlap, &mut found));
+    with_vectors!(vectors, simd => packet.search::<_, N::Lanes<_>>(simd, with_overlap, &mut found));
     Some(filled(|lane| match &packet.pairs[lane] {
         Some(solids) => found.result(lane, solids),
         None => GapResult::Unproved,

@@ -49,7 +49,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 2>,
     limit: N,
 ) -> Option<Separation<N, 2>> {
-    if let Some(found) = segment_lanes::separation(Level::new(), pair) {
+    if let Some(found) = segment_lanes::separation(pair) {
         return Some(found).filter(|found| found.distance <= limit);
     }
     separation_of_outlines(pair, limit)

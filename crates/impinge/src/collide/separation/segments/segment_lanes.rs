@@ -1,16 +1,15 @@
 //! Segments in lanes: the nearest point of each to a point, and in 2D the separation of two.
 //!
-//! A lone pair of the plane is a batch of one, so that what is asked of two segments, and what a manifold of
-//! them says, are the same bits.
+//! A lone pair of the plane runs the same source, so that what is asked of two segments, and what a manifold of them
+//! says, are the same bits.
 
 use super::nearest::core;
 use crate::collide::Pair;
 use crate::convex::Separation;
-use crate::math::lanes::{
-    dot, either, either_mask, minus, negated, norm, over, plus, spread, times, with_lanes,
-};
-use crate::math::simd::{Level, Simd, SimdMask};
-use crate::math::{Point, Real, Vector, Wide};
+use crate::math::lanes::{dot, either, either_mask, minus, negated, norm, over, plus, times};
+use crate::math::lone::{Lone, OneLane};
+use crate::math::simd::{Simd, SimdMask};
+use crate::math::{Point, Real, Wide};
 use crate::shape::Kind;
 
 /// The nearest point of a segment to a point.
@@ -191,7 +190,6 @@ fn lowest<S: Simd, V: Wide<S>>([first, last]: &[[V; 2]; 2], direction: &[V; 2]) 
 /// The separation of two segments of the plane, inflated or not; `None` of other kinds, and where
 /// [`SegmentGap`] knows none.
 pub(in crate::collide::separation) fn separation<N: Real>(
-    level: Level,
     pair: &Pair<'_, N, 2>,
 ) -> Option<Separation<N, 2>> {
     let is_segment = |kind: &Kind<'_, N, 2>| matches!(kind, Kind::Segment(_) | Kind::Capsule(_));
@@ -200,30 +198,18 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
     let ((ends1, radius1), (local2, radius2)) = (core(pair, &pair.first), core(pair, &pair.second));
     let ends2 = local2.map(|end| pair.pose12.point(&end));
-    let cores = with_lanes!(level, simd => alone::<_, N, N::Lanes<_>>(simd, &ends1, &ends2))?;
+    let cores = alone(&ends1, &ends2)?;
     Some(cores.rounded(radius1, radius2))
 }
 
-/// The same pair in all lanes.
-#[inline(always)]
-fn alone<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    [first1, last1]: &[Point<N, 2>; 2],
-    [first2, last2]: &[Point<N, 2>; 2],
-) -> Option<Separation<N, 2>> {
-    let ends1: [[V; 2]; 2] = [spread(simd, &first1.coords), spread(simd, &last1.coords)];
-    let ends2: [[V; 2]; 2] = [spread(simd, &first2.coords), spread(simd, &last2.coords)];
-    let found = SegmentGap::of(simd, [&ends1, &ends2]);
-    let vector = |v: &[V; 2]| Vector::<N, 2>::new(first_lane(&v[0]), first_lane(&v[1]));
-    let [point1, point2] = &found.points;
-    let (point1, point2) = (Point::from(vector(point1)), Point::from(vector(point2)));
-    let (distance, normal) = (first_lane(&found.gap), vector(&found.normal));
-    found.is_known.all_true().then_some(Separation { distance, normal, point1, point2 })
-}
-
-#[inline(always)]
-fn first_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: &V) -> N {
-    let mut lanes = [N::ZERO; 8];
-    numbers.store(&mut lanes);
-    lanes[0]
+/// The separation of the cores of a lone pair.
+fn alone<N: Real>(ends1: &[Point<N, 2>; 2], ends2: &[Point<N, 2>; 2]) -> Option<Separation<N, 2>> {
+    let lone = |ends: &[Point<N, 2>; 2]| [Lone::each(&ends[0].coords), Lone::each(&ends[1].coords)];
+    let found = SegmentGap::of(OneLane(0), [&lone(ends1), &lone(ends2)]);
+    found.is_known.0.then(|| Separation {
+        distance: found.gap.0,
+        normal: Lone::vector(&found.normal),
+        point1: Point::from(Lone::vector(&found.points[0])),
+        point2: Point::from(Lone::vector(&found.points[1])),
+    })
 }

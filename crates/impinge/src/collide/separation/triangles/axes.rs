@@ -12,9 +12,9 @@ use super::{TriangleQuery, noise};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
 use crate::math::lanes::{
-    bits, cross, dot, either, load, minus, negated, over, spread, times, with_lanes,
+    bits, cross, dot, either, in_lanes, load, minus, negated, over, spread, times,
 };
-use crate::math::simd::{Level, Simd, SimdMask};
+use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Mapped, Matrix, Real, Wide, filled, max, max_component};
 
 /// The sine below which two edges count as parallel, in rounding units.
@@ -81,9 +81,9 @@ pub(super) fn slack<N: Real>(scale: N) -> N {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// The axes by the vectors of an instruction set, on which they do not depend.
-    pub(super) fn axes(&self, level: Level, tiles: &PartPacket<N, 3>) -> TriangleAxes<N> {
-        with_lanes!(level, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
+    /// The axes of some lanes.
+    pub(super) fn axes(&self, run: Run, tiles: &PartPacket<N, 3>) -> TriangleAxes<N> {
+        in_lanes!(run, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
     }
 
     /// The triangles' own normals, unless those of faces of the solid leave gaps that are larger by more than

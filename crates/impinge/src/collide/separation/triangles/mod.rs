@@ -84,9 +84,11 @@ impl<N: Real> TriangleQuery<'_, N> {
             if count == 0 {
                 return;
             }
-            let axes = self.axes(Level::new(), &packet);
-            for lane in (0..count).filter(|lane| axes.beyond >> lane & 1 == 0) {
-                visit(first + lane, self.plain(&axes, lane).as_ref());
+            for run in Level::new().runs(count) {
+                let axes = self.axes(run, &packet);
+                for lane in run.lanes().filter(|lane| axes.beyond >> lane & 1 == 0) {
+                    visit(first + lane, self.plain(&axes, lane).as_ref());
+                }
             }
             first += count;
         }
