@@ -23,6 +23,17 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     along_best(pair, limit, &boxes, &boxes.best_axis())
 }
 
+/// [`separation`] where the axes alone decide: the boxes overlap, or are farther apart than a limit (`Some(None)`).
+pub(in crate::collide::separation) fn decided_by_axes<N: Real>(
+    pair: &Pair<'_, N, 3>,
+    limit: N,
+) -> Option<Option<Separation<N, 3>>> {
+    let boxes = of_pair(pair);
+    let best = boxes.best_axis();
+    let is_decided = best.gap <= N::ZERO || is_beyond(&boxes, &best, limit);
+    is_decided.then(|| along_best(pair, limit, &boxes, &best))
+}
+
 /// The distance in [`separation`]; where the boxes overlap the axes know it, without points.
 pub(in crate::collide::separation) fn distance<N: Real>(
     pair: &Pair<'_, N, 3>,
@@ -51,17 +62,21 @@ fn along_best<N: Real>(
     boxes: &BoxPair<N>,
     best: &BoxAxis<N>,
 ) -> Option<Separation<N, 3>> {
-    let noise = boxes.noise();
-    if best.gap > limit + N::lit(16.0) * noise {
+    if is_beyond(boxes, best, limit) {
         return None;
     }
     let found = along(boxes, best);
     let beside = found.point2 - found.point1 - best.normal * best.gap;
-    let attained = best.gap <= N::ZERO || beside.norm() <= noise;
+    let attained = best.gap <= N::ZERO || beside.norm() <= boxes.noise();
     if attained {
         return (found.distance <= limit).then_some(found);
     }
     general::of_flat_cores_near(pair, limit, &best.normal)
+}
+
+/// The gap along an axis exceeds a limit by more than rounding.
+fn is_beyond<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>, limit: N) -> bool {
+    axis.gap > limit + N::lit(16.0) * boxes.noise()
 }
 
 /// The points where the boxes face each other along an axis.

@@ -1,9 +1,7 @@
 //! Nearest points of segments: the arithmetic that several pairs share.
 
-use super::segment_lanes;
 use crate::collide::Pair;
 use crate::collide::separation::wrong_kinds;
-use crate::math::lone::{Lone, OneLane};
 use crate::math::{Point, Real, Vector, cross, max, max_component, min};
 use crate::shape::Kind;
 
@@ -29,9 +27,18 @@ pub(in crate::collide::separation) fn nearest_on_segment<N: Real, const D: usize
     ends: &[Point<N, D>; 2],
     point: &Point<N, D>,
 ) -> (Point<N, D>, bool) {
-    let lone = [Lone::each(&ends[0].coords), Lone::each(&ends[1].coords)];
-    let near = segment_lanes::nearest_on_segment(OneLane(0), &lone, &Lone::each(&point.coords));
-    (Point::from(Lone::vector(&near.point)), near.is_inside.0)
+    let along = ends[1] - ends[0];
+    let (from_a, to_b) = ((point - ends[0]).dot(&along), (ends[1] - point).dot(&along));
+    if from_a > N::ZERO && to_b > N::ZERO {
+        let whole = from_a + to_b;
+        let nearest = if from_a < to_b {
+            ends[0] + along * (from_a / whole)
+        } else {
+            ends[1] - along * (to_b / whole)
+        };
+        return (nearest, true);
+    }
+    (if from_a > N::ZERO { ends[1] } else { ends[0] }, false)
 }
 
 /// The nearest points of two segments in 3D.
