@@ -1,8 +1,8 @@
 //! The guide's main program prints what the guide says, in the plane and in space.
 
-#[path = "../../../examples/ball_in_room2.rs"]
+#[path = "../../../../impinge-first/src/bin/ball_in_room2.rs"]
 mod plane;
-#[path = "../../../examples/ball_in_room3.rs"]
+#[path = "../../../../impinge-first/src/bin/ball_in_room3.rs"]
 mod space;
 
 #[test]
