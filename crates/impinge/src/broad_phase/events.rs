@@ -34,7 +34,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             self.give_back(look);
         }
         if self.is_idle() {
-            return self.keep_order();
+            return self.keep_order(0);
         }
         self.recent.note(self.waiting());
         self.apply_waiting();
@@ -139,8 +139,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         let is_large = self.homes.len() >= PARALLEL_FROM;
         let mut commit = || pair_events.commit(&mut pairs, ended);
         let mut settle = || {
+            let changed = self.changes.len();
             self.settle();
-            self.keep_order();
+            self.keep_order(changed);
         };
         if is_large {
             join(commit, settle);

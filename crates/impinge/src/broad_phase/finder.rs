@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::BroadPhaseError;
 use super::events::PairEvents;
+use super::rest::RestPass;
 use super::sieve::{KeptBounds, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
@@ -83,8 +84,7 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) lanes: Lanes,
     /// Updates so far; wraps.
     pub(super) clock: u32,
-    /// Where the search for objects at rest goes on.
-    pub(super) cursor: usize,
+    pub(super) rest_pass: RestPass,
     pub(super) recent: Recent,
 }
 
@@ -137,7 +137,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             pair_events: PairEvents::default(),
             lanes,
             clock: 0,
-            cursor: 0,
+            rest_pass: RestPass::NONE,
             recent: Recent::default(),
         })
     }

@@ -42,9 +42,11 @@ mod near_first;
 mod near_pairs;
 mod order;
 mod ordered;
+mod place;
 mod query;
 mod ranked;
 mod refit;
+mod renewal;
 mod schedule;
 mod slabs;
 mod still;
@@ -54,7 +56,7 @@ mod validate;
 mod visit;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub(crate) use block::{Block, LANES};
 pub use bounds::Bounds;

@@ -58,6 +58,32 @@ pub(super) fn split<const D: usize>(items: &mut [Item<D>]) -> Option<usize> {
     Some(left)
 }
 
+/// A plane across an axis.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Cut {
+    axis: usize,
+    /// The key of the first item beyond it.
+    key: u64,
+}
+
+impl Cut {
+    /// The item belongs to the part of the larger keys.
+    #[inline]
+    pub(super) fn is_beyond<const D: usize>(self, item: &Item<D>) -> bool {
+        item.key(self.axis) >= self.key
+    }
+}
+
+/// Parts items along the axis along which they spread most; answers where, and how many are on the near side.
+pub(super) fn cut_in_half<const D: usize>(items: &mut [Item<D>]) -> (Cut, usize) {
+    let (axis, half) = (longest_axis(items), items.len() / 2);
+    if items.is_empty() {
+        return (Cut::default(), 0);
+    }
+    let (_, first, _) = items.select_nth_unstable_by_key(half, |item| item.key(axis));
+    (Cut { axis, key: first.key(axis) }, half)
+}
+
 /// Brings the items into k-d order. Each level halves the items, so it ends.
 pub(super) fn sort<const D: usize>(items: &mut [Item<D>]) {
     let Some(left) = split(items) else { return };
@@ -83,10 +109,15 @@ pub(super) struct Load<const D: usize> {
 impl<const D: usize> Tree<D> {
     /// Lists the live objects in the slots from `start` on, in slot order.
     pub(super) fn list_items(&self, start: usize, items: &mut Vec<Item<D>>) {
-        let live = (start..self.end).filter(|&slot| self.ids[slot] != NONE);
-        let item = |slot| Item { center: self.lane(slot).center(), id: self.ids[slot] };
         items.clear();
-        items.extend(live.map(item));
+        items.extend((start..self.end).filter_map(|slot| self.item(self.ids[slot])));
+    }
+
+    /// An object that is in the tree.
+    #[inline]
+    pub(super) fn item(&self, id: u32) -> Option<Item<D>> {
+        let center = self.lane(self.slot(id)?).center();
+        Some(Item { center, id })
     }
 
     /// Gives the slots from `start` (a block boundary) on to the listed ids, in that order, and
@@ -95,6 +126,8 @@ impl<const D: usize> Tree<D> {
         let mut loads = core::mem::take(&mut self.loads);
         loads.clear();
         loads.extend(ids.iter().map(|&id| self.load(id)));
+        #[cfg(test)]
+        super::tests::count_placed(ids.len());
         self.layers[0].changed[start / LANES..].fill(0);
         for (offset, load) in loads.iter().enumerate() {
             self.unload(start + offset, load);
@@ -130,6 +163,15 @@ impl<const D: usize> Tree<D> {
             self.before[block].set_lane(lane, &load.before);
         }
         self.layers[0].changed[block] |= u16::from(load.is_changed) << lane;
+    }
+
+    /// Gives up the last slots if they are free.
+    pub(crate) fn drop_free_end(&mut self) {
+        while self.end > 0 && self.ids[self.end - 1] == NONE {
+            self.end -= 1;
+        }
+        self.schedule.forget_slots_from(self.end);
+        self.drop_blocks_after_end();
     }
 
     /// Empties the lanes of the last block beyond the end and gives later blocks up.

@@ -40,11 +40,10 @@ impl<const D: usize> Tree<D> {
             self.order_touched();
             let mut dirty = core::mem::take(&mut self.dirty);
             dirty.clear();
+            dirty.extend_from_slice(&self.touched);
             if self.is_restructured {
                 self.shape_layers();
-                dirty.extend(0..small(self.leaf_count()));
-            } else {
-                dirty.extend_from_slice(&self.touched);
+                self.add_ends(&mut dirty);
             }
             self.refit_leaves(&dirty, by_id);
             self.note_strayed();
@@ -81,17 +80,30 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Lays the upper layers out for the number of leaf blocks, every lane empty.
+    /// Fits the upper layers to the number of leaf blocks. What is above the first block and above the last is left to
+    /// a refit of these ([`Self::add_ends`]): a new top layer, and lanes of blocks that are no more.
     pub(super) fn shape_layers(&mut self) {
         let (mut layer, mut blocks) = (0, self.leaf_count());
         while blocks > 1 {
-            (layer, blocks) = (layer + 1, blocks.div_ceil(LANES));
+            layer += 1;
             if self.layers.len() <= layer {
                 self.layers.push(Layer::new());
             }
-            self.layers[layer].empty(blocks);
+            self.layers[layer].fit_above(blocks);
+            blocks = blocks.div_ceil(LANES);
         }
         self.layers.truncate(layer + 1);
+    }
+
+    /// Adds the first leaf block and the last to an ascending list of them.
+    fn add_ends(&self, blocks: &mut Vec<u32>) {
+        let Some(last) = self.leaf_count().checked_sub(1).map(small) else { return };
+        if blocks.first() != Some(&0) {
+            blocks.insert(0, 0);
+        }
+        if blocks.last() != Some(&last) {
+            blocks.push(last);
+        }
     }
 
     /// Fetches the changed boxes of the listed leaf blocks, and takes their bounds.

@@ -2,10 +2,12 @@
 //!
 //! Moving objects spoil the order: the leaf blocks grow. When their surface is a fifth above what
 //! it was after the last renewal (or many objects came or went), a snapshot of all centres is
-//! sorted over several steps, a bounded amount of work in each, and applied when it is done. No
+//! sorted over several steps, and applied when it is done: work in proportion to the objects, which move. A tree of
+//! objects that seldom change is renewed aside ([`super::renewal`]), a constant amount of work in each step. No
 //! step depends on the time taken, so results are the same on every machine.
 
 use super::order::{Item, sort, split};
+use super::renewal::Renewal;
 use super::{LANES, Tree};
 
 /// Growth of the leaf surface per object that starts a renewal.
@@ -20,6 +22,8 @@ const MIN_BUDGET: usize = 2048;
 const LATE: usize = 4;
 /// Objects that may come or go in any case before the order is renewed.
 const SLACK: usize = 64;
+/// A tree of objects that seldom change is sorted at once up to so many, and newcomers with no more others.
+const SMALL: usize = 1024;
 
 /// The state of the renewal.
 #[derive(Clone, Debug)]
@@ -81,10 +85,15 @@ impl<const D: usize> Tree<D> {
     /// Bentley and Saxe 1980).
     pub(super) fn sort_new(&mut self) {
         let new = self.end - self.schedule.fresh.min(self.end);
+        if self.is_sparing && (new <= LANES || self.renewal.is_some()) && new * 3 <= self.live {
+            // They wait for others, since objects that come one by one have nothing in common, or for the renewal.
+            return;
+        }
         if new * 3 > self.live {
             self.rebuild();
         } else if new > LANES {
-            let start = self.schedule.next_run(self.end);
+            let most = if self.is_sparing { SMALL } else { usize::MAX };
+            let start = self.schedule.next_run(self.end, most);
             self.sort_from(start);
         }
         self.schedule.fresh = self.end;
@@ -120,14 +129,18 @@ impl<const D: usize> Tree<D> {
         self.rearrange(0, &ids);
         (self.schedule.snapshot, self.schedule.order) = (items, ids);
         self.schedule.begin(self.end, self.end);
+        self.renewal = None;
         self.give_back();
     }
 
-    /// Notes that an object is not where a snapshot may have it.
+    /// Notes that an object has come, where a snapshot or a renewal does not know it.
     #[inline]
     pub(super) fn note_late(&mut self, id: u32) {
         if !self.schedule.snapshot.is_empty() {
             self.schedule.late.push(id);
+        }
+        if let Some(renewal) = &mut self.renewal {
+            renewal.insert(id);
         }
     }
 
@@ -140,9 +153,9 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// All objects are in order; those that come are new.
-    pub(super) fn declare_ordered(&mut self) {
-        self.schedule.begin(self.end, self.end);
+    /// The objects in the slots before `end` are in order; the others, and those that come, are new.
+    pub(super) fn declare_ordered(&mut self, end: usize) {
+        self.schedule.begin(end, end);
     }
 
     /// Does this step's share of keeping the order; call it after [`Self::settle`].
@@ -154,7 +167,9 @@ impl<const D: usize> Tree<D> {
             }
             return;
         }
-        if self.schedule.snapshot.is_empty() {
+        if self.is_sparing {
+            self.renew_aside();
+        } else if self.schedule.snapshot.is_empty() {
             self.start_if_worn();
         } else if self.schedule.late.len() * LATE > self.live {
             self.rebuild();
@@ -167,18 +182,40 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Looks at the surface in some calls only: the sum over all blocks is what an otherwise idle
-    /// step would spend its time on.
+    /// Does the next steps of a renewal aside, or begins one where the order asks for it.
+    fn renew_aside(&mut self) {
+        if let Some(mut renewal) = self.renewal.take() {
+            if renewal.proceed(self) {
+                *self = renewal.into_tree();
+            } else {
+                self.renewal = Some(renewal);
+            }
+        } else if !self.wants_order() {
+        } else if self.live <= SMALL {
+            self.rebuild();
+            self.refit_layers(&[]);
+            self.settle();
+        } else {
+            self.renewal = Some(Box::new(Renewal::begin(self)));
+        }
+    }
+
     fn start_if_worn(&mut self) {
-        self.schedule.calls = self.schedule.calls.wrapping_add(1);
-        let is_due = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
-        let looks = is_due && core::mem::take(&mut self.schedule.is_used);
-        if self.is_spoilt() || (looks && self.is_worn()) {
+        if self.wants_order() {
             let mut snapshot = core::mem::take(&mut self.schedule.snapshot);
             self.list_items(0, &mut snapshot);
             self.schedule.snapshot = snapshot;
             self.schedule.parts.push((0, self.live));
         }
+    }
+
+    /// Looks at the surface in some calls only: the sum over all blocks is what an otherwise idle
+    /// step would spend its time on.
+    fn wants_order(&mut self) -> bool {
+        self.schedule.calls = self.schedule.calls.wrapping_add(1);
+        let is_due = self.schedule.base.is_none() || self.schedule.calls.is_multiple_of(LOOK_EVERY);
+        let looks = is_due && core::mem::take(&mut self.schedule.is_used);
+        self.is_spoilt() || (looks && self.is_worn())
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a count that weighs a heuristic")]
@@ -224,7 +261,7 @@ impl<const D: usize> Tree<D> {
 
 impl<const D: usize> Tree<D> {
     /// Gives back memory that a tree in which little happens would keep for nothing.
-    fn give_back(&mut self) {
+    pub(super) fn give_back(&mut self) {
         if self.is_sparing {
             let Schedule { base, ordered, fresh, calls, is_used, .. } = self.schedule;
             let runs = core::mem::take(&mut self.schedule.runs);
@@ -249,11 +286,18 @@ impl<const D: usize> Schedule<D> {
         self.late.clear();
     }
 
-    /// Where the slots begin that are to be sorted together, as far as `end`.
-    fn next_run(&mut self, end: usize) -> usize {
+    /// There are no slots from `end` on.
+    pub(super) fn forget_slots_from(&mut self, end: usize) {
+        (self.ordered, self.fresh) = (self.ordered.min(end), self.fresh.min(end));
+    }
+
+    /// Where the slots begin that are to be sorted together, as far as `end`: newcomers, and others if they are `most`
+    /// in all.
+    fn next_run(&mut self, end: usize, most: usize) -> usize {
         let mut start = self.fresh / LANES * LANES;
         self.runs.retain(|&run| run < start);
-        while let Some(&run) = self.runs.last().filter(|&&run| start - run <= 2 * (end - start)) {
+        let is_short = |run: usize, start| start - run <= 2 * (end - start) && end - run <= most;
+        while let Some(&run) = self.runs.last().filter(|&&run| is_short(run, start)) {
             start = run;
             self.runs.pop();
         }

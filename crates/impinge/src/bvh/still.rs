@@ -57,7 +57,7 @@ impl<const D: usize> Tree<D> {
         for block in 0..tree.leaf_count() {
             tree.touch(block);
         }
-        tree.declare_ordered();
+        tree.declare_ordered(tree.end);
         tree.refit_layers(&[]);
         tree.settle();
         tree

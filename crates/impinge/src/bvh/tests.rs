@@ -1,12 +1,28 @@
 //! Trees alone against lists: joins in every regime, searches, and the order of the nearest.
 
+use core::cell::Cell;
+
 use super::{Bounds, Changes, Frontier, Joiner, Keys, Lanes, Tree};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, filled};
 use crate::pairs::{pack, unpack};
 
+thread_local! {
+    static PLACED: Cell<usize> = const { Cell::new(0) };
+}
+
+/// Counts objects that are given a slot on this thread.
+pub(super) fn count_placed(count: usize) {
+    PLACED.set(PLACED.get() + count);
+}
+
+/// How many objects were given a slot on this thread since the last call.
+pub(crate) fn take_placed() -> usize {
+    PLACED.take()
+}
+
 /// Numbers from a linear congruential generator, below `bound`.
-fn next(state: &mut u64, bound: u32) -> u32 {
+pub(super) fn next(state: &mut u64, bound: u32) -> u32 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     u32::try_from((*state >> 33) % u64::from(bound)).expect("below a u32")
 }
@@ -16,7 +32,7 @@ fn small_float(value: u32) -> f32 {
 }
 
 /// A box of up to two units on a grid of halves.
-fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D> {
+pub(super) fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D> {
     let lo: [f32; D] = filled(|_| small_float(next(state, 2 * side)) / 2.0);
     Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
 }

@@ -2,6 +2,7 @@
 
 use super::block_slabs::BlockSlab;
 use super::order::Load;
+use super::renewal::Renewal;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
 use crate::math::{Point, Real, filled};
@@ -9,8 +10,6 @@ use crate::memory::Look;
 
 /// No id, or no slot.
 pub(crate) const NONE: u32 = u32::MAX;
-/// By how much the surface of a leaf block may grow with an object that comes or moves.
-const ROOM: f64 = 0.3;
 /// A tree of more leaf blocks than this gives its memory back when it is empty.
 const KEPT_LEAVES: usize = 256;
 
@@ -48,12 +47,17 @@ impl<const D: usize> Layer<D> {
         self.changed.resize(blocks, 0);
     }
 
-    /// Makes a layer above the lowest one of so many empty blocks.
-    pub(super) fn empty(&mut self, blocks: usize) {
-        self.resize(0);
+    /// Gives a layer above the lowest one the blocks for so many children; lanes without a child are empty.
+    pub(super) fn fit_above(&mut self, children: usize) {
+        let blocks = children.div_ceil(LANES);
         self.resize(blocks);
-        self.reaches.clear();
         self.reaches.resize(blocks, Block::EMPTY);
+        let (last, used) = (blocks - 1, children - (blocks - 1) * LANES);
+        for lane in used..LANES {
+            self.blocks[last].set_lane(lane, &Bounds::EMPTY);
+            self.reaches[last].set_lane(lane, &Bounds::EMPTY);
+            self.changed[last] &= !(1 << lane);
+        }
     }
 }
 
@@ -98,6 +102,8 @@ pub(crate) struct Tree<const D: usize> {
     /// Something was written since the last [`Self::refit`] that searches must see.
     pub(super) is_stale: bool,
     pub(super) schedule: Schedule<D>,
+    /// Of a sparing tree.
+    pub(super) renewal: Option<Box<Renewal<D>>>,
 }
 
 impl<const D: usize> Default for Tree<D> {
@@ -136,12 +142,26 @@ impl<const D: usize> Tree<D> {
             is_restructured: false,
             is_stale: false,
             schedule: Schedule::default(),
+            renewal: None,
         }
     }
 
     /// A tree without objects, for objects that seldom change: it spares memory.
     pub(crate) fn sparing(lanes: Lanes) -> Self {
         Self { is_sparing: true, remembers: false, ..Self::new(lanes) }
+    }
+
+    /// From here on the objects count as such that seldom change.
+    pub(crate) fn spare(&mut self) {
+        debug_assert_eq!(self.changed, 0, "a settled tree");
+        (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
+        self.give_back();
+    }
+
+    /// From here on the objects count as such that change often.
+    pub(crate) fn spend(&mut self) {
+        (self.is_sparing, self.renewal) = (false, None);
+        self.remember();
     }
 
     /// The number of objects.
@@ -243,6 +263,20 @@ impl<const D: usize> Tree<D> {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
         let slot = self.find_place(bounds);
+        self.put_at(slot, id, bounds);
+        slot
+    }
+
+    /// Adds an object behind all others, as if it had always been there.
+    pub(super) fn append(&mut self, id: u32, bounds: &Bounds<D>) {
+        let slot = self.append_slot();
+        self.put_at(slot, id, bounds);
+    }
+
+    /// Adds an object in a free slot, as if it had always been there.
+    fn put_at(&mut self, slot: usize, id: u32, bounds: &Bounds<D>) {
+        #[cfg(test)]
+        super::tests::count_placed(1);
         if self.slots.len() <= id as usize {
             self.slots.resize(id as usize + 1, NONE);
         }
@@ -255,7 +289,6 @@ impl<const D: usize> Tree<D> {
         if self.remembers {
             self.before[slot / LANES].set_lane(slot % LANES, bounds);
         }
-        slot
     }
 
     /// Gives the object another box as if it had always had it: it begins no pairs.
@@ -268,6 +301,9 @@ impl<const D: usize> Tree<D> {
         self.write(slot, bounds);
         if self.remembers {
             self.before[slot / LANES].set_lane(slot % LANES, bounds);
+        }
+        if let Some(renewal) = &mut self.renewal {
+            renewal.set(id, bounds);
         }
     }
 
@@ -321,6 +357,9 @@ impl<const D: usize> Tree<D> {
         self.changed -= usize::from(bit != 0);
         self.layers[0].changed[block] &= !bit;
         self.touch(block);
+        if let Some(renewal) = &mut self.renewal {
+            renewal.remove(id);
+        }
     }
 
     /// Writes the box; what is above follows in the next refit.
@@ -347,59 +386,6 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// A free lane near the box where there is one, else the end.
-    fn find_place(&mut self, bounds: &Bounds<D>) -> usize {
-        let has_holes = self.live < self.end;
-        let hole = if has_holes { self.hole_near(bounds) } else { None };
-        hole.unwrap_or_else(|| self.append_slot())
-    }
-
-    /// A free lane near where a descent along the least growth ends: of the last sixteen blocks, that
-    /// with a free lane which grows least. None if that would grow much: a block that reaches far makes
-    /// every join dear, and at the end newcomers are sorted among themselves.
-    fn hole_near(&self, bounds: &Bounds<D>) -> Option<usize> {
-        let mut block = 0;
-        for layer in (1..self.layers.len()).rev() {
-            let children = &self.layers[layer - 1].bounds;
-            let last = children.len().min((block + 1) * LANES);
-            let mut least = (f64::INFINITY, NONE as usize);
-            for (child, own) in (block * LANES..last).zip(&children[block * LANES..last]) {
-                let growth = own.merged(bounds).half_surface() - own.half_surface();
-                if growth < least.0 && (layer > 1 || self.has_hole(child)) {
-                    least = (growth, child);
-                }
-            }
-            block = least.1;
-            if layer == 1 && !self.has_room_for(block, bounds) {
-                return None;
-            }
-        }
-        let slots = self.ids.get(block * LANES..(block + 1) * LANES)?;
-        Some(block * LANES + slots.iter().position(|&id| id == NONE)?)
-    }
-
-    /// A leaf block does not grow much with a box in it; false if there is no such block.
-    pub(super) fn has_room_for(&self, block: usize, bounds: &Bounds<D>) -> bool {
-        self.layers[0].bounds.get(block).is_some_and(|block| {
-            let own = block.half_surface();
-            own == 0.0 || block.merged(bounds).half_surface() - own <= ROOM * own
-        })
-    }
-
-    /// A lane of the leaf block is free. The search keeps no count of it, since it is short.
-    fn has_hole(&self, block: usize) -> bool {
-        let slots = &self.ids[block * LANES..(block + 1) * LANES];
-        slots.iter().fold(false, |found, &id| found | (id == NONE))
-    }
-
-    /// The slot after the last one in use, in a new block if need be.
-    fn append_slot(&mut self) -> usize {
-        if self.end == self.ids.len() {
-            self.resize_leaves(self.leaf_count() + 1);
-        }
-        self.end
-    }
-
     /// Sets the number of leaf blocks; new ones are empty.
     pub(super) fn resize_leaves(&mut self, blocks: usize) {
         self.layers[0].resize(blocks);
@@ -423,7 +409,7 @@ impl<const D: usize> Tree<D> {
         self.slots.clear();
         self.touched.clear();
         self.escaped.clear();
-        self.schedule = Schedule::default();
+        (self.schedule, self.renewal) = (Schedule::default(), None);
         (self.end, self.live, self.changed) = (0, 0, 0);
         (self.is_restructured, self.is_stale) = (false, false);
     }

@@ -5,6 +5,7 @@ use super::PairFinder;
 use super::finder::Home;
 use crate::bounding_volume::Aabb;
 use crate::bvh::Lanes;
+use crate::bvh::tests::take_placed;
 use crate::math::{Point, Real, Vector};
 use crate::pairs::pack;
 
@@ -177,4 +178,42 @@ fn respawned_objects_keep_the_tree_good() {
     assert!(sum < 2.0 * fresh, "{sum} on average against {fresh}");
     finder.validate().expect("sound");
     compare_pairs(&finder, |_, _| true);
+}
+
+/// Of many objects that came at once few move: they come to rest without an update that handles many of them.
+#[test]
+fn no_update_handles_many_objects_at_rest() {
+    let (count, movers, state) = (30_000, 10, &mut 5);
+    let mut finder = PairFinder::<f32, 3>::try_new(0.125).expect("a margin");
+    (0..count).for_each(|id| finder.insert(id, random_box(state, 400)));
+    for step in 0..400 {
+        for id in 0..movers {
+            let old = *finder.exact(id);
+            let shift = Vector::<f32, 3>::new(0.25, 0.0, 0.0);
+            finder.set(id, Aabb::new(old.mins() + shift, old.maxs() + shift));
+        }
+        finder.update(&mut |_, _| true, &mut |_, _, _| {});
+        let placed = take_placed();
+        assert!(step < 2 || placed < 2500, "{placed} objects are moved in step {step}");
+        if step % 50 == 0 {
+            assert_eq!(finder.validate(), Ok(()), "in step {step}");
+        }
+    }
+    assert!(finder.still.len() > 29_900, "{} are still", finder.still.len());
+}
+
+/// Objects that come a few in each update, and stay where they are.
+#[test]
+fn a_stream_of_objects_comes_to_rest_bit_by_bit() {
+    let state = &mut 6;
+    let mut finder = PairFinder::<f32, 2>::try_new(0.125).expect("a margin");
+    for step in 0..600 {
+        (0..20).for_each(|k| finder.insert(20 * step + k, random_box(state, 400)));
+        finder.update(&mut |_, _| true, &mut |_, _, _| {});
+        let (placed, moving) = (take_placed(), finder.moving.len());
+        assert!(placed < 4500, "{placed} objects are moved in step {step}");
+        assert!(moving < 3000, "{moving} count as moving in step {step}");
+    }
+    assert_eq!(finder.validate(), Ok(()), "sound");
+    assert!(finder.still.len() > 8_000, "{} are still", finder.still.len());
 }
