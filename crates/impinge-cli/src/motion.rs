@@ -40,7 +40,7 @@ impl Task for Record<'_> {
         let mut progress = Progress::new(steps as usize, "recording");
         let (objects, mut touched) = (world.len(), 0);
         for _ in 0..steps {
-            world.step(time_step.seconds.0)?;
+            self.loaded.step(&mut world, time_step.seconds.0)?;
             touched += usize::from(touches(&world));
             progress.step();
         }

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::args::ExportArgs;
@@ -44,6 +45,7 @@ struct ExportReport {
 impl fmt::Display for ExportReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { output, bytes, recording, .. } = self;
+        let output = Printable(output);
         writeln!(f, "{NAME}{output}{NAME:#}: {bytes} bytes, {recording} of the recording")
     }
 }

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::args::RecordArgs;
@@ -47,6 +48,7 @@ impl fmt::Display for RecordReport {
             f,
             "{subject}: {objects} objects, something touches after {touched} of {steps} steps"
         )?;
+        let output = Printable(output);
         writeln!(f, "{NAME}{output}{NAME:#}: {bytes} bytes")
     }
 }
