@@ -127,3 +127,33 @@ fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     fs::write(path, bytes).map_err(|error| CliError::Write { path: path.to_owned(), error })
 }
+
+/// A file that is written piece by piece. It is made with the first one: what stands there before is not lost to an
+/// error that comes earlier.
+#[derive(Debug)]
+pub(crate) struct Growing<'a> {
+    path: &'a Path,
+    file: Option<io::BufWriter<fs::File>>,
+}
+
+impl<'a> Growing<'a> {
+    pub(crate) const fn new(path: &'a Path) -> Self {
+        Self { path, file: None }
+    }
+
+    pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), CliError> {
+        let wrong = |error| CliError::Write { path: self.path.to_owned(), error };
+        if self.file.is_none() {
+            let file = fs::File::create(self.path).map_err(wrong)?;
+            self.file = Some(io::BufWriter::new(file));
+        }
+        let file = self.file.as_mut();
+        file.map_or(Ok(()), |file| file.write_all(bytes)).map_err(wrong)
+    }
+
+    /// All pieces are in the file.
+    pub(crate) fn finish(mut self) -> Result<(), CliError> {
+        let flushed = self.file.as_mut().map_or(Ok(()), io::Write::flush);
+        flushed.map_err(|error| CliError::Write { path: self.path.to_owned(), error })
+    }
+}

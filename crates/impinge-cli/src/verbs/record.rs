@@ -14,13 +14,16 @@ use crate::scene::Loaded;
 /// Runs the verb.
 pub(crate) fn run(args: &RecordArgs) -> Result<Outcome, CliError> {
     let loaded = Loaded::read(&args.scene)?;
-    let Recorded { bytes, objects, touched } = record(&loaded, args.stepping, args.key_frames)?;
-    output::write(&args.output.path, &bytes)?;
+    let mut file = output::Growing::new(&args.output.path);
+    let mut take = |bytes: &[u8]| file.append(bytes);
+    let recorded = record(&loaded, args.stepping, args.key_frames, &mut take)?;
+    file.finish()?;
+    let Recorded { bytes, objects, touched } = recorded;
     let report = RecordReport {
         subject: loaded.subject(),
         output: args.output.path.display().to_string(),
         steps: args.stepping.steps,
-        bytes: bytes.len(),
+        bytes,
         objects,
         touched,
     };
