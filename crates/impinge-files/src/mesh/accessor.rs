@@ -46,12 +46,9 @@ fn check_numbers(
         return Err("numbers of another type are needed");
     }
     let (count, size) = (accessor.count(), accessor.size());
-    match accessor.view() {
-        Some(view) => {
-            Block { view, offset: accessor.offset(), count, size }.bytes(buffers)?;
-        }
-        // All numbers are 0 but the sparse ones. How many a file may have is the caller's to know.
-        None => {}
+    // Without a view all numbers are 0 but the sparse ones. How many a file may have is the caller's to know.
+    if let Some(view) = accessor.view() {
+        Block { view, offset: accessor.offset(), count, size }.bytes(buffers)?;
     }
     accessor.sparse().map_or(Ok(()), |sparse| check_sparse(&sparse, accessor, buffers))
 }

@@ -121,7 +121,7 @@ fn a_mesh_that_many_objects_name_is_one_shape() {
     let shared = world(|_| 2).expect("one shape");
     let mut shapes = shared.collision_objects().map(|object| &**object.shape());
     let [first, second] = [shapes.next(), shapes.next()].map(|shape| shape.expect("300 objects"));
-    let of_path = |index: usize| if index % 2 == 0 { second } else { first };
+    let of_path = |index: usize| if index.is_multiple_of(2) { second } else { first };
     assert!(shapes.enumerate().all(|(index, shape)| core::ptr::addr_eq(shape, of_path(index + 1))));
     assert_beyond(world(|index| index + 1).map(|_| ()), Limit::Elements);
 }

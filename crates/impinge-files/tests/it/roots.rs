@@ -191,7 +191,7 @@ fn the_packages_of_a_scene_lie_in_its_folder() {
     };
     let read = |packages: &str| Scene::from_json(desk.join("in/scene.json"), &text(packages));
     for packages in ["..", desk.to_str().expect("text"), "/"] {
-        let error = read(packages).err().expect("a scene may not open other folders");
+        let error = read(packages).expect_err("a scene may not open other folders");
         assert_eq!(*error.problem, Problem::UnknownPackage("out".to_owned()), "{error}");
     }
     fs::write(desk.join("in/arm.urdf"), urdf("package://pack/meshes/cube.obj"))
