@@ -141,7 +141,7 @@ export class Viewer {
     this.stale = { ...ALL };
     this.form.update(status.controls);
     this.transport.update();
-    if (status.diverged) this.complain(`The replay differs from its recording. ${status.diverged}.`);
+    if (status.diverged) this.complain(`The replay differs from its recording (${status.diverged}).`);
   }
 
   /** Once for each picture of the screen, until the stage is closed. All times are those of pictures: other clocks
