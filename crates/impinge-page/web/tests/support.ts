@@ -94,6 +94,8 @@ export interface Look {
   fake?: boolean;
   /** Samples run at once, as they do for readers who do not prefer less motion. */
   motion?: boolean;
+  /** Nothing is drawn: software would take its time, and the test does not look at pictures. */
+  undrawn?: boolean;
 }
 
 export async function visit(browser: Browser, address: string, look: Look = {}): Promise<Visit> {
@@ -118,10 +120,17 @@ export async function visit(browser: Browser, address: string, look: Look = {}):
   // A banner is an error too, however soon it is gone again.
   await page.exposeFunction("banner", (text: string) => errors.push(`banner: ${text}`));
   await page.evaluateOnNewDocument(watchBanner);
+  if (look.undrawn) await page.evaluateOnNewDocument(drawNothing);
   if (look.fake)
     await page.evaluateOnNewDocument(readFileSync(join(process.env.IMPINGE_PAGE_TESTS ?? "", "fake.js"), "utf8"));
   await page.goto(address);
   return { page, errors };
+}
+
+/** Runs in the page: all goes on as it does elsewhere, but for the graphics processor. */
+function drawNothing(): void {
+  const context = WebGL2RenderingContext.prototype;
+  context.drawArrays = context.drawElements = context.drawArraysInstanced = context.drawElementsInstanced = () => {};
 }
 
 /** Runs in the page: reports each text of the notice while it is shown. */
