@@ -4,6 +4,7 @@ use core::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use impinge_files::{Printable, Problem};
 use impinge_html::HtmlError;
 use impinge_record::{ReadError, RecordError};
 use impinge_samples::SampleError;
@@ -33,6 +34,12 @@ pub(crate) enum CliError {
     Sample { name: &'static str, error: SampleError },
     /// A recording has fewer steps.
     NoStep { path: PathBuf, step: usize, last: usize },
+    /// The objects of a scene cannot be compared with each other.
+    Objects(String),
+    /// More pairs of objects are near each other than are kept.
+    TooManyPairs { limit: usize },
+    /// Standard input has more bytes than are read.
+    TooLong { limit: usize },
     /// A scene has no object of this name; perhaps one of a similar one.
     NoObject { path: PathBuf, name: String, similar: Option<String> },
     /// An argument does not suit the scene.
@@ -58,7 +65,23 @@ impl CliError {
 impl fmt::Display for CliError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::File(error) => error.fmt(f),
+            Self::File(error) => {
+                error.fmt(f)?;
+                match &*error.problem {
+                    Problem::Limit { limit, .. } => write!(f, "; here --max-{}", limit.name()),
+                    Problem::Outside { .. } => write!(f, "; --root allows another one"),
+                    _ => Ok(()),
+                }
+            }
+            Self::Objects(reason) => f.write_str(reason),
+            Self::TooManyPairs { limit } => write!(
+                f,
+                "more than {limit} pairs of objects are near each other: --max-pairs raises the limit"
+            ),
+            Self::TooLong { limit } => write!(
+                f,
+                "standard input has more than {limit} bytes: --max-bytes raises the limit"
+            ),
             Self::Read { path, error } => write!(f, "{}: cannot be read: {error}", path.display()),
             Self::Write { path, error } => {
                 write!(f, "{}: cannot be written: {error}", path.display())
@@ -81,8 +104,10 @@ impl fmt::Display for CliError {
                 write!(f, "{}: there is no step {step}, the last is {last}", path.display())
             }
             Self::NoObject { path, name, similar } => {
-                write!(f, "{}: no object has the name {name:?}", path.display())?;
-                similar.as_ref().map_or(Ok(()), |similar| write!(f, "; did you mean {similar:?}?"))
+                let name = Printable(name);
+                write!(f, "{}: no object has the name \"{name}\"", path.display())?;
+                let similar = similar.as_deref().map(Printable);
+                similar.map_or(Ok(()), |similar| write!(f, "; did you mean \"{similar}\"?"))
             }
             Self::Argument { name, value, reason } => write!(f, "{name} {value}: {reason}"),
         }

@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::number::{Number, tuple};
@@ -50,7 +51,8 @@ pub(crate) struct CastHit {
 
 impl fmt::Display for RayHit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { object, time, length, .. } = self;
+        let Self { time, length, .. } = self;
+        let object = Printable(&self.object);
         let [point, normal] = [&self.point, &self.normal].map(|numbers| tuple(numbers));
         writeln!(
             f,
@@ -62,7 +64,8 @@ impl fmt::Display for RayHit {
 
 impl fmt::Display for CastHit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { object, time, moved, .. } = self;
+        let Self { time, moved, .. } = self;
+        let object = Printable(&self.object);
         let vectors = [&self.position, &self.point, &self.normal];
         let [position, point, normal] = vectors.map(|numbers| tuple(numbers));
         writeln!(
@@ -76,7 +79,11 @@ impl fmt::Display for CastHit {
 impl<H: fmt::Display> fmt::Display for Hits<H> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.hits.is_empty() {
-            return writeln!(f, "{CLEAR}nothing{CLEAR:#} is hit in {}", self.subject.file);
+            return writeln!(
+                f,
+                "{CLEAR}nothing{CLEAR:#} is hit in {}",
+                Printable(&self.subject.file)
+            );
         }
         self.hits.iter().try_for_each(|hit| hit.fmt(f))
     }

@@ -31,7 +31,7 @@ impl Input {
         let path = &args.scene;
         if is_stdin(path) {
             // A stream is read once.
-            let bytes = read(path)?;
+            let bytes = stdin(args.reading.limits.of_files().bytes)?;
             return if is_recording(&bytes) {
                 Ok(Self::Recording(Box::new(Log::of_bytes(path, bytes)?)))
             } else {
@@ -55,17 +55,34 @@ fn is_recording(head: &[u8]) -> bool {
 /// The first bytes of a file.
 fn head(path: &Path) -> Result<Vec<u8>, CliError> {
     let mut head = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
+    let read = regular(path).and_then(|file| file.take(HEAD).read_to_end(&mut head));
     read.map_err(CliError::reading(path))?;
     Ok(head)
 }
 
-/// The bytes of a file, or of standard input for `-`.
+/// The bytes of a recording, or of standard input for `-`.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, CliError> {
-    if !is_stdin(path) {
-        return fs::read(path).map_err(CliError::reading(path));
+    if is_stdin(path) {
+        return stdin(usize::MAX);
     }
     let mut bytes = Vec::new();
-    io::stdin().lock().read_to_end(&mut bytes).map_err(CliError::reading(path))?;
+    let read = regular(path).and_then(|mut file| file.read_to_end(&mut bytes));
+    read.map_err(CliError::reading(path))?;
     Ok(bytes)
+}
+
+/// Opens a regular file: to open a pipe would wait for its writer.
+fn regular(path: &Path) -> io::Result<File> {
+    if fs::metadata(path)?.is_file() {
+        return File::open(path);
+    }
+    Err(io::Error::other("it is no regular file; `-` reads standard input"))
+}
+
+/// All bytes of standard input, of which there may be so many.
+pub(crate) fn stdin(limit: usize) -> Result<Vec<u8>, CliError> {
+    let mut bytes = Vec::new();
+    let read = io::stdin().lock().take((limit as u64).saturating_add(1)).read_to_end(&mut bytes);
+    read.map_err(CliError::reading(Path::new("-")))?;
+    if bytes.len() > limit { Err(CliError::TooLong { limit }) } else { Ok(bytes) }
 }

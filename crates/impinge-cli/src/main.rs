@@ -13,6 +13,7 @@ mod hits;
 mod input;
 mod log;
 mod motion;
+mod near;
 mod number;
 mod output;
 mod page;

@@ -7,21 +7,24 @@ use crate::scene::Loaded;
 use crate::space::{Stage, Task, run_in};
 use crate::summary::touches;
 
-/// A recording of a scene.
+/// What was recorded of a scene.
 pub(crate) struct Recorded {
-    pub(crate) bytes: Vec<u8>,
+    /// Of the recording, unpacked.
+    pub(crate) bytes: usize,
     pub(crate) objects: usize,
     /// After how many steps something touched.
     pub(crate) touched: usize,
 }
 
-/// Moves the objects of a scene and records every update.
+/// Moves the objects of a scene and records every update. The bytes are handed over as they are made, the first ones
+/// once the first step is.
 pub(crate) fn record(
     loaded: &Loaded,
     stepping: Stepping,
     key_frames: KeyFrames,
+    take: &mut dyn FnMut(&[u8]) -> Result<(), CliError>,
 ) -> Result<Recorded, CliError> {
-    run_in(loaded.kind, Record { loaded, stepping, key_frames })
+    run_in(loaded.kind, Record { loaded, stepping, key_frames, take })
 }
 
 /// Records a scene; see [`record`].
@@ -29,6 +32,7 @@ struct Record<'a> {
     loaded: &'a Loaded,
     stepping: Stepping,
     key_frames: KeyFrames,
+    take: &'a mut dyn FnMut(&[u8]) -> Result<(), CliError>,
 }
 
 impl Task for Record<'_> {
@@ -38,12 +42,18 @@ impl Task for Record<'_> {
         let Stepping { steps, time_step } = self.stepping;
         let mut world = self.loaded.moving::<N, D>(self.key_frames)?;
         let mut progress = Progress::new(steps as usize, "recording");
-        let (objects, mut touched) = (world.len(), 0);
+        let (objects, mut touched, mut bytes) = (world.len(), 0, 0);
+        let mut take = |piece: &[u8]| {
+            bytes += piece.len();
+            (self.take)(piece)
+        };
         for _ in 0..steps {
-            world.step(time_step.seconds.0)?;
+            self.loaded.step(&mut world, time_step.seconds.0)?;
             touched += usize::from(touches(&world));
+            take(&world.recorder_mut().take_bytes())?;
             progress.step();
         }
-        Ok(Recorded { bytes: world.finish().bytes, objects, touched })
+        take(&world.finish().bytes)?;
+        Ok(Recorded { bytes, objects, touched })
     }
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anstyle::{AnsiColor, Style};
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::args::Format;
@@ -23,6 +24,9 @@ pub(crate) const CLEAR: Style = AnsiColor::Green.on_default();
 pub(crate) const FAINT: Style = Style::new().dimmed();
 /// Names of objects and files.
 pub(crate) const NAME: Style = Style::new().bold();
+
+/// A message has at most so many words.
+const MAX_WORDS: usize = 400;
 
 /// Whether something touches, is hit or differs: the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,30 +71,34 @@ pub(crate) struct Subject {
 
 impl fmt::Display for Subject {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, kind } = self;
+        let (file, kind) = (Printable(&self.file), self.kind);
         write!(f, "{NAME}{file}{NAME:#} {FAINT}({kind}){FAINT:#}")
     }
 }
 
 /// Prints a report, and returns its exit code.
 pub(crate) fn finish<R: Report>(report: &R, format: Format) -> Result<Outcome, CliError> {
-    let text = if format.json { json(report)? } else { report.to_string() };
-    print(&text)?;
+    written(|out| {
+        if !format.json {
+            return write!(out, "{report}");
+        }
+        serde_json::to_writer_pretty(&mut *out, report)?;
+        writeln!(out)
+    })?;
     Ok(report.outcome())
 }
 
-fn json<R: Report>(report: &R) -> Result<String, CliError> {
-    let mut text = serde_json::to_string_pretty(report).map_err(io::Error::other)?;
-    text.push('\n');
-    Ok(text)
+/// Writes a text to standard output, with colours if that is a terminal.
+pub(crate) fn print(text: &str) -> Result<(), CliError> {
+    written(|out| out.write_all(text.as_bytes()))
 }
 
-/// Writes a text to standard output, with colours if that is a terminal.
+/// Writes to standard output piece by piece, so that a long report is never in memory.
 ///
 /// A reader that is gone, as of `impinge … | head`, is no error.
-pub(crate) fn print(text: &str) -> Result<(), CliError> {
-    let mut out = anstream::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+fn written(write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>) -> Result<(), CliError> {
+    let mut out = io::BufWriter::new(anstream::stdout().lock());
+    match write(&mut out).and_then(|()| out.flush()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         written => Ok(written?),
     }
@@ -106,7 +114,11 @@ pub(crate) fn complain(error: &CliError) {
     message(TOUCHES, "error", error);
 }
 
+/// Whoever made the text has cut what is long; what a terminal would obey is escaped here, wherever it is from.
 fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
+    let text = text.to_string();
+    let words = text.split_inclusive(' ').take(MAX_WORDS);
+    let text: String = words.map(|word| Printable(word).to_string()).collect();
     // Nobody is left to hear that standard error is closed.
     let _ = writeln!(anstream::stderr(), "{style}{kind}{style:#}: {text}");
 }
@@ -114,4 +126,34 @@ fn message(style: Style, kind: &str, text: &dyn fmt::Display) {
 /// Writes a file.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
     fs::write(path, bytes).map_err(|error| CliError::Write { path: path.to_owned(), error })
+}
+
+/// A file that is written piece by piece. It is made with the first one: what stands there before is not lost to an
+/// error that comes earlier.
+#[derive(Debug)]
+pub(crate) struct Growing<'a> {
+    path: &'a Path,
+    file: Option<io::BufWriter<fs::File>>,
+}
+
+impl<'a> Growing<'a> {
+    pub(crate) const fn new(path: &'a Path) -> Self {
+        Self { path, file: None }
+    }
+
+    pub(crate) fn append(&mut self, bytes: &[u8]) -> Result<(), CliError> {
+        let wrong = |error| CliError::Write { path: self.path.to_owned(), error };
+        if self.file.is_none() {
+            let file = fs::File::create(self.path).map_err(wrong)?;
+            self.file = Some(io::BufWriter::new(file));
+        }
+        let file = self.file.as_mut();
+        file.map_or(Ok(()), |file| file.write_all(bytes)).map_err(wrong)
+    }
+
+    /// All pieces are in the file.
+    pub(crate) fn finish(mut self) -> Result<(), CliError> {
+        let flushed = self.file.as_mut().map_or(Ok(()), io::Write::flush);
+        flushed.map_err(|error| CliError::Write { path: self.path.to_owned(), error })
+    }
 }

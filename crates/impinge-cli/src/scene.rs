@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use impinge::dim3::math::Vector;
 use impinge::world::{CollisionObject, CollisionWorld};
-use impinge_files::{Dimension, RobotFile, ScalarFile, Scene, SceneFile, SceneWorld, UpAxis};
+use impinge_files::{Scene, SceneWorld, UpAxis};
 
 use crate::args::{KeyFrames, Reading, SceneArgs, is_stdin};
 use crate::error::CliError;
 use crate::input;
+use crate::near::check_pairs;
 use crate::output::Subject;
 use crate::space::{Kind, Stage};
 
@@ -19,6 +20,7 @@ pub(crate) struct Loaded {
     path: PathBuf,
     scene: Scene,
     pub(crate) kind: Kind,
+    max_pairs: usize,
 }
 
 /// The name of a scene from standard input.
@@ -27,41 +29,37 @@ const STDIN: &str = "stdin";
 /// A name is similar to one with at most a third as many edits as it has characters.
 const SIMILAR: usize = 3;
 
+/// Longer names are not compared: the time is the product of their lengths.
+const LONG: usize = 256;
+
 impl Loaded {
     /// Reads a scene from a file or from standard input.
     pub(crate) fn read(args: &SceneArgs) -> Result<Self, CliError> {
-        let SceneArgs { scene: path, reading: Reading { scalar, packages } } = args;
+        let SceneArgs { scene: path, reading } = args;
         if is_stdin(path) {
-            return Self::of_stdin(input::read(path)?, &args.reading);
+            return Self::of_stdin(input::stdin(reading.limits.of_files().bytes)?, reading);
         }
-        let scene = if !packages.is_empty() && is_robot(path) {
-            robot(path, packages)?
-        } else {
-            impinge_files::load(path)?
-        };
-        Ok(Self::new(path.clone(), scene, *scalar))
+        let scene = impinge_files::load_with(path, &reading.options())?;
+        Ok(Self::new(path.clone(), scene, reading))
     }
 
     /// The scene that standard input has.
     pub(crate) fn of_stdin(bytes: Vec<u8>, reading: &Reading) -> Result<Self, CliError> {
         let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
         let text = String::from_utf8(bytes).map_err(invalid);
-        Self::of_text(STDIN, &text.map_err(CliError::reading(Path::new(STDIN)))?, reading.scalar)
+        Self::of_text(STDIN, &text.map_err(CliError::reading(Path::new(STDIN)))?, reading)
     }
 
     /// A scene in JSON that is no file.
-    pub(crate) fn of_text(
-        name: &str,
-        text: &str,
-        scalar: Option<ScalarFile>,
-    ) -> Result<Self, CliError> {
-        Ok(Self::new(name.into(), Scene::from_json(name, text)?, scalar))
+    pub(crate) fn of_text(name: &str, text: &str, reading: &Reading) -> Result<Self, CliError> {
+        let scene = Scene::from_json_with(name, text, &reading.options())?;
+        Ok(Self::new(name.into(), scene, reading))
     }
 
-    fn new(path: PathBuf, scene: Scene, scalar: Option<ScalarFile>) -> Self {
-        let scalar = scalar.unwrap_or(scene.scalar());
+    fn new(path: PathBuf, scene: Scene, reading: &Reading) -> Self {
+        let scalar = reading.scalar.unwrap_or(scene.scalar());
         let kind = Kind { dimension: scene.dimension(), scalar };
-        Self { path, scene, kind }
+        Self { path, scene, kind, max_pairs: reading.limits.max_pairs }
     }
 
     /// The file, as reports name it.
@@ -84,6 +82,48 @@ impl Loaded {
         &self,
     ) -> Result<CollisionWorld<N, D, String>, CliError> {
         Ok(self.scene.collision_world()?)
+    }
+
+    /// A world that is asked about its objects, but not for pairs of them: none are computed.
+    pub(crate) fn world_without_pairs<N: Stage<D>, const D: usize>(
+        &self,
+    ) -> Result<CollisionWorld<N, D, String>, CliError> {
+        let mut world = self.world()?;
+        let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
+        for handle in handles {
+            // Fixed objects have no pairs with each other; queries find them.
+            let fixed = world.try_set_fixed(handle, true);
+            fixed.map_err(|error| CliError::Objects(error.to_string()))?;
+        }
+        // Boxes that overlap are noted all the same.
+        self.check_pairs(&world)?;
+        world.update();
+        Ok(world)
+    }
+
+    /// An update of a world of this scene may keep its pairs.
+    pub(crate) fn check_pairs<N: Stage<D>, const D: usize>(
+        &self,
+        world: &CollisionWorld<N, D, String>,
+    ) -> Result<(), CliError> {
+        check_pairs(world, self.scene.file().margin, self.max_pairs)
+    }
+
+    /// Moves the objects of a world of this scene and updates it; see [`SceneWorld::step`].
+    pub(crate) fn step<N: Stage<D>, const D: usize>(
+        &self,
+        world: &mut SceneWorld<N, D>,
+        seconds: f64,
+    ) -> Result<(), CliError> {
+        world.move_objects(seconds)?;
+        self.check_pairs(world)?;
+        world.recorder_mut().update();
+        Ok(())
+    }
+
+    /// How many pairs are kept at most.
+    pub(crate) const fn max_pairs(&self) -> usize {
+        self.max_pairs
     }
 
     /// A world whose objects move and are recorded, with these key frames.
@@ -115,24 +155,13 @@ impl Loaded {
     ) -> Result<&'a CollisionObject<N, D, String>, CliError> {
         let found = world.collision_objects().find(|object| object.data() == name);
         found.ok_or_else(|| {
-            let known = self.scene.names().map(|known| (edits(known, name), known));
+            let known = self.scene.names().filter(|known| known.len().max(name.len()) <= LONG);
+            let known = known.map(|known| (edits(known, name), known));
             let nearest = known.min().filter(|(edits, _)| edits * SIMILAR <= name.chars().count());
             let similar = nearest.map(|(_, known)| known.to_owned());
             CliError::NoObject { path: self.path.clone(), name: name.to_owned(), similar }
         })
     }
-}
-
-fn is_robot(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
-}
-
-/// A robot whose packages are in folders that the user names.
-fn robot(path: &Path, packages: &[PathBuf]) -> Result<Scene, CliError> {
-    // A scene of this robot alone, since `load` takes no folders.
-    let mut file = SceneFile::new(Dimension::Three);
-    file.robots.push(RobotFile { packages: packages.to_vec(), ..RobotFile::new(path) });
-    Ok(file.resolve(Path::new(""))?)
 }
 
 /// The edit distance: how many characters have to be added, removed or changed (Levenshtein, "Binary codes capable

@@ -1,6 +1,5 @@
 //! How far apart or how deep two objects are: the fields of `check` and `distance`.
 
-use core::cmp::Ordering;
 use core::fmt;
 
 use impinge::query::Witness;
@@ -71,16 +70,6 @@ impl Separation {
         let (distance, depth, point1, point2) = (None, None, None, None);
         let (normal, part1, part2) = (None, None, None);
         Self { first, second, state, distance, depth, point1, point2, normal, part1, part2 }
-    }
-
-    /// The deepest first, then the nearest; without bound before all. Names decide between equals.
-    pub(crate) fn by_depth(&self, other: &Self) -> Ordering {
-        let key = |one: &Self| match (one.depth, one.distance) {
-            (Some(depth), Some(distance)) => distance.value() - depth.value(),
-            _ => f64::NEG_INFINITY,
-        };
-        let by_name = || self.first.cmp(&other.first).then_with(|| self.second.cmp(&other.second));
-        key(self).total_cmp(&key(other)).then_with(by_name)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use impinge::query::{Witness, witness};
+use impinge::query::{Proximity, Witness, proximity, witness};
 use impinge::world::CollisionObject;
 use impinge_files::{Dimension, ScalarFile, SceneSpace};
 use impinge_record::Scalar;
@@ -36,6 +36,13 @@ pub(crate) trait Stage<const D: usize>: SceneSpace<D> {
     /// A picture of lines of this width in pixels.
     fn lines(camera: Camera, width: u32) -> SvgPicture;
 
+    /// Whether two objects touch, or are at most a margin apart; see [`proximity`].
+    fn proximity<T>(
+        object1: &CollisionObject<Self, D, T>,
+        object2: &CollisionObject<Self, D, T>,
+        margin: Self,
+    ) -> Proximity;
+
     /// The nearest points of two objects that are at most `limit` apart; see [`witness`].
     fn witness<T>(
         object1: &CollisionObject<Self, D, T>,
@@ -51,6 +58,15 @@ impl<N: Scalar> Stage<2> for N {
 
     fn lines(_: Camera, width: u32) -> SvgPicture {
         SvgPicture::plane(width)
+    }
+
+    fn proximity<T>(
+        object1: &CollisionObject<N, 2, T>,
+        object2: &CollisionObject<N, 2, T>,
+        margin: N,
+    ) -> Proximity {
+        let [shape1, shape2] = [object1.shape(), object2.shape()];
+        proximity(object1.position(), &**shape1, object2.position(), &**shape2, margin)
     }
 
     fn witness<T>(
@@ -70,6 +86,15 @@ impl<N: Scalar> Stage<3> for N {
 
     fn lines(camera: Camera, width: u32) -> SvgPicture {
         SvgPicture::space(camera, width)
+    }
+
+    fn proximity<T>(
+        object1: &CollisionObject<N, 3, T>,
+        object2: &CollisionObject<N, 3, T>,
+        margin: N,
+    ) -> Proximity {
+        let [shape1, shape2] = [object1.shape(), object2.shape()];
+        proximity(object1.position(), &**shape1, object2.position(), &**shape2, margin)
     }
 
     fn witness<T>(

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use anstyle::Style;
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::output::{CLEAR, NAME, NEAR, TOUCHES};
@@ -32,6 +33,7 @@ impl State {
             Self::Near => ("near", NEAR),
             Self::Apart => ("apart", CLEAR),
         };
+        let [first, second] = [first, second].map(Printable);
         // As wide as the longest word, so that names of several lines line up.
         write!(f, "{style}{word:5}{style:#} {NAME}{first}{NAME:#} {NAME}{second}{NAME:#}")
     }

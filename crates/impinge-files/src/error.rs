@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use impinge_record::{LibraryError, RecordError};
 
-use crate::Dimension;
+use crate::text::{self, Printable, Quoted};
+use crate::{Dimension, Limit};
 
 /// Why a file cannot be used: the file, the place in it as far as it is known, and what is wrong there.
 ///
@@ -39,7 +40,7 @@ pub struct FileError {
     pub column: Option<usize>,
     /// The path in the document, such as `objects[3].shape.ball.radius`; empty for the whole file.
     pub path: String,
-    /// What stands there, shortened.
+    /// What stands there, in one line and shortened.
     pub value: Option<String>,
     /// What is wrong; boxed, so that results stay small.
     pub problem: Box<Problem>,
@@ -55,6 +56,23 @@ pub enum Problem {
         kind: io::ErrorKind,
         /// The error of the system in words.
         message: String,
+    },
+    /// It is a device, a pipe or a folder: only regular files are read.
+    NotAFile,
+    /// A file names one outside of the folder from which files are read;
+    /// [`ReadOptions::with_root`](crate::ReadOptions::with_root) allows another folder.
+    Outside {
+        /// The file that is named.
+        path: PathBuf,
+        /// The folder from which files are read.
+        root: PathBuf,
+    },
+    /// More than one of the [`Limits`](crate::Limits) allows.
+    Limit {
+        /// Which one.
+        limit: Limit,
+        /// How many there may be.
+        allowed: usize,
     },
     /// The ending of the file's name is of no format that can be read.
     UnknownFormat {
@@ -150,19 +168,20 @@ impl FileError {
 
 impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
+        write!(f, "{}", Printable(&self.file.to_string_lossy()))?;
         for number in [self.line, self.column].into_iter().flatten() {
             write!(f, ":{number}")?;
         }
         write!(f, ": ")?;
         if !self.path.is_empty() {
-            write!(f, "{}: ", self.path)?;
+            write!(f, "{}: ", Printable(&self.path))?;
         }
-        write!(f, "{}", self.problem)?;
+        let problem = self.problem.to_string();
+        write!(f, "{problem}")?;
         // The words of a problem often hold the value already.
         match &self.value {
-            Some(value) if !self.problem.to_string().contains(value.trim_matches('"')) => {
-                write!(f, " (here: {value})")
+            Some(value) if !problem.contains(value.trim_matches('"')) => {
+                write!(f, " (here: {})", Printable(value))
             }
             _ => Ok(()),
         }
@@ -174,7 +193,9 @@ impl std::error::Error for FileError {}
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Io { message, .. } | Self::Syntax(message) => write!(f, "{message}"),
+            Self::Io { message, .. } | Self::Syntax(message) => {
+                write!(f, "{}", Printable(message))
+            }
             Self::Library(error) => error.fmt(f),
             Self::Record(error) => error.fmt(f),
             Self::WrongLength { needed, given } => {
@@ -190,6 +211,13 @@ impl fmt::Display for Problem {
             Self::Members(rule) => write!(f, "{rule}"),
             Self::TooMany { what, given, limit } => {
                 write!(f, "{given} {what} are more than {limit}")
+            }
+            Self::Limit { limit, allowed } => {
+                write!(
+                    f,
+                    "more than {allowed} {limit}: `Limits::{}` raises the limit",
+                    limit.name()
+                )
             }
             Self::NotSolid { boundary_edges, inconsistent_edges, non_manifold_edges } => write!(
                 f,
@@ -210,25 +238,42 @@ impl Problem {
                 write!(f, "without an ending the name of the file does not say its format")
             }
             Self::UnknownFormat { extension } => {
-                write!(f, "no format with the ending {extension:?} can be read")
+                write!(f, "no format with the ending {} can be read", Quoted(extension))
             }
-            Self::UnknownShape(name) => write!(f, "no shape is named {name:?}"),
+            Self::NotAFile => write!(f, "no regular file, and devices and pipes are not read"),
+            Self::Outside { path, root } => {
+                let [path, root] = [path, root].map(|path| path.to_string_lossy());
+                let (path, root) = (Quoted(&path), Quoted(&root));
+                write!(
+                    f,
+                    "the file {path} is outside of {root}, the root from which files are read"
+                )
+            }
+            Self::UnknownShape(name) => write!(f, "no shape is named {}", Quoted(name)),
             Self::ShapeCycle(names) => {
-                write!(f, "a shape holds itself: {}", names.join(" holds "))
+                write!(f, "a shape holds itself: {}", Printable(&names.join(" holds ")))
             }
-            Self::DuplicateName(name) => write!(f, "two objects are named {name:?}"),
-            Self::UnknownPart(name) => write!(f, "the mesh file has no part {name:?}"),
-            Self::UnknownJoint(name) => write!(f, "the robot has no moving joint {name:?}"),
-            Self::UnknownLink(name) => write!(f, "the robot has no link {name:?}"),
+            Self::DuplicateName(name) => write!(f, "two objects are named {}", Quoted(name)),
+            Self::UnknownPart(name) => write!(f, "the mesh file has no part {}", Quoted(name)),
+            Self::UnknownJoint(name) => {
+                write!(f, "the robot has no moving joint {}", Quoted(name))
+            }
+            Self::UnknownLink(name) => write!(f, "the robot has no link {}", Quoted(name)),
             Self::NotATree { link } => {
-                write!(f, "the joints are no tree: link {link:?} has two parents or no root")
+                let link = Quoted(link);
+                write!(f, "the joints are no tree: link {link} has two parents or no root")
             }
-            Self::MimicCycle(name) => write!(f, "the joint {name:?} mimics itself"),
+            Self::MimicCycle(name) => write!(f, "the joint {} mimics itself", Quoted(name)),
             Self::UnknownPackage(name) => {
-                write!(f, "none of the package folders holds a package {name:?}")
+                write!(f, "none of the package folders holds a package {}", Quoted(name))
             }
             _ => write!(f, "no triangle of the mesh can be used"),
         }
+    }
+
+    /// An error in the words of a parser, which may quote the file.
+    pub(crate) fn syntax(words: impl fmt::Display) -> Self {
+        Self::Syntax(text::message(&words.to_string()))
     }
 
     /// The error of reading a file.

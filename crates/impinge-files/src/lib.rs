@@ -22,17 +22,22 @@
 //! # Ok::<(), impinge_files::FileError>(())
 //! ```
 //!
-//! Files are read as untrusted input: errors are typed and name the file, the line, the path in the document and the
-//! value; memory is bounded by the size of the files, grids of objects by [`MAX_OBJECTS`].
+//! Files are read as untrusted input. Errors are typed and name the file, the line, the path in the document and the
+//! value; [`Printable`] takes from texts of files what a terminal would obey. Files that a file names are read only
+//! from its folder, or from that of the [`ReadOptions`]. Time and memory are bounded by the size of the files, up to
+//! logarithms; what a few bytes can ask for without bound, such as grids of objects, has [`Limits`].
 #![forbid(unsafe_code)]
 
 mod error;
+mod files;
 mod format;
-mod input;
 mod mesh;
+mod options;
 mod robot;
+mod scan;
 mod scene;
 mod source;
+mod text;
 
 pub use error::{FileError, Problem};
 pub use format::{
@@ -42,5 +47,7 @@ pub use format::{
     ShapeFile, ShapeRef, UpAxis,
 };
 pub use mesh::{Defect, Defects, MAX_DEFECTS, MeshFile, MeshPart, MeshReport};
+pub use options::{Limit, Limits, ReadOptions};
 pub use robot::JointBeyondLimits;
-pub use scene::{MAX_OBJECTS, NamedQuery, Scene, SceneSpace, SceneWorld, load};
+pub use scene::{NamedQuery, Scene, SceneSpace, SceneWorld, load, load_with};
+pub use text::Printable;

@@ -2,11 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use jsonc_parser::ast::Value;
-use jsonc_parser::common::Ranged;
-use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
-
 use crate::error::Fault;
+use crate::scan::{Scanner, Step};
 use crate::{FileError, Problem, SceneFile};
 
 /// So many characters of a value are given in errors.
@@ -58,7 +55,7 @@ impl Source {
         let place = format!(" at line {line} column {column}");
         let message = message.strip_suffix(&place).unwrap_or(&message).to_owned();
         let (line, column) = (line > 0).then_some((line, column.max(1))).unzip();
-        FileError { line, column, path, ..FileError::whole(&self.file, Problem::Syntax(message)) }
+        FileError { line, column, path, ..FileError::whole(&self.file, Problem::syntax(message)) }
     }
 
     /// The error with its line, column and value. Of a path whose end the document does not have, since a member
@@ -66,34 +63,29 @@ impl Source {
     pub(crate) fn error(&self, fault: Fault) -> FileError {
         let Fault { path, problem, .. } = fault;
         let error = FileError::whole(&self.file, problem);
-        let found = self.text.as_deref().and_then(|text| find(text, &path));
-        let Some(Found { path, place: (line, column), value }) = found else {
-            return FileError { path, ..error };
-        };
+        let Some(text) = &self.text else { return FileError { path, ..error } };
+        let Found { path, place: (line, column), value } = find(text, &path);
         // The whole document is no value to quote.
         let value = Some(value).filter(|_| !path.is_empty());
         FileError { line: Some(line), column: Some(column), path, value, ..error }
     }
 }
 
-/// The value at a path. The document was accepted by `parse`, so that its nesting is bounded.
-fn find(text: &str, path: &str) -> Option<Found> {
-    let tree = parse_to_ast(text, &CollectOptions::default(), &ParseOptions::default());
-    let tree = tree.ok()?.value?;
-    let mut value = &tree;
+/// The value at a path, or the one around it that the document has. The document was accepted by `parse`.
+fn find(text: &str, path: &str) -> Found {
+    let mut scanner = Scanner::new(text);
     let mut taken = String::new();
     for step in steps(path) {
-        let Some(next) = member(value, &step) else { break };
-        value = next;
+        let Some(next) = scanner.entered(step) else { break };
+        scanner = next;
         match step {
             Step::Index(index) => taken.push_str(&format!("[{index}]")),
             Step::Name(name) if taken.is_empty() => taken.push_str(name),
             Step::Name(name) => taken.push_str(&format!(".{name}")),
         }
     }
-    let range = value.range();
-    let value = shortened(&text[range.start..range.end]);
-    Some(Found { path: taken, place: place(text, range.start), value })
+    let (start, value) = scanner.value();
+    Found { path: taken, place: place(text, start), value: shortened(value) }
 }
 
 /// The line and the column of a byte, counted from 1.
@@ -104,13 +96,22 @@ fn place(text: &str, byte: usize) -> (usize, usize) {
     (line, before[start..].chars().count() + 1)
 }
 
-/// The text of a value in one line.
+/// The beginning of the text of a value, in one line.
 fn shortened(text: &str) -> String {
-    let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    match words.char_indices().nth(MAX_VALUE) {
-        Some((end, _)) => format!("{}...", &words[..end]),
-        None => words,
+    let mut line = String::new();
+    let mut count = 0;
+    for word in text.split_whitespace() {
+        let separator = if line.is_empty() { "" } else { " " };
+        for character in separator.chars().chain(word.chars()) {
+            if count == MAX_VALUE {
+                line.push_str("...");
+                return line;
+            }
+            line.push(character);
+            count += 1;
+        }
     }
+    line
 }
 
 /// A value of a document.
@@ -122,12 +123,6 @@ struct Found {
     value: String,
 }
 
-/// A step of a path.
-enum Step<'a> {
-    Name(&'a str),
-    Index(usize),
-}
-
 /// The steps of a path such as `objects[3].shape`. A name with a dot or bracket in it, of a shape, is not found:
 /// then the error has the place of the value around it.
 fn steps(path: &str) -> impl Iterator<Item = Step<'_>> {
@@ -136,15 +131,4 @@ fn steps(path: &str) -> impl Iterator<Item = Step<'_>> {
         let index = part.strip_suffix(']').and_then(|index| index.parse().ok());
         index.map_or(Step::Name(part), Step::Index)
     })
-}
-
-fn member<'a>(value: &'a Value<'a>, step: &Step<'_>) -> Option<&'a Value<'a>> {
-    match (value, step) {
-        (Value::Array(array), Step::Index(index)) => array.elements.get(*index),
-        (Value::Object(object), Step::Name(name)) => {
-            let mut members = object.properties.iter();
-            members.find(|member| member.name.as_str() == *name).map(|member| &member.value)
-        }
-        _ => None,
-    }
 }

@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 mod assets;
+mod connection;
 mod error;
 mod live;
 mod log;

@@ -1,6 +1,6 @@
 //! A page of a program that runs: a small server for browsers on this machine.
 
-use std::io::{self, Write};
+use std::io::{self, Write as _};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
@@ -9,16 +9,28 @@ use std::time::Duration;
 use serde_json::json;
 
 use crate::assets::Assets;
+use crate::connection::Connection;
 use crate::error::HtmlError;
-use crate::log::SharedLog;
+use crate::log::{More, PIECE, SharedLog};
 use crate::page::Page;
 use crate::request::{self, Route};
 
-/// The connections that are served at once; further ones are closed.
+/// The requests that are answered at once; further ones get the status 503.
 const MAX_CLIENTS: usize = 32;
 
-/// The connection of a client that neither takes nor sends anything for this long is closed.
+/// The connections whose requests are not whole yet. One more closes the one that has waited longest: no number of
+/// silent connections keeps a browser out.
+const MAX_PENDING: usize = 32;
+
+/// The head of a request is whole after this long, and 64 KiB of an answer are taken; otherwise the connection is
+/// closed.
 const IO_TIMEOUT: Duration = Duration::from_secs(5);
+
+/// So often a stream without news looks whether its client is still there.
+const POLL: Duration = Duration::from_millis(250);
+
+/// A request waits this long for the place of one whose client has gone: longer than a stream takes to notice.
+const ADMISSION_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A server that ends waits this long for clients to take the rest.
 const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
@@ -27,10 +39,11 @@ const DRAIN_TIMEOUT: Duration = Duration::from_secs(1);
 ///
 /// [`Self::send`] takes what [`Recorder::take_bytes`](impinge_record::Recorder::take_bytes) gives. The page follows the
 /// recording as it grows; one that is opened later gets all of it from the beginning, so the server keeps all
-/// bytes. Connections have threads of their own: a browser that is slow or gone does not hold up the program.
+/// bytes. Connections have threads of their own: a browser that is slow or gone holds up neither the program nor other
+/// browsers, of which 32 follow at once.
 ///
-/// It listens on 127.0.0.1 alone, and answers only requests by the names `127.0.0.1` and `localhost`. Dropping it ends the
-/// streams; the pages keep what they have.
+/// It listens on 127.0.0.1 alone, and answers only requests by the names `127.0.0.1` and `localhost`. The recording is
+/// for its own page: requests of other sites are refused. Dropping it ends the streams; the pages keep what they have.
 ///
 /// ```no_run
 /// # fn run(assets: impinge_html::Assets) -> Result<(), Box<dyn std::error::Error>> {
@@ -115,48 +128,54 @@ fn accept(listener: &TcpListener, server: &Arc<Server>) {
             thread::sleep(Duration::from_millis(10));
             continue;
         };
-        // Dropping the stream closes the connection.
-        if !server.log.enter(MAX_CLIENTS) {
-            continue;
-        }
         let own = Arc::clone(server);
-        let spawned = thread::Builder::new().spawn(move || {
-            // An error is that of a client that has gone.
-            let _served = own.serve(stream);
-            own.log.leave();
-        });
-        if spawned.is_err() {
-            server.log.leave();
-        }
+        // Without a thread the connection is closed. An error is that of a client that has gone.
+        let _spawned = thread::Builder::new().spawn(move || own.serve(stream));
     }
 }
 
 impl Server {
-    fn serve(&self, mut stream: TcpStream) -> io::Result<()> {
-        stream.set_read_timeout(Some(IO_TIMEOUT))?;
-        stream.set_write_timeout(Some(IO_TIMEOUT))?;
-        stream.set_nodelay(true)?;
-        match request::read(&mut stream, self.port)? {
-            Route::Page => respond(&mut stream, "200 OK", self.page.as_bytes()),
-            Route::Log => self.stream_log(&mut stream),
-            Route::Refused(status) => respond(&mut stream, status, status.as_bytes()),
+    fn serve(&self, stream: TcpStream) -> io::Result<()> {
+        let route = self.route(stream.try_clone()?)?;
+        let mut connection = Connection::new(stream, IO_TIMEOUT)?;
+        let Some(_client) = self.log.enter(MAX_CLIENTS, ADMISSION_TIMEOUT) else {
+            let status = "503 Service Unavailable";
+            return respond(&mut connection, status, status.as_bytes());
+        };
+        match route {
+            Route::Page => respond(&mut connection, "200 OK", self.page.as_bytes()),
+            Route::Log => self.stream_log(&mut connection),
+            Route::Refused(status) => respond(&mut connection, status, status.as_bytes()),
         }
     }
 
-    /// All bytes of the log in chunks, as they come.
-    fn stream_log(&self, stream: &mut TcpStream) -> io::Result<()> {
+    /// Reads a request.
+    fn route(&self, stream: TcpStream) -> io::Result<Route> {
+        let mut connection = Connection::new(stream.try_clone()?, IO_TIMEOUT)?;
+        let _pending = self.log.wait_for_request(stream, MAX_PENDING);
+        request::read(&mut connection, self.port)
+    }
+
+    /// All bytes of the log in chunks, as they come, until the client has gone.
+    fn stream_log(&self, connection: &mut Connection) -> io::Result<()> {
         let kind = "Content-Type: application/octet-stream\r\nTransfer-Encoding: chunked\r\n";
-        stream.write_all(head("200 OK", kind).as_bytes())?;
+        connection.write_all(head("200 OK", kind).as_bytes())?;
         let mut offset = 0;
         loop {
-            let bytes = self.log.wait_from(offset);
+            let bytes = match self.log.wait_from(offset, POLL) {
+                More::Bytes(bytes) => bytes,
+                More::End => Vec::new(),
+                More::Nothing if connection.is_gone() => return Ok(()),
+                More::Nothing => continue,
+            };
             let mut chunk = format!("{:x}\r\n", bytes.len()).into_bytes();
             chunk.extend(&bytes);
             chunk.extend(b"\r\n");
-            stream.write_all(&chunk)?;
+            connection.allow(IO_TIMEOUT);
+            connection.write_all(&chunk)?;
             offset += bytes.len();
             if bytes.is_empty() {
-                return stream.flush();
+                return connection.flush();
             }
         }
     }
@@ -166,16 +185,20 @@ impl Server {
 fn head(status: &str, fields: &str) -> String {
     format!(
         "HTTP/1.1 {status}\r\n{fields}Cache-Control: no-store\r\nConnection: close\r\n\
-         Cross-Origin-Resource-Policy: same-origin\r\nX-Content-Type-Options: nosniff\r\n\r\n"
+         Cross-Origin-Resource-Policy: same-origin\r\nX-Content-Type-Options: nosniff\r\n\
+         Content-Security-Policy: frame-ancestors 'self'\r\n\r\n"
     )
 }
 
-fn respond(stream: &mut TcpStream, status: &str, body: &[u8]) -> io::Result<()> {
+fn respond(connection: &mut Connection, status: &str, body: &[u8]) -> io::Result<()> {
     let kind = if status == "200 OK" { "html" } else { "plain" };
     let length = body.len();
     let fields =
         format!("Content-Type: text/{kind}; charset=utf-8\r\nContent-Length: {length}\r\n");
-    stream.write_all(head(status, &fields).as_bytes())?;
-    stream.write_all(body)?;
-    stream.flush()
+    connection.write_all(head(status, &fields).as_bytes())?;
+    for piece in body.chunks(PIECE) {
+        connection.allow(IO_TIMEOUT);
+        connection.write_all(piece)?;
+    }
+    connection.flush()
 }

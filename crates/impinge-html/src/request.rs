@@ -1,7 +1,6 @@
 //! Requests of a browser on this machine.
 
 use std::io::{self, Read};
-use std::net::TcpStream;
 
 /// The bytes that the head of a request may have.
 const MAX_HEAD: usize = 16 * 1024;
@@ -24,7 +23,7 @@ pub(crate) enum Route {
 ///
 /// # Errors
 /// If the connection ends or is too slow.
-pub(crate) fn read(stream: &mut TcpStream, port: u16) -> io::Result<Route> {
+pub(crate) fn read(stream: &mut impl Read, port: u16) -> io::Result<Route> {
     let mut head = Vec::new();
     let mut piece = [0; 1024];
     loop {
@@ -59,6 +58,9 @@ fn route(head: &[u8], port: u16) -> Option<Route> {
             Route::Refused("403 Forbidden")
         }
         (Some("GET"), Some("/"), _) => Route::Page,
+        (Some("GET"), Some("/log"), _) if is_foreign(request.headers, port) => {
+            Route::Refused("403 Forbidden")
+        }
         (Some("GET"), Some("/log"), _) => Route::Log,
         (Some("GET"), _, _) => Route::Refused("404 Not Found"),
         _ => Route::Refused("405 Method Not Allowed"),
@@ -72,9 +74,48 @@ fn is_own_host(host: &[u8], port: u16) -> bool {
         || (port == 80 && [&b"127.0.0.1"[..], b"localhost"].contains(&host))
 }
 
+/// Another site asks. Browsers say so by `Sec-Fetch-Site` or `Origin`, whatever the site allows to be sent. A port of
+/// this machine is a site of its own too. Other programs send neither.
+fn is_foreign(headers: &[httparse::Header<'_>], port: u16) -> bool {
+    headers.iter().any(|header| {
+        let is_it = |name: &str| header.name.eq_ignore_ascii_case(name);
+        let value = header.value;
+        let is_own_site = || [&b"same-origin"[..], b"none"].contains(&value);
+        let is_own = || value.strip_prefix(b"http://").is_some_and(|host| is_own_host(host, port));
+        is_it("sec-fetch-site") && !is_own_site() || is_it("origin") && !is_own()
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Route, route};
+
+    #[test]
+    fn other_sites_do_not_get_the_log() {
+        let ask = |path: &str, field: &str| {
+            let head = format!("GET {path} HTTP/1.1\r\nHost: localhost:81\r\n{field}\r\n\r\n");
+            route(head.as_bytes(), 81)
+        };
+        for own in [
+            "Sec-Fetch-Site: same-origin",
+            "sec-fetch-site: none",
+            "Origin: http://localhost:81",
+            "Origin: http://127.0.0.1:81",
+        ] {
+            assert_eq!(ask("/log", own), Some(Route::Log), "{own}");
+        }
+        for foreign in [
+            "Sec-Fetch-Site: cross-site",
+            "SEC-FETCH-SITE: same-site",
+            "Origin: https://evil.example",
+            "Origin: http://localhost:3000",
+            "Origin: null",
+            "Sec-Fetch-Site: same-origin\r\nSec-Fetch-Site: cross-site",
+        ] {
+            assert_eq!(ask("/log", foreign), Some(Route::Refused("403 Forbidden")), "{foreign}");
+            assert_eq!(ask("/", foreign), Some(Route::Page), "a link may lead to the page");
+        }
+    }
 
     #[test]
     fn routes_by_hand() {

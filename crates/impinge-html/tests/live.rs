@@ -150,6 +150,61 @@ fn a_client_that_is_slow_or_gone_holds_nobody_up() {
     drop((silent, stuck));
 }
 
+/// More than the connections that are served at once.
+const MANY: usize = 100;
+
+#[test]
+fn clients_that_have_gone_keep_nobody_out() {
+    let live = started();
+    live.send(b"log");
+    for _ in 0..MANY {
+        // As a page that is loaded again and again: nothing is sent meanwhile that could fail.
+        let (mut connection, _) = ask(&live, "/log", &host(&live));
+        assert_eq!(bytes(&mut connection, 3), b"log");
+    }
+    let (mut last, _) = ask(&live, "/log", &host(&live));
+    assert_eq!(bytes(&mut last, 3), b"log");
+}
+
+#[test]
+fn clients_beyond_the_limit_are_told_so() {
+    let live = started();
+    let streams: Vec<_> = (0..32).map(|_| ask(&live, "/log", &host(&live))).collect();
+    assert!(streams.iter().all(|(_, head)| head.starts_with("HTTP/1.1 200 ")), "32 follow");
+    let (_, head) = ask(&live, "/log", &host(&live));
+    assert!(head.starts_with("HTTP/1.1 503 "), "{head}");
+}
+
+#[test]
+fn silent_connections_keep_nobody_out() {
+    let live = started();
+    let silent: Vec<_> = (0..MANY)
+        .map(|_| {
+            let mut connection = connect(&live);
+            // The server may have closed it before, for others.
+            let _written = connection.get_mut().write_all(b"G");
+            connection
+        })
+        .collect();
+    let (_, head) = ask(&live, "/", &host(&live));
+    assert!(head.starts_with("HTTP/1.1 200 "), "{head}");
+    drop((live, silent));
+}
+
+#[test]
+fn other_sites_do_not_get_the_log() {
+    let live = started();
+    live.send(b"secret");
+    for field in ["Sec-Fetch-Site: cross-site", "Origin: http://evil.example"] {
+        let mut connection = connect(&live);
+        let request = format!("GET /log HTTP/1.1\r\nHost: {}\r\n{field}\r\n\r\n", host(&live));
+        connection.get_mut().write_all(request.as_bytes()).expect("it reads");
+        let mut answer = String::new();
+        connection.read_to_string(&mut answer).expect("it answers, and closes");
+        assert!(answer.starts_with("HTTP/1.1 403 ") && !answer.contains("secret"), "{answer}");
+    }
+}
+
 #[test]
 fn a_port_in_use_is_an_error() {
     let live = started();

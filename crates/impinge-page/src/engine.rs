@@ -29,7 +29,8 @@ type Opened = Box<dyn Stage>;
 /// let info = ask(r#"{"do": "open", "kind": "sample", "name": "stack3"}"#);
 /// assert_eq!(info["dimension"], 3);
 /// assert_eq!(ask(r#"{"do": "advance", "steps": 5}"#)["step"], 5);
-/// assert_eq!(ask(r#"{"do": "object", "object": 12345}"#)["error"], "there is no object 12345");
+/// let refusal = ask(r#"{"do": "object", "object": 12345}"#);
+/// assert_eq!((&refusal["error"], &refusal["code"]), (&"there is no object 12345".into(), &"no-object".into()));
 /// ```
 #[derive(Default)]
 pub struct Engine {
@@ -60,6 +61,7 @@ fn reply(answer: &impl Serialize) -> Result<Reply, EngineError> {
 #[derive(Serialize)]
 struct Failure {
     error: String,
+    code: &'static str,
 }
 
 impl Engine {
@@ -77,7 +79,8 @@ impl Engine {
     /// Answers a message, whatever its bytes are; one that cannot be answered gives an answer with `error`.
     pub fn call(&mut self, bytes: &[u8]) -> Vec<u8> {
         let reply = self.answer(bytes).unwrap_or_else(|error| {
-            let text = serde_json::to_string(&Failure { error: error.to_string() });
+            let failure = Failure { error: error.to_string(), code: error.code() };
+            let text = serde_json::to_string(&failure);
             Reply { text: text.unwrap_or_default(), payload: Vec::new() }
         });
         message(&reply.text, &reply.payload)

@@ -3,10 +3,11 @@
 use core::fmt;
 
 use impinge::world::WorldError;
-use impinge_record::{ReadError, RecordError};
+use impinge_record::{Problem, ReadError, RecordError};
 use impinge_samples::SampleError;
 
-/// Why a message was not answered: its text is shown to people.
+/// Why a message was not answered. Its text is for those who write pages; a reader is told by the page what its
+/// [`code`](EngineError::code) means.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum EngineError {
@@ -50,6 +51,35 @@ pub enum EngineError {
     World(WorldError),
     /// The sample refuses a change.
     Sample(SampleError),
+}
+
+impl EngineError {
+    /// A word for what went wrong: `PROTOCOL.md` has the list.
+    #[must_use]
+    pub const fn code(&self) -> &'static str {
+        match self {
+            Self::NothingOpen
+            | Self::Truncated { .. }
+            | Self::Json(_)
+            | Self::OfRecordings(_)
+            | Self::OfSamples(_)
+            | Self::TooManySteps(_)
+            | Self::OneObject(_)
+            | Self::Rotation(_)
+            | Self::Value(_) => "message",
+            Self::UnknownSample(_) => "unknown-sample",
+            Self::NoObject(_) => "no-object",
+            Self::World(_) => "world",
+            Self::Sample(_) => "sample",
+            Self::Kind { .. } => "foreign",
+            Self::Read(error) => match error.problem {
+                Problem::NotARecording => "no-recording",
+                Problem::Version { .. } => "version",
+                Problem::UnknownShape(_) | Problem::UnknownFilter(_) => "foreign",
+                _ => "damaged",
+            },
+        }
+    }
 }
 
 impl fmt::Display for EngineError {

@@ -16,7 +16,7 @@ use clap::builder::styling::{AnsiColor, Style};
 use clap::builder::{PossibleValuesParser, Styles, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueHint, value_parser};
 use clap_complete::Shell;
-use impinge_files::ScalarFile;
+use impinge_files::{Limits, ReadOptions, ScalarFile};
 
 pub(crate) use ask::{CastArgs, DistanceArgs, RayArgs, ShapeKind, ShapeSpec, ShortShape};
 pub(crate) use check::{BenchArgs, CheckArgs, InspectArgs};
@@ -99,6 +99,59 @@ pub(crate) struct Reading {
     /// A folder with packages, for `package://` paths of robots; may be repeated
     #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
     pub(crate) packages: Vec<PathBuf>,
+    /// The folder in which all files lie that the scene names; without, the folder of the scene
+    #[arg(long, value_name = "FOLDER", value_hint = ValueHint::DirPath)]
+    pub(crate) root: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
+}
+
+/// What a scene may take. Small files can ask for much memory.
+#[derive(Args, Clone, Copy, Debug)]
+pub(crate) struct LimitArgs {
+    /// Read at most so many bytes of files
+    #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().bytes)]
+    max_bytes: usize,
+    /// Make at most so many vertices and corners of triangles
+    #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().elements)]
+    max_elements: usize,
+    /// Cut polygons of at most so many corners into triangles
+    #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().corners)]
+    max_corners: usize,
+    /// Make at most so many objects
+    #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().objects)]
+    max_objects: usize,
+    /// Give them names of at most so many bytes together
+    #[arg(long, value_name = "N", hide_short_help = true, default_value_t = Limits::default().names)]
+    max_names: usize,
+    /// Keep at most so many pairs of objects that are near each other
+    #[arg(long, value_name = "N", hide_short_help = true, default_value_t = 1 << 20)]
+    pub(crate) max_pairs: usize,
+}
+
+impl LimitArgs {
+    /// Those of reading.
+    pub(crate) const fn of_files(&self) -> Limits {
+        Limits {
+            bytes: self.max_bytes,
+            elements: self.max_elements,
+            corners: self.max_corners,
+            objects: self.max_objects,
+            names: self.max_names,
+        }
+    }
+}
+
+impl Reading {
+    /// From where files are read, and how much of them.
+    pub(crate) fn options(&self) -> ReadOptions {
+        let options = ReadOptions::new().with_limits(self.limits.of_files());
+        let options = self.packages.iter().fold(options, ReadOptions::with_packages);
+        match &self.root {
+            Some(root) => options.with_root(root),
+            None => options,
+        }
+    }
 }
 
 /// The scalars by the names that scene files have for them.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use impinge::narrow_phase::CollisionObjectHandle;
 use impinge::world::CollisionWorld;
-use impinge_files::SceneWorld;
+use impinge_files::{Printable, SceneWorld};
 use serde::Serialize;
 
 use crate::args::{BenchArgs, KeyFrames, SceneArgs, Stepping};
@@ -32,8 +32,8 @@ pub(crate) fn run(args: &BenchArgs) -> Result<Outcome, CliError> {
             vec![Loaded::read(&SceneArgs { scene, reading })?]
         }
         None => {
-            let scalar = args.reading.scalar;
-            let scenes = SCENES.iter().map(|(name, text)| Loaded::of_text(name, text, scalar));
+            let reading = &args.reading;
+            let scenes = SCENES.iter().map(|(name, text)| Loaded::of_text(name, text, reading));
             scenes.collect::<Result<_, _>>()?
         }
     };
@@ -86,10 +86,10 @@ impl Task for TimeUpdates<'_> {
             let mut world = builds.time(|| loaded.world::<N, D>())?;
             // Computes the positions; its own updates, which are recorded, are not measured.
             let mut mover = loaded.moving::<N, D>(KeyFrames { every: None })?;
-            mover.step(0.0)?;
+            loaded.step(&mut mover, 0.0)?;
             firsts.time(|| world.update());
             for _ in 0..steps {
-                mover.step(time_step.seconds.0)?;
+                loaded.step(&mut mover, time_step.seconds.0)?;
                 let moved = moved(&world, &mover);
                 updates.time(|| {
                     world.set_positions(&moved);
@@ -155,7 +155,8 @@ impl fmt::Display for BenchReport {
 
 impl fmt::Display for SceneTimes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, kind, objects, pairs, steps, runs, .. } = self;
+        let Self { kind, objects, pairs, steps, runs, .. } = self;
+        let name = Printable(&self.name);
         writeln!(
             f,
             "{NAME}{name}{NAME:#} {FAINT}({kind}){FAINT:#}: {objects} objects, {pairs} pairs touch at the end, \

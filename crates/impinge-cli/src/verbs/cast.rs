@@ -39,8 +39,7 @@ impl Task for CastShape<'_> {
 
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Hits<CastHit>, CliError> {
         let Self { loaded, args } = self;
-        let mut world = loaded.world::<N, D>()?;
-        world.update();
+        let world = loaded.world_without_pairs::<N, D>()?;
         let Sweep { shape, start, translation, filter } = self.sweep(&world)?;
         // The translation is the velocity: it ends at time 1.
         let options = ImpactOptions::new()

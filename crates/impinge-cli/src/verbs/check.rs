@@ -1,15 +1,16 @@
 //! `impinge check`: which objects of a scene touch, or come within a clearance.
 
+use core::cell::RefCell;
+use core::cmp::Ordering;
 use core::fmt;
 
-use impinge::narrow_phase::GeometricQueryType;
 use impinge::query::Proximity;
-use impinge::world::{CollisionObject, CollisionWorld};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::args::CheckArgs;
 use crate::convert::scalar;
 use crate::error::CliError;
+use crate::near::Boxed;
 use crate::number::Number;
 use crate::output::{CLEAR, FAINT, Outcome, Report, Subject, finish};
 use crate::progress::Progress;
@@ -21,7 +22,7 @@ use crate::state::State;
 /// Runs the verb.
 pub(crate) fn run(args: &CheckArgs) -> Result<Outcome, CliError> {
     let loaded = Loaded::read(&args.scene)?;
-    finish(&run_in(loaded.kind, CheckPairs { loaded: &loaded, args })?, args.format)
+    run_in(loaded.kind, CheckPairs { loaded: &loaded, args })
 }
 
 /// Checks all pairs of a scene.
@@ -31,8 +32,9 @@ struct CheckPairs<'a> {
 }
 
 /// The pairs that touch or are near.
-#[derive(Debug, Serialize)]
-struct CheckReport {
+#[derive(Serialize)]
+#[serde(bound = "")]
+struct CheckReport<'a, N: Stage<D>, const D: usize> {
     #[serde(flatten)]
     subject: Subject,
     clearance: Number,
@@ -42,69 +44,152 @@ struct CheckReport {
     near: usize,
     /// Pairs beyond the limit.
     omitted: usize,
-    pairs: Vec<Separation>,
+    pairs: Pairs<'a, N, D>,
 }
 
 impl Task for CheckPairs<'_> {
-    type Answer = CheckReport;
+    type Answer = Outcome;
 
-    fn run<N: Stage<D>, const D: usize>(self) -> Result<CheckReport, CliError> {
+    fn run<N: Stage<D>, const D: usize>(self) -> Result<Outcome, CliError> {
         let Self { loaded, args } = self;
         let clearance = scalar::<N>("--clearance", args.clearance.0)?;
         let world = loaded.world::<N, D>()?;
-        let objects = world.len();
-        let mut pairs = pairs_within(world, clearance)?;
-        pairs.sort_by(Separation::by_depth);
-        let count = |state| pairs.iter().filter(|pair| pair.state == state).count();
-        let (touching, near) = (count(State::Touch), count(State::Near));
-        let limit = if args.all { usize::MAX } else { args.limit };
-        let omitted = pairs.len().saturating_sub(limit);
-        pairs.truncate(limit);
-        let (subject, clearance) = (loaded.subject(), Number::new(clearance));
-        Ok(CheckReport { subject, clearance, objects, touching, near, omitted, pairs })
+        let measure = Measure { boxed: Boxed::new(&world)?, clearance };
+        let most = if args.all { loaded.max_pairs() } else { args.limit };
+        let Found { touching, near, deepest } = measure.found(most, args.all);
+        let omitted = touching + near - deepest.len();
+        if args.all && omitted > 0 {
+            return Err(CliError::TooManyPairs { limit: most });
+        }
+        let report = CheckReport {
+            subject: loaded.subject(),
+            clearance: Number::new(clearance),
+            objects: measure.boxed.len(),
+            touching,
+            near,
+            omitted,
+            pairs: Pairs { measure, deepest },
+        };
+        finish(&report, args.format)
     }
 }
 
-/// The pairs of a world that are at most a clearance apart and may interact.
+/// Measures the pairs of a world that are at most a clearance apart and may interact.
 ///
-/// The world itself culls: the query type of each object is proximity with half the clearance, since margins add
-/// up. The nearest points are computed for the pairs that remain. So the cost is that of one update and of these
-/// pairs.
-fn pairs_within<N: Stage<D>, const D: usize>(
-    mut world: CollisionWorld<N, D, String>,
+/// The boxes of the objects cull. What is left is measured pair by pair, so that the memory does not grow with the
+/// pairs, of which n objects at one place have n (n - 1) / 2.
+struct Measure<'a, N: Stage<D>, const D: usize> {
+    boxed: Boxed<'a, N, D, String>,
     clearance: N,
-) -> Result<Vec<Separation>, CliError> {
-    let handles: Vec<_> = world.collision_objects().map(CollisionObject::handle).collect();
-    let proximity = GeometricQueryType::Proximity(clearance * N::HALF);
-    for handle in handles {
-        let set = world.try_set_query_type(handle, proximity);
-        set.map_err(|error| CliError::argument("--clearance", clearance, error))?;
-    }
-    world.update();
-    let is_near = |proximity| proximity != Proximity::Disjoint;
-    let near = world.proximity_pairs().filter(|(_, _, pair)| is_near(pair.proximity()));
-    let near: Vec<_> = near.collect();
-    let mut progress = Progress::new(near.len(), "measuring pairs");
-    let separations = near.into_iter().map(|(object1, object2, pair)| {
-        progress.step();
-        let names = [object1.data().clone(), object2.data().clone()];
-        // The world decides what touches: its answer is exact, the signed distance is rounded.
-        let state = match pair.proximity() {
-            Proximity::Intersecting => State::Touch,
-            _ => State::Near,
+}
+
+/// How many pairs touch and are near, and the deepest of them in their order.
+struct Found {
+    touching: usize,
+    near: usize,
+    deepest: Vec<Near>,
+}
+
+/// A pair that touches or is near: what orders it, and the numbers of its objects.
+#[derive(Clone, Copy)]
+struct Near {
+    /// The signed distance; negative infinity for what overlaps without bound.
+    distance: f64,
+    state: State,
+    objects: [u32; 2],
+}
+
+impl<N: Stage<D>, const D: usize> Measure<'_, N, D> {
+    /// All pairs, of which the deepest are kept, but not more than `most`. If `all` are wanted, it ends when there are
+    /// more.
+    fn found(&self, most: usize, all: bool) -> Found {
+        let found = RefCell::new(Found { touching: 0, near: 0, deepest: Vec::new() });
+        let progress = RefCell::new(Progress::new(self.boxed.len(), "measuring pairs"));
+        let visit = |objects| {
+            let Some(near) = self.near(objects) else { return };
+            let found = &mut *found.borrow_mut();
+            match near.state {
+                State::Touch => found.touching += 1,
+                _ => found.near += 1,
+            }
+            found.deepest.push(near);
+            if found.deepest.len() / 2 > most {
+                self.keep_deepest(&mut found.deepest, most);
+            }
         };
-        match N::witness(object1, object2, clearance) {
-            Some(found) => Separation { state, ..Separation::of_witness(names, &found, clearance) },
+        let goes_on = || {
+            progress.borrow_mut().step();
+            let Found { touching, near, .. } = &*found.borrow();
+            !(all && touching + near > most)
+        };
+        self.boxed.each(|_| self.clearance, visit, goes_on);
+        let mut found = found.into_inner();
+        self.keep_deepest(&mut found.deepest, most);
+        found
+    }
+
+    /// Sorts pairs, and drops those beyond the first.
+    fn keep_deepest(&self, pairs: &mut Vec<Near>, most: usize) {
+        pairs.sort_by(|one, other| self.order(one, other));
+        pairs.truncate(most);
+    }
+
+    /// The deepest first, then the nearest. Names decide between equals.
+    fn order(&self, one: &Near, other: &Near) -> Ordering {
+        let names = |near: &Near| near.objects.map(|object| self.boxed.object(object).data());
+        let by_distance = one.distance.total_cmp(&other.distance);
+        by_distance.then_with(|| names(one).cmp(&names(other)))
+    }
+
+    /// A pair, if it touches or is near.
+    fn near(&self, objects: [u32; 2]) -> Option<Near> {
+        let [object1, object2] = objects.map(|object| self.boxed.object(object));
+        // Proximity decides what touches: its answer is that of a world, the signed distance is rounded.
+        let state = match N::proximity(object1, object2, self.clearance) {
+            Proximity::Disjoint => return None,
+            Proximity::Intersecting => State::Touch,
+            Proximity::WithinMargin => State::Near,
+        };
+        let witness = N::witness(object1, object2, self.clearance);
+        let distance = witness.map_or(f64::NEG_INFINITY, |found| found.distance.as_f64());
+        Some(Near { distance, state, objects })
+    }
+
+    /// The numbers of a pair.
+    fn separation(&self, &Near { state, objects, .. }: &Near) -> Separation {
+        let [object1, object2] = objects.map(|object| self.boxed.object(object));
+        let names = [object1.data().clone(), object2.data().clone()];
+        match N::witness(object1, object2, self.clearance) {
+            Some(found) => {
+                Separation { state, ..Separation::of_witness(names, &found, self.clearance) }
+            }
             None => Separation::unbounded(names, state),
         }
-    });
-    Ok(separations.collect())
+    }
 }
 
-impl fmt::Display for CheckReport {
+/// The pairs of a report, whose numbers are computed when they are written.
+struct Pairs<'a, N: Stage<D>, const D: usize> {
+    measure: Measure<'a, N, D>,
+    deepest: Vec<Near>,
+}
+
+impl<N: Stage<D>, const D: usize> Pairs<'_, N, D> {
+    fn separations(&self) -> impl Iterator<Item = Separation> {
+        self.deepest.iter().map(|near| self.measure.separation(near))
+    }
+}
+
+impl<N: Stage<D>, const D: usize> Serialize for Pairs<'_, N, D> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(self.separations())
+    }
+}
+
+impl<N: Stage<D>, const D: usize> fmt::Display for CheckReport<'_, N, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { subject, clearance, objects, touching, near, omitted, pairs } = self;
-        pairs.iter().try_for_each(|pair| pair.fmt(f))?;
+        pairs.separations().try_for_each(|pair| pair.fmt(f))?;
         if *omitted > 0 {
             writeln!(f, "{FAINT}… and {omitted} more: --all prints them{FAINT:#}")?;
         }
@@ -119,7 +204,7 @@ impl fmt::Display for CheckReport {
     }
 }
 
-impl Report for CheckReport {
+impl<N: Stage<D>, const D: usize> Report for CheckReport<'_, N, D> {
     fn outcome(&self) -> Outcome {
         (self.touching + self.near > 0).into()
     }

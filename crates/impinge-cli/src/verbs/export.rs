@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::args::ExportArgs;
@@ -18,7 +19,13 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Outcome, CliError> {
     let (file, bytes) = match Input::open(&args.scene)? {
         Input::Recording(log) => (log.name(), log.into_page_bytes()?),
         Input::Scene(loaded) => {
-            (loaded.name(), record(&loaded, args.stepping, args.key_frames)?.bytes)
+            let mut bytes = Vec::new();
+            let mut take = |piece: &[u8]| {
+                bytes.extend(piece);
+                Ok(())
+            };
+            record(&loaded, args.stepping, args.key_frames, &mut take)?;
+            (loaded.name(), bytes)
         }
     };
     // Packed here, though `export` would do it too: the report has the number of bytes.
@@ -44,6 +51,7 @@ struct ExportReport {
 impl fmt::Display for ExportReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { output, bytes, recording, .. } = self;
+        let output = Printable(output);
         writeln!(f, "{NAME}{output}{NAME:#}: {bytes} bytes, {recording} of the recording")
     }
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use impinge_files::MeshReport;
+use impinge_files::{MeshReport, Printable};
 use serde::Serialize;
 
 use crate::args::InspectArgs;
@@ -151,6 +151,7 @@ impl fmt::Display for SceneReport {
         writeln!(f, "{}: {} objects", self.subject, self.objects.len())?;
         for ObjectFields { name, shape, low, high } in &self.objects {
             let [low, high] = [low, high].map(|numbers| tuple(numbers));
+            let name = Printable(name);
             writeln!(
                 f,
                 "  {NAME}{name}{NAME:#} {shape} {FAINT}from{FAINT:#} {low} {FAINT}to{FAINT:#} {high}"
@@ -169,7 +170,8 @@ impl Report for SceneReport {
 
 impl fmt::Display for MeshFields {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, name, numbers, problems, .. } = self;
+        let Self { numbers, problems, .. } = self;
+        let [file, name] = [&self.file, &self.name].map(|name| Printable(name));
         writeln!(f, "{NAME}{file}{NAME:#} part {NAME}{name}{NAME:#}: {numbers}")?;
         problems.iter().try_for_each(|text| writeln!(f, "  {TOUCHES}{text}{TOUCHES:#}"))
     }
@@ -177,7 +179,8 @@ impl fmt::Display for MeshFields {
 
 impl fmt::Display for LogReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { subject, version, writer, steps, .. } = self;
+        let Self { subject, version, steps, .. } = self;
+        let writer = Printable(&self.writer);
         writeln!(f, "{subject}: a recording of version {version} by {writer}, {steps} steps")
     }
 }

@@ -31,8 +31,7 @@ impl Task for CastRay<'_> {
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Hits<RayHit>, CliError> {
         let Self { loaded, args } = self;
         let (ray, max_time) = self.ray::<N, D>()?;
-        let mut world = loaded.world::<N, D>()?;
-        world.update();
+        let world = loaded.world_without_pairs::<N, D>()?;
         let mut found = world.ray_hits(&ray, max_time, !args.hollow, &QueryFilter::new());
         found.truncate(if args.all { usize::MAX } else { 1 });
         let speed = ray.dir.norm();

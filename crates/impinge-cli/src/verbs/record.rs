@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::args::RecordArgs;
@@ -13,13 +14,16 @@ use crate::scene::Loaded;
 /// Runs the verb.
 pub(crate) fn run(args: &RecordArgs) -> Result<Outcome, CliError> {
     let loaded = Loaded::read(&args.scene)?;
-    let Recorded { bytes, objects, touched } = record(&loaded, args.stepping, args.key_frames)?;
-    output::write(&args.output.path, &bytes)?;
+    let mut file = output::Growing::new(&args.output.path);
+    let mut take = |bytes: &[u8]| file.append(bytes);
+    let recorded = record(&loaded, args.stepping, args.key_frames, &mut take)?;
+    file.finish()?;
+    let Recorded { bytes, objects, touched } = recorded;
     let report = RecordReport {
         subject: loaded.subject(),
         output: args.output.path.display().to_string(),
         steps: args.stepping.steps,
-        bytes: bytes.len(),
+        bytes,
         objects,
         touched,
     };
@@ -47,6 +51,7 @@ impl fmt::Display for RecordReport {
             f,
             "{subject}: {objects} objects, something touches after {touched} of {steps} steps"
         )?;
+        let output = Printable(output);
         writeln!(f, "{NAME}{output}{NAME:#}: {bytes} bytes")
     }
 }

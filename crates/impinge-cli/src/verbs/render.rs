@@ -77,6 +77,7 @@ impl Task for DrawScene<'_> {
     fn run<N: Stage<D>, const D: usize>(self) -> Result<Vec<u8>, CliError> {
         let Self { loaded, args, format } = self;
         let mut world = loaded.world::<N, D>()?;
+        loaded.check_pairs(&world)?;
         world.update();
         PictureStyle { args, format, up: loaded.up(), title: loaded.name() }.picture(&world)
     }

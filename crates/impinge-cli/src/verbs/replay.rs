@@ -3,6 +3,7 @@
 use core::fmt;
 
 use impinge::world::CollisionWorld;
+use impinge_files::Printable;
 use serde::Serialize;
 
 use crate::args::ReplayArgs;
@@ -126,9 +127,11 @@ impl Report for ReplayReport {
 
 impl fmt::Display for StepDetail {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = self.positions.iter().map(|position| position.name.chars().count()).max();
+        let shown = |position: &Position| Printable(&position.name).to_string();
+        let width = self.positions.iter().map(|position| shown(position).chars().count()).max();
         let width = width.unwrap_or_default();
-        for Position { name, translation, rotation } in &self.positions {
+        for position @ Position { translation, rotation, .. } in &self.positions {
+            let name = shown(position);
             let [at, turned] = [translation, rotation].map(|numbers| tuple(numbers));
             writeln!(f, "{NAME}{name:width$}{NAME:#} at {at} {FAINT}turned {turned}{FAINT:#}")?;
         }

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use impinge::debug_render::DebugOptions;
 use impinge::dim3::math::Vector;
+use impinge_files::Printable;
 use impinge_samples::{Entry, Make, Running, Sample, entries};
 use impinge_view::{Camera, PngPicture, world_drawing};
 use serde::Serialize;
@@ -55,6 +56,7 @@ impl Listed {
 impl fmt::Display for SamplesReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(output) = &self.output {
+            let output = Printable(output);
             return writeln!(f, "{NAME}{output}{NAME:#}: {} samples", self.samples.len());
         }
         for Listed { name, title, about, .. } in &self.samples {

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use impinge::world::CollisionWorld;
+use impinge_files::Printable;
 use impinge_record::{Difference, Divergence, ObjectField, Registry, Replay, validate};
 use serde::Serialize;
 
@@ -113,7 +114,7 @@ const fn field_name(field: ObjectField) -> &'static str {
 impl fmt::Display for ValidateReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Validated { file, steps, difference, .. } in &self.recordings {
-            write!(f, "{NAME}{file}{NAME:#} ")?;
+            write!(f, "{NAME}{}{NAME:#} ", Printable(file))?;
             match difference {
                 Some(difference) => writeln!(f, "{difference}")?,
                 None => writeln!(f, "{CLEAR}same bits{CLEAR:#} at all {steps} steps")?,
@@ -128,7 +129,7 @@ impl fmt::Display for FirstDifference {
         let Self { step, byte, object, field } = self;
         write!(f, "{TOUCHES}differs{TOUCHES:#} first at step {step}: ")?;
         if let Some(object) = object {
-            write!(f, "object {NAME}{object}{NAME:#}, ")?;
+            write!(f, "object {NAME}{}{NAME:#}, ", Printable(object))?;
         }
         write!(f, "{field} {FAINT}(byte {byte}){FAINT:#}")
     }

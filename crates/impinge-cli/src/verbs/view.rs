@@ -64,7 +64,7 @@ impl Task for Show<'_> {
             .map_err(|error| CliError::argument("--dt", seconds, error))?;
         let mut due = Instant::now();
         for _ in 0..args.steps.unwrap_or(u64::MAX) {
-            world.step(seconds)?;
+            loaded.step(&mut world, seconds)?;
             live.send(&world.recorder_mut().take_bytes());
             // A step that takes longer than its pause delays the next ones, which do not catch up.
             due = (due + pause).max(Instant::now());

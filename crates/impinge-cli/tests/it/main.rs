@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod docs;
+mod hostile;
 mod large;
 mod pages;
 mod pairs;

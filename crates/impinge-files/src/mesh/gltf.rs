@@ -3,29 +3,29 @@
 //! The crate checks the JSON. What it trusts is checked before: the tree of nodes, the lengths of buffers, the
 //! accessors of positions, and in `accessor.rs` the ranges of accessors.
 
-use std::collections::BTreeSet;
-use std::fs;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use gltf::accessor::{DataType, Dimensions};
-use gltf::buffer::Source;
 use gltf::mesh::Mode;
-use gltf::{Gltf, Node, Primitive, Semantic};
+use gltf::{Accessor, Gltf, Node, Primitive, Semantic};
 use impinge::math::na::{Matrix4, Point3};
-use percent_encoding::percent_decode_str;
 
 use super::RawPart;
 use super::accessor::{Layout, check};
+use super::buffers::Buffers;
 use super::raw::FormatError;
-use crate::Problem;
+use crate::files::Files;
 
 /// The bytes of the header of a binary file.
 const HEADER: u32 = 12;
 
 /// The meshes of the nodes of the default scene, or of all nodes.
-pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
+pub(super) fn read(
+    path: &Path,
+    bytes: &[u8],
+    files: &mut Files,
+) -> Result<Vec<RawPart>, FormatError> {
     let length = bytes.get(8..12).and_then(|length| length.try_into().ok());
     let is_short = length.is_none_or(|length| u32::from_le_bytes(length) < HEADER);
     if bytes.starts_with(b"glTF") && is_short {
@@ -33,10 +33,17 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Vec<RawPart>, FormatErro
     }
     check_positions(bytes)?;
     let document = Gltf::from_slice(bytes).map_err(|error| syntax_error(&error))?;
-    let buffers = buffers(&document, path)?;
+    let folder = path.parent().unwrap_or_else(|| Path::new(""));
+    let buffers = Buffers::read(&document, folder, files)?;
+    let buffers = &buffers.slices(&document);
+    parts(&document, &mut Loader { buffers, files, checked: BTreeSet::new() })
+}
+
+/// The parts of all nodes.
+fn parts(document: &Gltf, loader: &mut Loader<'_>) -> Result<Vec<RawPart>, FormatError> {
     let mut parts = Vec::new();
     let mut seen = BTreeSet::new();
-    let mut open: Vec<Placed<'_>> = roots(&document);
+    let mut open: Vec<Placed<'_>> = roots(document);
     // Ends: no node is visited twice.
     while let Some(Placed { node, frame }) = open.pop() {
         if !seen.insert(node.index()) {
@@ -46,11 +53,13 @@ pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Vec<RawPart>, FormatErro
         let frame = frame * matrix(&node);
         if let Some(mesh) = node.mesh() {
             let name = node.name().or(mesh.name()).unwrap_or_default();
-            let mut part = RawPart::new(name);
+            // Many nodes may have the name of one mesh.
+            loader.files.count_elements(name.len())?;
+            let mut part = NodePart { raw: RawPart::new(name), frame, first: BTreeMap::new() };
             for primitive in mesh.primitives() {
-                add(&primitive, &buffers, &frame, &mut part)?;
+                loader.add(&primitive, &mut part)?;
             }
-            parts.push(part);
+            parts.push(part.raw);
         }
         // The last is visited first: so they come in the order of the file.
         let children: Vec<_> = node.children().map(|node| Placed { node, frame }).collect();
@@ -106,99 +115,102 @@ fn syntax_error(error: &gltf::Error) -> FormatError {
         gltf::Error::Deserialize(error) => Some(error.line()).filter(|line| *line > 0),
         _ => None,
     };
-    FormatError::syntax(line, error.to_string())
+    FormatError::syntax(line, error)
 }
 
-/// The bytes of all buffers: within the file, in data URIs, and in files beside it.
-fn buffers(document: &Gltf, path: &Path) -> Result<Vec<Vec<u8>>, FormatError> {
-    let folder = path.parent().unwrap_or_else(|| Path::new(""));
-    let read = |buffer: gltf::Buffer<'_>| -> Result<Vec<u8>, FormatError> {
-        let bytes = match buffer.source() {
-            Source::Bin => document.blob.clone().unwrap_or_default(),
-            Source::Uri(uri) => match uri.strip_prefix("data:") {
-                Some(data) => inline(data)?,
-                None => {
-                    let name = percent_decode_str(uri).decode_utf8_lossy();
-                    fs::read(folder.join(&*name)).map_err(|error| Problem::Io {
-                        kind: error.kind(),
-                        message: format!("the buffer {uri:?}: {error}"),
-                    })?
-                }
-            },
-        };
-        if bytes.len() < buffer.length() {
-            let (given, needed) = (bytes.len(), buffer.length());
-            let message = format!("buffer {} has {given} bytes of {needed}", buffer.index());
-            return Err(FormatError::syntax(None, message));
+/// The part of a node.
+struct NodePart {
+    raw: RawPart,
+    /// From the frame of the mesh to that of the scene.
+    frame: Matrix4<f64>,
+    /// The first vertex of an accessor, and how many it has: primitives share their vertices.
+    first: BTreeMap<usize, [u32; 2]>,
+}
+
+/// Reads primitives.
+struct Loader<'a> {
+    buffers: &'a [&'a [u8]],
+    files: &'a mut Files,
+    /// The accessors that were checked, as positions or as indices.
+    checked: BTreeSet<(usize, bool)>,
+}
+
+impl Loader<'_> {
+    /// Adds the triangles of a primitive; lines and points have none.
+    fn add(&mut self, primitive: &Primitive<'_>, part: &mut NodePart) -> Result<(), FormatError> {
+        let mode = primitive.mode();
+        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+            return Ok(());
         }
-        Ok(bytes)
-    };
-    document.buffers().map(read).collect()
-}
-
-fn inline(data: &str) -> Result<Vec<u8>, FormatError> {
-    let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
-    let encoded = encoded.ok_or_else(|| FormatError::syntax(None, "a data URI is not base64"))?;
-    let decoded = STANDARD.decode(encoded);
-    decoded.map_err(|error| FormatError::syntax(None, format!("a data URI: {error}")))
-}
-
-/// Adds the triangles of a primitive; lines and points have none.
-fn add(
-    primitive: &Primitive<'_>,
-    buffers: &[Vec<u8>],
-    frame: &Matrix4<f64>,
-    part: &mut RawPart,
-) -> Result<(), FormatError> {
-    if !matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-        return Ok(());
+        let [first, count] = self.vertices(primitive, part)?;
+        // An index beyond the vertices of the primitive must not become one of the next.
+        let corner = |corner: u32| if corner < count { first + corner } else { u32::MAX };
+        let corners: Vec<u32> = self.corners(primitive, count)?.into_iter().map(corner).collect();
+        // A mirrored frame turns triangles over.
+        let is_mirrored = part.frame.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
+        for [a, b, c] in triangles(&corners, mode) {
+            part.raw.face(if is_mirrored { [a, c, b] } else { [a, b, c] });
+        }
+        Ok(())
     }
-    let first = u32::try_from(part.vertices.len()).unwrap_or(u32::MAX);
-    let positions = positions(primitive, buffers)?;
-    let corners = corners(primitive, buffers, positions.len())?;
-    part.vertices.extend(positions.into_iter().map(|vertex| {
-        let point = frame.transform_point(&Point3::from(vertex.map(f64::from)));
-        [point.x, point.y, point.z]
-    }));
-    // An index beyond the vertices of the primitive must not become one of the next.
-    let count = part.vertices.len();
-    let corner = |corner: u32| {
-        let corner = first.saturating_add(corner);
-        if (corner as usize) < count { corner } else { u32::MAX }
-    };
-    let corners: Vec<u32> = corners.into_iter().map(corner).collect();
-    // A mirrored frame turns triangles over.
-    let is_mirrored = frame.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
-    for [a, b, c] in triangles(&corners, primitive.mode()) {
-        part.face(if is_mirrored { [a, c, b] } else { [a, b, c] });
-    }
-    Ok(())
-}
 
-/// The positions of a primitive, in the frame of its node.
-fn positions(primitive: &Primitive<'_>, buffers: &[Vec<u8>]) -> Result<Vec<[f32; 3]>, FormatError> {
-    let missing = || FormatError::syntax(None, "a primitive has no positions");
-    let accessor = primitive.get(&Semantic::Positions).ok_or_else(missing)?;
-    check(&accessor, buffers, Layout { types: &[DataType::F32], dimensions: Dimensions::Vec3 })?;
-    let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
-    Ok(reader.read_positions().ok_or_else(missing)?.collect())
-}
-
-/// The indices of a primitive; without an accessor of its own each of its `count` vertices in turn.
-fn corners(
-    primitive: &Primitive<'_>,
-    buffers: &[Vec<u8>],
-    count: usize,
-) -> Result<Vec<u32>, FormatError> {
-    let types = &[DataType::U8, DataType::U16, DataType::U32];
-    if let Some(accessor) = primitive.indices() {
-        check(&accessor, buffers, Layout { types, dimensions: Dimensions::Scalar })?;
+    /// The first vertex of a primitive in its part, and how many there are; they are added if no primitive before had
+    /// them.
+    fn vertices(
+        &mut self,
+        primitive: &Primitive<'_>,
+        part: &mut NodePart,
+    ) -> Result<[u32; 2], FormatError> {
+        let missing = || FormatError::syntax(None, "a primitive has no positions");
+        let accessor = primitive.get(&Semantic::Positions).ok_or_else(missing)?;
+        if let Some(range) = part.first.get(&accessor.index()) {
+            return Ok(*range);
+        }
+        self.check(&accessor, true)?;
+        self.files.count_elements(accessor.count())?;
+        let reader = primitive.reader(|buffer| self.buffers.get(buffer.index()).copied());
+        let positions = reader.read_positions().ok_or_else(missing)?;
+        let first = part.raw.vertices.len();
+        part.raw.vertices.extend(positions.map(|vertex| {
+            let point = part.frame.transform_point(&Point3::from(vertex.map(f64::from)));
+            [point.x, point.y, point.z]
+        }));
+        let range = [first, part.raw.vertices.len() - first];
+        let range = range.map(|number| u32::try_from(number).unwrap_or(u32::MAX / 2));
+        part.first.insert(accessor.index(), range);
+        Ok(range)
     }
-    let reader = primitive.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
-    Ok(match reader.read_indices() {
-        Some(indices) => indices.into_u32().collect(),
-        None => (0..u32::MAX).take(count).collect(),
-    })
+
+    /// The indices of a primitive; without an accessor of its own each of its `count` vertices in turn.
+    fn corners(&mut self, primitive: &Primitive<'_>, count: u32) -> Result<Vec<u32>, FormatError> {
+        let accessor = primitive.indices();
+        if let Some(accessor) = &accessor {
+            self.check(accessor, false)?;
+        }
+        let number = accessor.map_or(count as usize, |accessor| accessor.count());
+        // Each index of a strip or fan may begin a triangle.
+        let corners = if primitive.mode() == Mode::Triangles { 1 } else { 3 };
+        self.files.count_elements(number.saturating_mul(corners))?;
+        let reader = primitive.reader(|buffer| self.buffers.get(buffer.index()).copied());
+        Ok(match reader.read_indices() {
+            Some(indices) => indices.into_u32().collect(),
+            None => (0..count).collect(),
+        })
+    }
+
+    /// Checks an accessor of positions or of indices, once.
+    fn check(&mut self, accessor: &Accessor<'_>, is_position: bool) -> Result<(), FormatError> {
+        let layout = if is_position {
+            Layout { types: &[DataType::F32], dimensions: Dimensions::Vec3 }
+        } else {
+            let types = &[DataType::U8, DataType::U16, DataType::U32];
+            Layout { types, dimensions: Dimensions::Scalar }
+        };
+        if self.checked.insert((accessor.index(), is_position)) {
+            check(accessor, self.buffers, layout)?;
+        }
+        Ok(())
+    }
 }
 
 /// The corners of each triangle; those of strips turn every other time.

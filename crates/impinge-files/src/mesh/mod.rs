@@ -1,8 +1,8 @@
 //! Mesh files: their parts, and what is wrong with them.
 
 mod accessor;
+mod buffers;
 mod gltf;
-mod lines;
 mod obj;
 mod ply;
 mod raw;
@@ -18,7 +18,8 @@ use std::path::Path;
 pub use report::{Defect, Defects, MAX_DEFECTS, MeshReport};
 
 use self::raw::{FormatError, RawPart};
-use crate::{FileError, Problem, input};
+use crate::files::{Files, extension};
+use crate::{FileError, Problem, ReadOptions};
 
 /// The parts of a mesh file: groups and objects of an OBJ file, meshes of the nodes of a glTF file, solids of an STL
 /// file; one part of a PLY file.
@@ -60,13 +61,25 @@ impl MeshFile {
     ///
     /// Vertices at one position are welded, polygons triangulated, and triangles dropped that are degenerate,
     /// double or without vertices; [`MeshPart::report`] counts these. Numbers are those of the file: meters,
-    /// mostly, and y or z upwards. Time and memory are O(n log n) and O(n) in the bytes of the file.
+    /// mostly, and y or z upwards. Time and memory are O(n log n) and O(n) in the bytes of the file, and in the
+    /// vertices and corners that the nodes of a glTF file make of them.
     ///
     /// # Errors
-    /// If the file cannot be read or is not of its format, with the line where the format has lines, and if no
-    /// triangle is left.
+    /// If the file cannot be read or is not of its format, with the line where the format has lines, if it names a
+    /// file outside of its folder or asks for more than the default [`Limits`](crate::Limits), and if no triangle is
+    /// left.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        Self::parse(path, &input::read(path)?)
+        Self::read_with(path, &ReadOptions::new())
+    }
+
+    /// [`Self::read`] with another root or other limits.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
+        let mut files = Files::beside(path, options);
+        let bytes = files.read_named(path)?;
+        Self::of_bytes(path, &bytes, &mut files)
     }
 
     /// Reads the bytes of a file with this name: its ending gives the format, its folder holds the buffers of a
@@ -75,11 +88,26 @@ impl MeshFile {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, FileError> {
-        let extension = input::extension(path);
+        let mut files = Files::beside(path, &ReadOptions::new());
+        files.count_bytes(bytes.len()).map_err(|problem| FileError::whole(path, problem))?;
+        Self::of_bytes(path, bytes, &mut files)
+    }
+
+    /// Reads the bytes of a file, and the files that it names.
+    pub(crate) fn of_bytes(
+        path: &Path,
+        bytes: &[u8],
+        files: &mut Files,
+    ) -> Result<Self, FileError> {
+        let extension = extension(path);
         let Some(read) = reader(&extension) else {
             return Err(FileError::whole(path, Problem::UnknownFormat { extension }));
         };
-        let raw = read(path, bytes).map_err(|FormatError { line, problem }| FileError {
+        let raw = read(path, bytes, files).and_then(|raw| {
+            raw.iter().try_for_each(|part| part.check_corners(files.limits.corners))?;
+            Ok(raw)
+        });
+        let raw = raw.map_err(|FormatError { line, problem }| FileError {
             line,
             ..FileError::whole(path, problem)
         })?;
@@ -110,15 +138,15 @@ impl MeshFile {
     }
 }
 
-/// Reads the faces of a file, of which the path is given too.
-type Reader = fn(&Path, &[u8]) -> Result<Vec<RawPart>, FormatError>;
+/// Reads the faces of a file, of which the path is given too, and of the files that it names.
+type Reader = fn(&Path, &[u8], &mut Files) -> Result<Vec<RawPart>, FormatError>;
 
 /// The reader of the format with an ending.
 fn reader(extension: &str) -> Option<Reader> {
     Some(match extension {
-        "obj" => |_, bytes| obj::read(bytes),
-        "stl" => |_, bytes| stl::read(bytes),
-        "ply" => |_, bytes| ply::read(bytes),
+        "obj" => |_, bytes, _| obj::read(bytes),
+        "stl" => |_, bytes, _| stl::read(bytes),
+        "ply" => |_, bytes, _| ply::read(bytes),
         "gltf" | "glb" => gltf::read,
         _ => return None,
     })
@@ -131,20 +159,28 @@ impl MeshPart {
     }
 }
 
-/// Gives each part a name of its own; the index of the part of each name.
+/// Gives each part a name of its own; the index of the part of each name. O(n log n).
 fn unique_names(parts: &mut [MeshPart]) -> BTreeMap<String, usize> {
     let mut names = BTreeMap::new();
+    // The number that the next part of a name gets: those below it are taken.
+    let mut next: BTreeMap<String, usize> = BTreeMap::new();
     for (index, part) in parts.iter_mut().enumerate() {
-        let stem = if part.name.is_empty() { "part" } else { &part.name };
-        let mut name = stem.to_owned();
-        let mut number = 1;
-        // Ends: there are fewer names taken than numbers.
-        while names.contains_key(&name) {
-            number += 1;
-            name = format!("{stem}.{number}");
+        if part.name.is_empty() {
+            part.name.push_str("part");
         }
-        names.insert(name.clone(), index);
-        part.name = name;
+        if names.contains_key(&part.name) {
+            let stem = core::mem::take(&mut part.name);
+            let number = next.entry(stem.clone()).or_insert(2);
+            // Ends: there are fewer names taken than numbers.
+            part.name = loop {
+                let name = format!("{stem}.{number}");
+                *number += 1;
+                if !names.contains_key(&name) {
+                    break name;
+                }
+            };
+        }
+        names.insert(part.name.clone(), index);
     }
     names
 }

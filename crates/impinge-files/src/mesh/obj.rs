@@ -1,116 +1,138 @@
-//! Wavefront OBJ, by `tobj`: groups and objects become parts.
-//!
-//! `tobj` gives no lines and trusts indices, so the text is prepared first: of faces the vertex indices are left, and
-//! faces with indices out of range are taken out and noted.
-
-use core::cell::Cell;
-use std::io::BufReader;
-
-use tobj::{LoadError, LoadOptions, Mesh, load_obj_buf};
+//! Wavefront OBJ: groups and objects become parts. Materials, texture coordinates, normals, lines and points mean
+//! nothing to collisions and are not looked at.
 
 use super::RawPart;
-use super::lines::LineReader;
-use super::raw::FormatError;
+use super::raw::{FormatError, number, words};
 
-/// The text for the parser.
-#[derive(Default)]
-struct Prepared {
-    text: String,
-    /// The lines of faces, in order.
-    faces: Vec<usize>,
+/// The vertex has no number in the present part.
+const NONE: u32 = u32::MAX;
+
+/// The parts of an OBJ file. O(n) in its bytes.
+pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut reader = Reader::new(vertices(&text)?);
+    for (line, text) in (1..).zip(text.lines()) {
+        let (keyword, rest) = words(text);
+        match keyword {
+            "v" => reader.seen += 1,
+            "o" | "g" => reader.begin(rest.trim()),
+            "f" => reader.face(rest, line)?,
+            _ => {}
+        }
+    }
+    Ok(reader.finish())
+}
+
+/// The vertices of the whole file: faces may name those that follow them.
+fn vertices(text: &str) -> Result<Vec<[f64; 3]>, FormatError> {
+    let lines = (1..).zip(text.lines().map(words)).filter(|(_, (keyword, _))| *keyword == "v");
+    lines.map(|(line, (_, rest))| vertex(rest, line)).collect()
+}
+
+/// Three coordinates; a fourth number divides them, and three more are a colour.
+fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
+    let mut words = text.split_whitespace();
+    let mut position = [0.0; 3];
+    for coordinate in &mut position {
+        *coordinate = number(words.next(), line)?;
+    }
+    let (weight, rest) = (words.next(), words.next());
+    if weight.is_none() || rest.is_some() {
+        return Ok(position);
+    }
+    Ok(position.map({
+        let weight: f64 = number(weight, line)?;
+        move |coordinate| coordinate / weight
+    }))
+}
+
+/// The parts so far. The corners of a part are vertices of its own, numbered as its faces name them first.
+struct Reader {
+    vertices: Vec<[f64; 3]>,
+    /// The number of each vertex in the present part.
+    own: Vec<u32>,
+    /// The vertices of the file that the present part has, in its order.
+    used: Vec<usize>,
+    part: RawPart,
+    parts: Vec<RawPart>,
+    /// Vertices on the lines before.
+    seen: usize,
     out_of_range: Vec<usize>,
 }
 
-/// The parts of an OBJ file.
-pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
-    let prepared = prepare(&String::from_utf8_lossy(bytes));
-    let line = Cell::new(0);
-    let mut reader = BufReader::new(LineReader::new(prepared.text.as_bytes(), &line));
-    let options = LoadOptions { ignore_points: true, ignore_lines: true, ..LoadOptions::default() };
-    // Materials mean nothing to collisions; the prepared text names none.
-    let loaded = load_obj_buf(&mut reader, &options, |_| Err(LoadError::GenericFailure));
-    let (models, _) =
-        loaded.map_err(|error| FormatError::syntax(Some(line.get()), error.to_string()))?;
-    let mut lines = prepared.faces.into_iter();
-    let mut parts: Vec<RawPart> =
-        models.into_iter().map(|model| part(model.name, &model.mesh, &mut lines)).collect();
-    if !prepared.out_of_range.is_empty() && parts.is_empty() {
-        parts.push(RawPart::new(""));
-    }
-    if let Some(first) = parts.first_mut() {
-        first.out_of_range = prepared.out_of_range;
-    }
-    Ok(parts)
-}
-
-/// The statements about vertices, faces and groups, each on its line.
-fn prepare(text: &str) -> Prepared {
-    let is_vertex = |line: &&str| line.split_whitespace().next() == Some("v");
-    let vertices = text.lines().filter(is_vertex).count();
-    let mut prepared = Prepared::default();
-    let mut seen = 0;
-    for (number, line) in (1..).zip(text.lines()) {
-        match line.split_whitespace().next() {
-            Some("v") => {
-                seen += 1;
-                prepared.text.push_str(line);
-            }
-            Some("o" | "g") => prepared.text.push_str(line.trim_start()),
-            Some("f") => prepared.face(line, number, Count { vertices, seen }),
-            _ => {}
-        }
-        prepared.text.push('\n');
-    }
-    prepared
-}
-
-/// How many vertices there are in the file, and before a line.
-#[derive(Clone, Copy)]
-struct Count {
-    vertices: usize,
-    seen: usize,
-}
-
-impl Prepared {
-    /// Takes over a face, or notes its line. What is no number is left for the parser to refuse.
-    fn face(&mut self, line: &str, number: usize, count: Count) {
-        let indices = line.split_whitespace().skip(1);
-        let indices = indices.map(|word| word.split('/').next().unwrap_or_default());
-        let indices: Vec<&str> = indices.collect();
-        let numbers = indices.iter().filter_map(|index| index.parse::<i64>().ok());
-        if numbers.clone().any(|index| !count.has(index)) {
-            self.out_of_range.push(number);
-        } else if indices.len() >= 3 {
-            self.text.push_str("f ");
-            self.text.push_str(&indices.join(" "));
-            self.faces.push(number);
+impl Reader {
+    fn new(vertices: Vec<[f64; 3]>) -> Self {
+        Self {
+            own: vec![NONE; vertices.len()],
+            used: Vec::new(),
+            part: RawPart::default(),
+            parts: Vec::new(),
+            seen: 0,
+            out_of_range: Vec::new(),
+            vertices,
         }
     }
-}
 
-impl Count {
-    /// A vertex has this index: from 1 upwards, or from -1 downwards before the line.
-    fn has(self, index: i64) -> bool {
-        let limit = if index < 0 { self.seen } else { self.vertices };
-        index != 0 && index.unsigned_abs() <= limit as u64
+    /// A group or object begins. One without faces is no part.
+    fn begin(&mut self, name: &str) {
+        self.end();
+        self.part.name = name.to_owned();
     }
-}
 
-/// The part of a group; its faces take their lines.
-fn part(name: String, mesh: &Mesh, lines: &mut impl Iterator<Item = usize>) -> RawPart {
-    let mut part = RawPart::new(if name == "unnamed_object" { String::new() } else { name });
-    part.vertices = mesh.positions.chunks_exact(3).map(|xyz| [xyz[0], xyz[1], xyz[2]]).collect();
-    let mut rest = mesh.indices.as_slice();
-    // Without arities all faces are triangles.
-    let triangles = mesh.indices.len() / 3;
-    let arities = mesh.face_arities.iter().copied();
-    let arities = arities
-        .chain(core::iter::repeat_n(3, triangles * usize::from(mesh.face_arities.is_empty())));
-    for arity in arities {
-        let (face, after) = rest.split_at((arity as usize).min(rest.len()));
-        part.face(face.iter().copied());
-        rest = after;
+    fn end(&mut self) {
+        if self.part.lines.is_empty() {
+            return;
+        }
+        self.part.vertices = self.used.iter().map(|vertex| self.vertices[*vertex]).collect();
+        self.used.drain(..).for_each(|vertex| self.own[vertex] = NONE);
+        self.parts.push(core::mem::take(&mut self.part));
     }
-    part.lines = lines.take(part.faces().count()).collect();
-    part
+
+    /// Adds a face, or notes its line if it names a vertex that does not exist. What has less than three corners is
+    /// none.
+    fn face(&mut self, text: &str, line: usize) -> Result<(), FormatError> {
+        let mut corners = Vec::new();
+        for word in text.split_whitespace() {
+            let index: i64 = number(word.split('/').next(), line)?;
+            let Some(vertex) = self.vertex(index) else {
+                self.out_of_range.push(line);
+                return Ok(());
+            };
+            corners.push(vertex);
+        }
+        if corners.len() >= 3 {
+            let corners: Vec<u32> = corners.into_iter().map(|vertex| self.corner(vertex)).collect();
+            self.part.face(corners);
+            self.part.lines.push(line);
+        }
+        Ok(())
+    }
+
+    /// The vertex of an index: from 1 upwards, or from -1 downwards from the last one before the line.
+    fn vertex(&self, index: i64) -> Option<usize> {
+        let distance = usize::try_from(index.unsigned_abs()).ok()?;
+        let vertex =
+            if index < 0 { self.seen.checked_sub(distance) } else { distance.checked_sub(1) };
+        vertex.filter(|vertex| *vertex < self.vertices.len())
+    }
+
+    /// The number of a vertex in the present part.
+    fn corner(&mut self, vertex: usize) -> u32 {
+        if self.own[vertex] == NONE {
+            self.own[vertex] = u32::try_from(self.used.len()).unwrap_or(NONE);
+            self.used.push(vertex);
+        }
+        self.own[vertex]
+    }
+
+    fn finish(mut self) -> Vec<RawPart> {
+        self.end();
+        if !self.out_of_range.is_empty() && self.parts.is_empty() {
+            self.parts.push(RawPart::default());
+        }
+        if let Some(first) = self.parts.first_mut() {
+            first.out_of_range = self.out_of_range;
+        }
+        self.parts
+    }
 }

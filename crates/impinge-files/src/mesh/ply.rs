@@ -56,13 +56,16 @@ fn number_of(value: &Property) -> Option<f64> {
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     let parser = Parser::<Element>::new();
     let mut reader = Reader::new(Cursor::new(bytes));
-    let wrong = |error: ParseError| FormatError::syntax(error.line(), error.to_string());
+    let wrong = |error: ParseError| FormatError::syntax(error.line(), error);
     let header = parser.read_header(&mut reader).map_err(wrong)?;
     check_counts(&header, bytes.len())?;
     let first_line = reader.line() + 1;
     let mut part = RawPart::default();
     let mut line = first_line;
     for (name, element) in &header.elements {
+        if element.properties.is_empty() && header.encoding != Encoding::Ascii {
+            continue;
+        }
         let elements = parser.read_payload_for_element(&mut reader, element, &header);
         let elements = elements.map_err(wrong)?;
         let count = elements.len();
@@ -83,12 +86,17 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
     Ok(vec![part])
 }
 
-/// Each element takes a byte at least, so that a header cannot ask for more memory than the file explains.
+/// The elements of a header are not more than the bytes of the file can hold, all kinds together: a header must not
+/// ask for more time and memory than the file explains.
 fn check_counts(header: &Header, bytes: usize) -> Result<(), FormatError> {
+    let mut needed: usize = 0;
     for (_, element) in &header.elements {
-        if element.count > bytes {
-            let (what, given) = ("elements in the header", element.count);
-            return Err(Problem::TooMany { what, given, limit: bytes }.into());
+        // Each property takes a byte at least, as does the end of a line.
+        let least = element.properties.len().max(1);
+        needed = needed.saturating_add(element.count.saturating_mul(least));
+        if needed > bytes {
+            let what = "values that the header announces";
+            return Err(Problem::TooMany { what, given: needed, limit: bytes }.into());
         }
     }
     Ok(())

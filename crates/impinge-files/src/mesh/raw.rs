@@ -1,6 +1,9 @@
 //! Faces as a file has them, before anything is checked.
 
-use crate::Problem;
+use core::fmt;
+use core::str::FromStr;
+
+use crate::{Limit, Problem};
 
 /// Why a format cannot be read.
 #[derive(Debug)]
@@ -11,8 +14,8 @@ pub(super) struct FormatError {
 
 impl FormatError {
     /// An error in the words of a parser.
-    pub(super) fn syntax(line: Option<usize>, message: impl Into<String>) -> Self {
-        Self { line, problem: Problem::Syntax(message.into()) }
+    pub(super) fn syntax(line: Option<usize>, message: impl fmt::Display) -> Self {
+        Self { line, problem: Problem::syntax(message) }
     }
 }
 
@@ -20,6 +23,18 @@ impl From<Problem> for FormatError {
     fn from(problem: Problem) -> Self {
         Self { line: None, problem }
     }
+}
+
+/// The first word of a line, and what follows.
+pub(super) fn words(line: &str) -> (&str, &str) {
+    let line = line.trim_start();
+    line.split_at(line.find(char::is_whitespace).unwrap_or(line.len()))
+}
+
+/// The number that a word is.
+pub(super) fn number<T: FromStr>(word: Option<&str>, line: usize) -> Result<T, FormatError> {
+    let word = word.ok_or_else(|| FormatError::syntax(Some(line), "a number is missing"))?;
+    word.parse().map_err(|_| FormatError::syntax(Some(line), format!("{word:?} is no number")))
 }
 
 /// A part of a file: polygons, whose corners may be out of range.
@@ -67,6 +82,17 @@ impl RawPart {
     pub(super) fn faces(&self) -> impl Iterator<Item = &[u32]> {
         let starts = core::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, end)| &self.corners[start..*end])
+    }
+
+    /// No face has more corners than this.
+    pub(super) fn check_corners(&self, allowed: usize) -> Result<(), FormatError> {
+        match self.faces().position(|face| face.len() > allowed) {
+            None => Ok(()),
+            Some(face) => {
+                let problem = Problem::Limit { limit: Limit::Corners, allowed };
+                Err(FormatError { line: self.line(face), problem })
+            }
+        }
     }
 
     /// The line of a face.

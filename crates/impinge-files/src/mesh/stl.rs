@@ -1,121 +1,128 @@
-//! STL, binary and ASCII, by `stl_io`.
-
-use core::cell::Cell;
-use std::io::{self, Cursor, Read, Seek, SeekFrom};
-
-use stl_io::create_stl_reader;
+//! STL, binary and ASCII.
 
 use super::RawPart;
-use super::lines::LineReader;
-use super::raw::FormatError;
+use super::raw::{FormatError, number, words};
 
 /// The bytes before the triangles of a binary file, and those of each triangle.
 const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
+/// The bytes of the normal of a triangle, which come first.
+const NORMAL: usize = 12;
 
-/// The solids of an STL file.
+/// The solids of an STL file. O(n) in its bytes.
 pub(super) fn read(bytes: &[u8]) -> Result<Vec<RawPart>, FormatError> {
-    if is_binary(bytes) {
-        return Ok(vec![binary(bytes)?]);
+    let count = count(bytes);
+    let has_length =
+        count.is_some_and(|count| HEADER as u64 + TRIANGLE as u64 * count == bytes.len() as u64);
+    // The header of a binary file may begin as text does.
+    if has_length || !bytes.trim_ascii_start().starts_with(b"solid") {
+        return Ok(vec![binary(bytes, count.unwrap_or(u64::MAX))?]);
     }
     let text = core::str::from_utf8(bytes)
         .map_err(|_| FormatError::syntax(None, "neither a binary STL file nor text"))?;
-    let mut parts = Vec::new();
-    let mut skipped = 0;
-    for solid in solids(text) {
-        parts.push(ascii(solid, skipped)?);
-        skipped += solid.lines().count();
-    }
-    Ok(parts)
+    ascii(text)
 }
 
-/// The length is that of the triangles that the header counts, or the file does not begin as text does.
-fn is_binary(bytes: &[u8]) -> bool {
-    let count = bytes.get(80..HEADER).and_then(|count| count.try_into().ok());
-    let count = count.map(u32::from_le_bytes);
-    let length = count.map(|count| HEADER as u64 + u64::from(count) * TRIANGLE as u64);
-    length == Some(bytes.len() as u64) || !bytes.trim_ascii_start().starts_with(b"solid")
+/// How many triangles the header of a binary file counts.
+fn count(bytes: &[u8]) -> Option<u64> {
+    let count = bytes.get(HEADER - 4..HEADER)?.try_into().ok()?;
+    Some(u64::from(u32::from_le_bytes(count)))
 }
 
-fn binary(bytes: &[u8]) -> Result<RawPart, FormatError> {
-    let mut bytes = bytes.to_vec();
-    // A header may begin as text does.
-    if let Some(first) = bytes.first_mut() {
-        *first = b'-';
+fn binary(bytes: &[u8], count: u64) -> Result<RawPart, FormatError> {
+    let triangles = bytes.get(HEADER..).unwrap_or_default().chunks_exact(TRIANGLE);
+    if (triangles.len() as u64) < count {
+        return Err(FormatError::syntax(None, "the file ends before its last triangle"));
     }
     let mut part = RawPart::soup("");
-    let mut reader = Cursor::new(bytes);
-    let wrong = |error: io::Error| FormatError::syntax(None, error.to_string());
-    for triangle in create_stl_reader(&mut reader).map_err(wrong)? {
-        let triangle = triangle.map_err(wrong)?;
-        part.triangle(triangle.vertices.map(|vertex| vertex.0.map(f64::from)));
+    for triangle in triangles.take(usize::try_from(count).unwrap_or(usize::MAX)) {
+        let mut numbers = triangle[NORMAL..].chunks_exact(4).map(float);
+        let mut vertex = || [0; 3].map(|_| numbers.next().unwrap_or(f64::NAN));
+        part.triangle([vertex(), vertex(), vertex()]);
     }
     Ok(part)
 }
 
-/// The text of each solid, from its `solid` to the next.
-fn solids(text: &str) -> impl Iterator<Item = &str> {
-    let begins = |line: &str| line.split_whitespace().next() == Some("solid");
-    let mut rest = text;
-    core::iter::from_fn(move || {
-        let mut end = 0;
-        for (index, line) in rest.split_inclusive('\n').enumerate() {
-            if index > 0 && begins(line) {
-                break;
+/// A number of four bytes.
+fn float(bytes: &[u8]) -> f64 {
+    bytes.try_into().map_or(f64::NAN, |bytes| f64::from(f32::from_le_bytes(bytes)))
+}
+
+/// What the lines of a solid say, each after the one above; vertices come three times.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    Outside,
+    Solid,
+    Facet,
+    Loop,
+    Closed,
+}
+
+/// The solids of a text.
+fn ascii(text: &str) -> Result<Vec<RawPart>, FormatError> {
+    let (mut parts, mut part) = (Vec::new(), RawPart::default());
+    let (mut place, mut corners, mut last) = (Place::Outside, Vec::new(), 0);
+    for (line, text) in (1..).zip(text.lines()) {
+        let (keyword, rest) = words(text);
+        last = line;
+        place = match (place, keyword) {
+            (_, "") => place,
+            (Place::Outside, "solid") => {
+                part = RawPart::soup(rest.trim());
+                Place::Solid
             }
-            end += line.len();
-        }
-        let (solid, after) = rest.split_at(end);
-        rest = after;
-        (!solid.is_empty()).then_some(solid)
-    })
-}
-
-fn ascii(solid: &str, skipped: usize) -> Result<RawPart, FormatError> {
-    let first = solid.lines().next().unwrap_or_default().trim();
-    let name = first.strip_prefix("solid").unwrap_or_default().trim();
-    let mut part = RawPart::soup(name);
-    let begins = |line: &str| line.split_whitespace().next() == Some("facet");
-    let facets = (skipped + 1..).zip(solid.lines()).filter(|(_, line)| begins(line));
-    part.lines = facets.map(|(number, _)| number).collect();
-    let line = Cell::new(skipped);
-    // The parser wants a blank after `solid`, whatever follows.
-    let text = format!("solid {name}\n{}", solid.split_once('\n').map_or("", |(_, rest)| rest));
-    let wrong = |error: io::Error| FormatError::syntax(Some(line.get()), error.to_string());
-    let mut reader = Rewound {
-        text: text.as_bytes(),
-        reader: LineReader::new(text.as_bytes(), &line),
-        line: &line,
-        start: skipped,
-    };
-    for triangle in create_stl_reader(&mut reader).map_err(wrong)? {
-        let triangle = triangle.map_err(wrong)?;
-        part.triangle(triangle.vertices.map(|vertex| vertex.0.map(f64::from)));
+            // What follows the end of a solid is no part of the next.
+            (Place::Outside, _) => place,
+            (Place::Solid, "endsolid") => {
+                parts.push(core::mem::take(&mut part));
+                Place::Outside
+            }
+            (Place::Solid, "facet") => {
+                part.lines.push(line);
+                Place::Facet
+            }
+            (Place::Facet, "outer") => Place::Loop,
+            (Place::Loop, "vertex") if corners.len() < 3 => {
+                corners.push(vertex(rest, line)?);
+                place
+            }
+            (Place::Loop, "endloop") if corners.len() == 3 => Place::Closed,
+            (Place::Closed, "endfacet") => {
+                part.triangle([corners[0], corners[1], corners[2]]);
+                corners.clear();
+                Place::Solid
+            }
+            _ => {
+                let message = format!("{} is expected, not {keyword:?}", expected(place));
+                return Err(FormatError::syntax(Some(line), message));
+            }
+        };
     }
-    Ok(part)
-}
-
-/// A line reader that goes back to the start, as the parser does once it knows that the file is text.
-struct Rewound<'a> {
-    text: &'a [u8],
-    reader: LineReader<'a>,
-    line: &'a Cell<usize>,
-    start: usize,
-}
-
-impl Read for Rewound<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.reader.read(buffer)
+    match place {
+        Place::Outside => Ok(parts),
+        _ => Err(FormatError::syntax(Some(last), "the file ends within a solid")),
     }
 }
 
-impl Seek for Rewound<'_> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        if to != SeekFrom::Start(0) {
-            return Err(io::ErrorKind::Unsupported.into());
-        }
-        self.line.set(self.start);
-        self.reader = LineReader::new(self.text, self.line);
-        Ok(0)
+const fn expected(place: Place) -> &'static str {
+    match place {
+        Place::Outside => "solid",
+        Place::Solid => "facet or endsolid",
+        Place::Facet => "outer loop",
+        Place::Loop => "three times vertex, then endloop,",
+        Place::Closed => "endfacet",
     }
+}
+
+/// Three numbers, which STL has in 32 bits.
+fn vertex(text: &str, line: usize) -> Result<[f64; 3], FormatError> {
+    let mut words = text.split_whitespace();
+    let mut position = [0.0; 3];
+    for coordinate in &mut position {
+        *coordinate = f64::from(number::<f32>(words.next(), line)?);
+    }
+    if words.next().is_some() || !position.iter().all(|x| x.is_finite()) {
+        return Err(FormatError::syntax(Some(line), "a vertex has three finite coordinates"));
+    }
+    Ok(position)
 }

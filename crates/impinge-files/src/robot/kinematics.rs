@@ -2,6 +2,7 @@
 
 use core::fmt;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use impinge::math::na::{Isometry3, Translation3, Vector3};
 use urdf_rs::{Joint, JointType, Mimic};
@@ -10,7 +11,7 @@ use super::geometry::isometry;
 use super::xml::XmlFile;
 use crate::error::{Fault, Within};
 use crate::scene::{about, unit};
-use crate::{FileError, Problem};
+use crate::{FileError, Printable, Problem};
 
 /// Links, and the joints between them.
 #[derive(Debug)]
@@ -24,6 +25,17 @@ pub(super) struct Tree {
     above: Vec<Option<String>>,
     /// The links, each after the one above it.
     order: Vec<usize>,
+    /// The joints that follow others, and how.
+    follows: BTreeMap<String, Follows>,
+}
+
+/// A joint follows another: its value is `factor` times the value of `joint`, which follows none, plus `offset`.
+#[derive(Clone, Debug, PartialEq)]
+struct Follows {
+    /// Shared by all that follow it.
+    joint: Rc<str>,
+    factor: f64,
+    offset: f64,
 }
 
 /// A joint of a robot at a value outside the limits of its URDF file.
@@ -87,11 +99,13 @@ impl Tree {
                 return Err(wrong(Problem::DuplicateName(joint.name.clone())));
             }
         }
-        let mut tree = Self { links, index, joints, above, order: Vec::new() };
+        let (order, follows) = (Vec::new(), BTreeMap::new());
+        let mut tree = Self { links, index, joints, above, order, follows };
         tree.order = tree
             .sorted()
             .map_err(|link| xml.error("link", &link.clone(), Problem::NotATree { link }))?;
-        tree.check_mimics(xml)?;
+        tree.follows =
+            tree.mimics().map_err(|(name, problem)| xml.error("joint", &name, problem))?;
         Ok(tree)
     }
 
@@ -124,25 +138,33 @@ impl Tree {
         }
     }
 
-    /// Joints mimic joints that exist, and none by way of others itself.
-    fn check_mimics(&self, xml: &XmlFile) -> Result<(), FileError> {
+    /// How joints follow others, along chains of any length: each joint is gone through once. The name of a joint and
+    /// what is wrong, if it mimics one that does not exist, or itself by way of others.
+    fn mimics(&self) -> Result<BTreeMap<String, Follows>, (String, Problem)> {
+        let mut follows: BTreeMap<String, Follows> = BTreeMap::new();
         for name in self.joints.keys() {
-            let wrong = |problem| xml.error("joint", name, problem);
+            let mut chain: Vec<(&String, &Mimic)> = Vec::new();
+            let mut passed = BTreeSet::new();
             let mut current = name;
-            let mut steps = 0;
-            // Ends: more steps than joints pass one twice.
-            while let Some(mimic) = &self.joints[current].mimic {
+            // Ends: no joint is passed twice.
+            while let (None, Some(mimic)) = (follows.get(current), &self.joints[current].mimic) {
+                if !passed.insert(current) {
+                    return Err((name.clone(), Problem::MimicCycle(name.clone())));
+                }
+                if !self.joints.contains_key(&mimic.joint) {
+                    return Err((name.clone(), Problem::UnknownJoint(mimic.joint.clone())));
+                }
+                chain.push((current, mimic));
                 current = &mimic.joint;
-                if !self.joints.contains_key(current) {
-                    return Err(wrong(Problem::UnknownJoint(current.clone())));
-                }
-                steps += 1;
-                if steps > self.joints.len() {
-                    return Err(wrong(Problem::MimicCycle(name.clone())));
-                }
+            }
+            let leader = Follows { joint: current.as_str().into(), factor: 1.0, offset: 0.0 };
+            let mut last = follows.get(current).cloned().unwrap_or(leader);
+            for (name, mimic) in chain.into_iter().rev() {
+                last = last.followed_by(mimic);
+                follows.insert(name.clone(), last.clone());
             }
         }
-        Ok(())
+        Ok(follows)
     }
 
     /// The frames of the links for joint values, those of others being 0, and a frame of the root. Only joints that move
@@ -175,15 +197,11 @@ impl Tree {
 
     /// The value of a joint, which may follow another.
     fn value(&self, name: &str, values: &BTreeMap<String, f64>) -> f64 {
-        // value = factor * value of `name` + offset, along the chain of mimics.
-        let (mut factor, mut offset, mut name) = (1.0, 0.0, name);
-        // Ends: no joint mimics itself.
-        while let Some(mimic) = &self.joints[name].mimic {
-            offset += factor * mimic.offset.unwrap_or(0.0);
-            factor *= mimic.multiplier.unwrap_or(1.0);
-            name = &mimic.joint;
+        let given = |name: &str| values.get(name).copied().unwrap_or(0.0);
+        match self.follows.get(name) {
+            Some(Follows { joint, factor, offset }) => factor * given(joint) + offset,
+            None => given(name),
         }
-        factor * values.get(name).copied().unwrap_or(0.0) + offset
     }
 
     /// The joints that move and whose values are outside of their limits, in order of their names.
@@ -203,19 +221,39 @@ impl Tree {
         joints.collect()
     }
 
-    /// The file has a link of this name.
-    pub(super) fn has_link(&self, name: &str) -> bool {
-        self.index.contains_key(name)
+    /// How many joints there are.
+    pub(super) fn num_joints(&self) -> usize {
+        self.joints.len()
     }
 
-    /// The links above a link, the nearest first.
-    pub(super) fn ancestors(&self, link: &str) -> impl Iterator<Item = &str> {
-        let mut current = self.index.get(link).copied();
-        core::iter::from_fn(move || {
-            let joint = self.above[current?].as_ref();
-            current = joint.map(|joint| self.joints[joint].parent);
-            current.map(|link| self.links[link].as_str())
-        })
+    /// The link of a name.
+    pub(super) fn link(&self, name: &str) -> Option<usize> {
+        self.index.get(name).copied()
+    }
+
+    /// By link: the nearest link above it for which something holds.
+    pub(super) fn nearest_above(&self, holds: impl Fn(usize) -> bool) -> Vec<Option<usize>> {
+        let mut nearest = vec![None; self.links.len()];
+        // A link comes after its parent, of which it is known.
+        for &link in &self.order {
+            if let Some(joint) = &self.above[link] {
+                let parent = self.joints[joint].parent;
+                nearest[link] = if holds(parent) { Some(parent) } else { nearest[parent] };
+            }
+        }
+        nearest
+    }
+}
+
+impl Follows {
+    /// What follows a joint that follows this way.
+    fn followed_by(&self, mimic: &Mimic) -> Self {
+        let multiplier = mimic.multiplier.unwrap_or(1.0);
+        Self {
+            joint: Rc::clone(&self.joint),
+            factor: multiplier * self.factor,
+            offset: multiplier * self.offset + mimic.offset.unwrap_or(0.0),
+        }
     }
 }
 
@@ -244,6 +282,7 @@ impl fmt::Display for JointBeyondLimits {
     /// Such as `the joint elbow of arm is at 3.5, outside its limits -2.5 to 2.5`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { robot, joint, value, limits: [lower, upper] } = self;
+        let [robot, joint] = [robot, joint].map(|name| Printable(name));
         write!(
             f,
             "the joint {joint} of {robot} is at {value}, outside its limits {lower} to {upper}"

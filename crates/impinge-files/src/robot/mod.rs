@@ -5,7 +5,7 @@ mod kinematics;
 mod packages;
 mod xml;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use impinge::math::na::Isometry3;
@@ -16,6 +16,7 @@ use self::kinematics::Tree;
 use self::packages::Packages;
 use self::xml::XmlFile;
 use crate::error::Fault;
+use crate::files::Files;
 use crate::format::{RobotFile, ShapeFile};
 use crate::{FileError, Problem};
 
@@ -48,13 +49,17 @@ pub(crate) struct RobotLink {
 
 impl Robot {
     /// Reads the files of a robot; paths are relative to a folder.
-    pub(crate) fn read(file: &RobotFile, folder: &Path) -> Result<Self, FileError> {
+    pub(crate) fn read(
+        file: &RobotFile,
+        folder: &Path,
+        files: &mut Files,
+    ) -> Result<Self, FileError> {
         let path = folder.join(&file.urdf);
-        let xml = XmlFile::read(&path)?;
+        let xml = XmlFile::read(&path, files)?;
         let robot = urdf_rs::read_from_string(&xml.without_visuals()?)
-            .map_err(|error| xml.whole(Problem::Syntax(error.to_string())))?;
+            .map_err(|error| xml.whole(Problem::syntax(error)))?;
         let tree = Tree::new(&robot, &xml)?;
-        let packages = Packages::new(file, folder, &path);
+        let packages = Packages::new(file, folder, &path, files);
         let solids = robot.links.iter().map(|link| {
             let solid = geometry::solid(link, file.kind, &packages);
             solid.map_err(|problem| xml.error("link", &link.name, problem))
@@ -62,7 +67,7 @@ impl Robot {
         let solids = solids.collect::<Result<_, _>>()?;
         let disabled = match &file.srdf {
             None => BTreeSet::new(),
-            Some(srdf) => disabled_pairs(&XmlFile::read(&folder.join(srdf))?, &tree)?,
+            Some(srdf) => disabled_pairs(&XmlFile::read(&folder.join(srdf), files)?, &tree)?,
         };
         Ok(Self { name: robot.name, tree, solids, disabled })
     }
@@ -84,6 +89,11 @@ impl Robot {
         Ok(links.collect())
     }
 
+    /// How many joints there are.
+    pub(crate) fn num_joints(&self) -> usize {
+        self.tree.num_joints()
+    }
+
     /// The joints at values outside their limits; `name` is what the names of the robot's objects begin with.
     pub(crate) fn beyond_limits(&self, file: &RobotFile, name: &str) -> Vec<JointBeyondLimits> {
         self.tree.beyond_limits(name, &file.joints)
@@ -91,31 +101,38 @@ impl Robot {
 
     /// The pairs of links, by their index among those with collision elements, that have no contacts: those that a joint
     /// connects, directly or by way of links without collision elements, and those that the SRDF file disables.
-    /// A pair may occur several times.
-    pub(crate) fn disabled_pairs(&self, links: &[RobotLink]) -> Vec<[usize; 2]> {
-        let names = links.iter().map(|link| link.name.as_str()).zip(0..);
-        let index: BTreeMap<&str, usize> = names.collect();
+    /// A pair may occur several times. O(n log n) for n links and pairs of the file.
+    pub(crate) fn disabled_pairs(&self) -> Vec<[usize; 2]> {
+        let has_solid = |link: usize| self.solids[link].is_some();
+        let numbers = (0..self.solids.len()).scan(0, |next, link| {
+            let number = has_solid(link).then_some(*next);
+            *next += usize::from(has_solid(link));
+            Some(number)
+        });
+        let numbers: Vec<Option<usize>> = numbers.collect();
         // Above the nearest link with collision elements nothing is joined directly.
-        let joined = index.iter().filter_map(|(name, link)| {
-            let above = self.tree.ancestors(name).find_map(|above| index.get(above))?;
-            Some([*above, *link])
+        let above = self.tree.nearest_above(has_solid).into_iter().enumerate();
+        let joined = above.filter_map(|(link, above)| Some([above?, link]));
+        let disabled = self.disabled.iter().filter_map(|pair| {
+            let [link1, link2] = pair.each_ref().map(|name| self.tree.link(name));
+            Some([link1?, link2?])
         });
-        let disabled = self.disabled.iter().filter_map(|[link1, link2]| {
-            Some([*index.get(link1.as_str())?, *index.get(link2.as_str())?])
-        });
-        joined.chain(disabled).filter(|[link1, link2]| link1 != link2).collect()
+        let pairs = joined.chain(disabled).filter(|[link1, link2]| link1 != link2);
+        pairs.filter_map(|[link1, link2]| Some([numbers[link1]?, numbers[link2]?])).collect()
     }
 }
 
 /// The pairs of an SRDF file; its links are those of the robot.
 fn disabled_pairs(xml: &XmlFile, tree: &Tree) -> Result<BTreeSet<[String; 2]>, FileError> {
     let mut pairs = BTreeSet::new();
-    for (line, names) in xml.attributes("disable_collisions", ["link1", "link2"])? {
-        if let Some(unknown) = names.iter().find(|name| !tree.has_link(name)) {
-            let problem = Problem::UnknownLink(unknown.clone());
-            return Err(FileError { line: Some(line), ..xml.whole(problem) });
+    xml.each("disable_collisions", ["link1", "link2"], |names| {
+        match names.into_iter().find(|name| tree.link(name).is_none()) {
+            Some(unknown) => Err(Problem::UnknownLink(unknown.to_owned())),
+            None => {
+                pairs.insert(names.map(str::to_owned));
+                Ok(())
+            }
         }
-        pairs.insert(names);
-    }
+    })?;
     Ok(pairs)
 }

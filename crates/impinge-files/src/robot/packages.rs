@@ -1,8 +1,9 @@
 //! Where the mesh files of a robot are.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use crate::Problem;
+use crate::files::Files;
 use crate::format::RobotFile;
 
 /// Folders in which packages are looked for, and the folder of relative paths.
@@ -14,16 +15,19 @@ pub(super) struct Packages {
 }
 
 impl Packages {
-    /// The folders that the scene names, then those that the URDF file is in.
-    pub(super) fn new(file: &RobotFile, folder: &Path, urdf: &Path) -> Self {
+    /// The folders that the user names, those that the scene names, and those that the URDF file is in; of the last
+    /// two, only such from which files may be read.
+    pub(super) fn new(file: &RobotFile, folder: &Path, urdf: &Path, files: &Files) -> Self {
         let absolute = std::path::absolute(urdf).unwrap_or_else(|_| urdf.to_owned());
         let own = absolute.parent().unwrap_or_else(|| Path::new("")).to_owned();
         let given = file.packages.iter().map(|package| folder.join(package));
-        let folders = given.chain(own.ancestors().map(Path::to_owned)).collect();
-        Self { own, folders }
+        let above = own.ancestors().map(Path::to_owned);
+        let readable = given.chain(above).filter(|folder| files.holds(folder));
+        Self { folders: files.packages.iter().cloned().chain(readable).collect(), own }
     }
 
-    /// The file of a `package://` path, of a `file://` path, or of one relative to the URDF file.
+    /// The file of a `package://` path, of a `file://` path, or of one relative to the URDF file. It may still be one
+    /// that may not be read.
     pub(super) fn find(&self, name: &str) -> Result<PathBuf, Problem> {
         if let Some(path) = name.strip_prefix("file://") {
             return Ok(PathBuf::from(path));
@@ -32,16 +36,21 @@ impl Packages {
             return Ok(self.own.join(name));
         };
         let (package, rest) = path.split_once('/').unwrap_or((path, ""));
+        let unknown = || Problem::UnknownPackage(package.to_owned());
+        // The name is that of a folder, not a way to another one.
+        let mut parts = Path::new(package).components();
+        if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) {
+            return Err(unknown());
+        }
         // A folder is the package if it has its name, and holds it as a folder within otherwise.
         let found = self.folders.iter().find_map(|folder| {
-            let is_package = folder.file_name().is_some_and(|name| name == package);
             let inner = folder.join(package);
-            if is_package {
+            if folder.file_name().is_some_and(|name| name == package) {
                 Some(folder.join(rest))
             } else {
                 inner.is_dir().then(|| inner.join(rest))
             }
         });
-        found.ok_or_else(|| Problem::UnknownPackage(package.to_owned()))
+        found.ok_or_else(unknown)
     }
 }

@@ -4,10 +4,15 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
-use crate::{FileError, Problem, input};
+use crate::files::Files;
+use crate::text::Quoted;
+use crate::{FileError, Problem};
 
 /// So deep may elements nest: parsers that call themselves are given no more.
 const MAX_DEPTH: usize = 32;
+
+/// So many attributes may an element have: parsers compare each with those before.
+const MAX_ATTRIBUTES: usize = 256;
 
 /// The text of an XML file, which is well-formed and not nested deeply.
 #[derive(Debug)]
@@ -18,9 +23,14 @@ pub(super) struct XmlFile {
 
 impl XmlFile {
     /// Reads and checks a file.
-    pub(super) fn read(path: &Path) -> Result<Self, FileError> {
-        let text = String::from_utf8_lossy(&input::read(path)?).into_owned();
+    pub(super) fn read(path: &Path, files: &mut Files) -> Result<Self, FileError> {
+        let text = String::from_utf8_lossy(&files.read_named(path)?).into_owned();
         let file = Self { path: path.to_owned(), text };
+        let most = attributes(&file.text);
+        if most > MAX_ATTRIBUTES {
+            let (what, given, limit) = ("attributes of an element", most, MAX_ATTRIBUTES);
+            return Err(file.whole(Problem::TooMany { what, given, limit }));
+        }
         let document = file.parse()?;
         // No more ancestors than the limit are counted, so that the check is linear in the text.
         let depth = |node: &Node<'_, '_>| node.ancestors().take(MAX_DEPTH + 1).count();
@@ -53,7 +63,7 @@ impl XmlFile {
     fn parse(&self) -> Result<Document<'_>, FileError> {
         Document::parse(&self.text).map_err(|error| {
             let place = error.pos();
-            let error = self.whole(Problem::Syntax(error.to_string()));
+            let error = self.whole(Problem::syntax(&error));
             let (line, column) = (Some(place.row as usize), Some(place.col as usize));
             FileError { line, column, ..error }
         })
@@ -66,7 +76,7 @@ impl XmlFile {
 
     /// An error of the element with this tag and name.
     pub(super) fn error(&self, tag: &str, name: &str, problem: Problem) -> FileError {
-        let path = format!("{tag} {name:?}");
+        let path = format!("{tag} {}", Quoted(name));
         let Ok(document) = self.parse() else { return self.whole(problem) };
         let is_it =
             |node: &Node<'_, '_>| node.has_tag_name(tag) && node.attribute("name") == Some(name);
@@ -84,19 +94,52 @@ impl XmlFile {
         FileError { line, column, ..self.whole(problem) }
     }
 
-    /// Two attributes of all elements with a tag, and the line of each.
-    pub(super) fn attributes(
+    /// Calls `take` with two attributes of each element with a tag. Its first error ends this, with the line of the
+    /// element.
+    pub(super) fn each(
         &self,
         tag: &str,
         names: [&str; 2],
-    ) -> Result<Vec<(usize, [String; 2])>, FileError> {
+        mut take: impl FnMut([&str; 2]) -> Result<(), Problem>,
+    ) -> Result<(), FileError> {
         let document = self.parse()?;
-        let elements = document.descendants().filter(|node| node.has_tag_name(tag));
-        let values = elements.map(|node| {
-            let value = |name: &str| node.attribute(name).unwrap_or_default().to_owned();
-            let line = document.text_pos_at(node.range().start).row as usize;
-            (line, names.map(value))
-        });
-        Ok(values.collect())
+        for node in document.descendants().filter(|node| node.has_tag_name(tag)) {
+            let values = names.map(|name| node.attribute(name).unwrap_or_default());
+            // A line is looked for in the error alone: it costs the text before.
+            take(values).map_err(|problem| self.at(&document, node, problem))?;
+        }
+        Ok(())
+    }
+}
+
+/// The most attributes that an element may have, by the signs `=` between its brackets and outside of quotes.
+fn attributes(text: &str) -> usize {
+    let (mut most, mut count) = (0, 0);
+    let (mut is_tag, mut quote) = (false, None);
+    for byte in text.bytes() {
+        match (byte, quote) {
+            (b'<', _) => (count, is_tag, quote) = (0, true, None),
+            (_, Some(open)) if byte == open => quote = None,
+            (_, Some(_)) => {}
+            (b'>', None) => is_tag = false,
+            (b'"' | b'\'', None) if is_tag => quote = Some(byte),
+            (b'=', None) if is_tag => {
+                count += 1;
+                most = most.max(count);
+            }
+            _ => {}
+        }
+    }
+    most
+}
+
+#[cfg(test)]
+mod tests {
+    use super::attributes;
+
+    #[test]
+    fn attributes_by_hand() {
+        assert_eq!(attributes("<a b='=\">=' c = \"1\"/> d=e=f=g <h i='1'>"), 2);
+        assert_eq!(attributes("it's = <a b='1' c='2' d='3'"), 3, "it may end anywhere");
     }
 }

@@ -9,30 +9,61 @@ use impinge::shape::{Compound, MeshError, ShapeHandle, TriMesh};
 
 use super::SceneSpace;
 use crate::error::{Fault, Within};
-use crate::format::{MeshKind, MeshSource, ScaleFile, ShapeFile, ShapeRef};
+use crate::files::Files;
+use crate::format::{MeshKind, MeshSource, RobotFile, ScaleFile, ShapeFile, ShapeRef};
+use crate::robot::Robot;
 use crate::{Dimension, FileError, MeshFile, MeshPart, Problem};
 
 /// Files by path, each read once. Clones share them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct MeshTable {
     folder: PathBuf,
-    files: BTreeMap<PathBuf, Arc<MeshFile>>,
+    /// Reads all files of the scene.
+    pub(crate) files: Files,
+    meshes: BTreeMap<PathBuf, Named>,
+    /// The path without symbolic links of each path that was read.
+    real: BTreeMap<PathBuf, PathBuf>,
+}
+
+/// A file with the path by which it was named first.
+#[derive(Clone, Debug)]
+struct Named {
+    path: PathBuf,
+    mesh: Arc<MeshFile>,
 }
 
 impl MeshTable {
-    /// Without files; paths are relative to a folder.
-    pub(crate) fn new(folder: &Path) -> Self {
-        Self { folder: folder.to_owned(), files: BTreeMap::new() }
+    /// Without meshes; paths are relative to a folder.
+    pub(crate) fn new(folder: &Path, files: Files) -> Self {
+        let (meshes, real) = (BTreeMap::new(), BTreeMap::new());
+        Self { folder: folder.to_owned(), files, meshes, real }
     }
 
     /// The file of a path, read if it was not.
     pub(crate) fn read(&mut self, path: &Path) -> Result<&MeshFile, FileError> {
         let path = self.folder.join(path);
-        if !self.files.contains_key(&path) {
-            let file = MeshFile::read(&path)?;
-            self.files.insert(path.clone(), Arc::new(file));
+        if !self.real.contains_key(&path) {
+            let real = self.files.locate(&path);
+            let real = real.map_err(|problem| FileError::whole(&path, problem))?;
+            self.read_new(&path, &real)?;
+            self.real.insert(path.clone(), real);
         }
-        Ok(&self.files[&path])
+        Ok(&self.meshes[&self.real[&path]].mesh)
+    }
+
+    /// Reads the files of a robot, but for its meshes.
+    pub(crate) fn read_robot(&mut self, robot: &RobotFile) -> Result<Robot, FileError> {
+        Robot::read(robot, &self.folder, &mut self.files)
+    }
+
+    /// Reads a file unless it was read by another path.
+    fn read_new(&mut self, path: &Path, real: &Path) -> Result<(), FileError> {
+        if !self.meshes.contains_key(real) {
+            let bytes = self.files.read_named(path)?;
+            let mesh = Arc::new(MeshFile::of_bytes(path, &bytes, &mut self.files)?);
+            self.meshes.insert(real.to_owned(), Named { path: path.to_owned(), mesh });
+        }
+        Ok(())
     }
 
     /// Reads all files that a shape and those written in it name. A shape that it has by name is read with `shapes`.
@@ -57,7 +88,7 @@ impl MeshTable {
 
     /// The files that were read, by path.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&Path, &MeshFile)> {
-        self.files.iter().map(|(path, file)| (path.as_path(), &**file))
+        self.meshes.values().map(|Named { path, mesh }| (path.as_path(), &**mesh))
     }
 
     /// The shape of a file that was read.
@@ -69,15 +100,7 @@ impl MeshTable {
         if D == dimension.number() {
             return Err(Problem::WrongDimension { what: "a mesh file", dimension }.into());
         }
-        let path = self.folder.join(&source.path);
-        let file = self.files.get(&path).expect("the files of all shapes are read before");
-        let parts: Vec<&MeshPart> = match &source.part {
-            None => file.parts().iter().collect(),
-            Some(name) => {
-                let part = file.part(name).ok_or_else(|| Problem::UnknownPart(name.clone()));
-                vec![part.within("part")?]
-            }
-        };
+        let parts = self.parts(source)?;
         let triangles = Triangles { parts, scale: scale(source.scale).within("scale")? };
         match source.kind {
             MeshKind::Surface => Ok(ShapeHandle::new(triangles.mesh(false)?)),
@@ -89,6 +112,27 @@ impl MeshTable {
             MeshKind::ConvexHull => triangles.hull(&triangles.parts),
             MeshKind::ConvexParts => triangles.hulls(),
         }
+    }
+}
+
+impl MeshTable {
+    /// The parts of a file that a shape has; the file was read.
+    fn parts(&self, source: &MeshSource) -> Result<Vec<&MeshPart>, Fault> {
+        let real = &self.real[&self.folder.join(&source.path)];
+        let file = &self.meshes[real].mesh;
+        match &source.part {
+            None => Ok(file.parts().iter().collect()),
+            Some(name) => {
+                let part = file.part(name).ok_or_else(|| Problem::UnknownPart(name.clone()));
+                Ok(vec![part.within("part")?])
+            }
+        }
+    }
+
+    /// The vertices and corners of triangles of a shape.
+    pub(crate) fn elements(&self, source: &MeshSource) -> Result<usize, Fault> {
+        let parts = self.parts(source)?.into_iter();
+        Ok(parts.map(|part| part.vertices.len() + 3 * part.triangles.len()).sum())
     }
 }
 

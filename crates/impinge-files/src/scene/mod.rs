@@ -22,15 +22,13 @@ pub(crate) use meshes::MeshTable;
 pub(crate) use pose::{Placement, about, unit};
 
 use self::pose::Motion;
+use crate::files::{Files, extension};
 use crate::format::{QueryTypeFile, ShapeRef};
 use crate::source::Source;
 use crate::{
-    Dimension, FileError, JointBeyondLimits, MeshFile, MeshesFile, Problem, RobotFile, ScalarFile,
-    SceneFile, UpAxis, input,
+    Dimension, FileError, JointBeyondLimits, MeshFile, MeshesFile, Problem, ReadOptions, RobotFile,
+    ScalarFile, SceneFile, UpAxis,
 };
-
-/// So many objects may a scene have.
-pub const MAX_OBJECTS: usize = 1 << 20;
 
 /// A scene: its objects by name, and the files that they are made of. The library has not seen its numbers yet;
 /// [`Self::world`] and [`Self::collision_world`] refuse those that make no shape.
@@ -95,15 +93,27 @@ struct SceneObject {
 /// # Errors
 /// As [`Scene::read`], and for another ending of the name.
 pub fn load(path: &Path) -> Result<Scene, FileError> {
-    let extension = input::extension(path);
+    load_with(path, &ReadOptions::new())
+}
+
+/// [`load`] with another root, packages, or other limits.
+///
+/// The root of a robot is the folder of the ROS package that its URDF file is in, if it is in one, and the folder of
+/// the file otherwise.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: &Path, options: &ReadOptions) -> Result<Scene, FileError> {
+    let extension = extension(path);
     let mut file = SceneFile::new(Dimension::Three);
+    let meshes = MeshTable::new(Path::new(""), Files::beside(path, options));
     match extension.as_str() {
-        "json" => return Scene::read(path),
+        "json" => return Scene::read_with(path, options),
         "urdf" => file.robots.push(RobotFile::new(path)),
         mesh if MeshFile::has_format(mesh) => file.meshes.push(MeshesFile::new(path)),
         _ => return Err(FileError::whole(path, Problem::UnknownFormat { extension })),
     }
-    Scene::resolve(Source::without_text(path.to_owned()), file, Path::new(""))
+    Scene::resolve(Source::without_text(path.to_owned()), file, meshes)
 }
 
 impl SceneFile {
@@ -112,7 +122,16 @@ impl SceneFile {
     /// # Errors
     /// As [`Scene::read`], without lines.
     pub fn resolve(self, folder: &Path) -> Result<Scene, FileError> {
-        Scene::resolve(Source::without_text(folder.join("scene")), self, folder)
+        self.resolve_with(folder, &ReadOptions::new())
+    }
+
+    /// [`Self::resolve`] with another root than the folder, packages, or other limits.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub fn resolve_with(self, folder: &Path, options: &ReadOptions) -> Result<Scene, FileError> {
+        let meshes = MeshTable::new(folder, Files::within(folder, options));
+        Scene::resolve(Source::without_text(folder.join("scene")), self, meshes)
     }
 }
 
@@ -121,9 +140,21 @@ impl Scene {
     ///
     /// # Errors
     /// With the line, the column and the path in the document: if a file cannot be read or is not of its format,
-    /// has unknown members, or gives two objects the same name.
+    /// is outside of the folder of the scene, has unknown members, asks for more than the default
+    /// [`Limits`](crate::Limits), or gives two objects the same name.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        Self::from_json(path, &String::from_utf8_lossy(&input::read(path)?))
+        Self::read_with(path, &ReadOptions::new())
+    }
+
+    /// [`Self::read`] with another root, packages, or other limits.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_with(path: &Path, options: &ReadOptions) -> Result<Self, FileError> {
+        let mut files = Files::beside(path, options);
+        let bytes = files.read_named(path)?;
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        Self::of_text(Source::new(path.to_owned(), text), files)
     }
 
     /// The scene of a document. The path names it in errors, and its folder holds the files that it names.
@@ -131,10 +162,28 @@ impl Scene {
     /// # Errors
     /// As [`Self::read`].
     pub fn from_json(path: impl Into<PathBuf>, text: &str) -> Result<Self, FileError> {
-        let source = Source::new(path.into(), text.to_owned());
+        Self::from_json_with(path, text, &ReadOptions::new())
+    }
+
+    /// [`Self::from_json`] with another root, packages, or other limits.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_json_with(
+        path: impl Into<PathBuf>,
+        text: &str,
+        options: &ReadOptions,
+    ) -> Result<Self, FileError> {
+        let path = path.into();
+        let mut files = Files::beside(&path, options);
+        files.count_bytes(text.len()).map_err(|problem| FileError::whole(&path, problem))?;
+        Self::of_text(Source::new(path, text.to_owned()), files)
+    }
+
+    fn of_text(source: Source, files: Files) -> Result<Self, FileError> {
         let file = source.parse()?;
-        let folder = source.folder().to_owned();
-        Self::resolve(source, file, &folder)
+        let meshes = MeshTable::new(source.folder(), files);
+        Self::resolve(source, file, meshes)
     }
 
     /// The document.

@@ -67,8 +67,7 @@ impl Scene {
             false => ShapeRef::Name(shape.to_owned()),
             true => {
                 let parsed = serde_json::from_str::<ShapeFile>(shape);
-                let wrong =
-                    |error: serde_json::Error| self.whole(Problem::Syntax(error.to_string()));
+                let wrong = |error: serde_json::Error| self.whole(Problem::syntax(error));
                 ShapeRef::Inline(Box::new(parsed.map_err(wrong)?))
             }
         };

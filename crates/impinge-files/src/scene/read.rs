@@ -1,21 +1,21 @@
 //! From a document to a scene: files are read, grids expanded, names compared.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use impinge::math::na::Vector3;
 
 use super::groups::{DisabledPair, GroupPlan};
 use super::pose::{Motion, vector};
-use super::{Form, MAX_OBJECTS, MeshTable, Placement, Scene, SceneObject};
+use super::{Form, MeshTable, Placement, Scene, SceneObject};
 use crate::error::{Fault, Within};
+use crate::files::check;
 use crate::format::{
     GroupsFile, MeshSource, MeshesFile, ObjectFile, QueryFile, QueryTypeFile, RepeatFile,
     RobotFile, SceneFile, ShapeFile, ShapeRef,
 };
-use crate::robot::{JointBeyondLimits, Robot, RobotLink};
+use crate::robot::{JointBeyondLimits, RobotLink};
 use crate::source::Source;
-use crate::{Dimension, FileError, Problem};
+use crate::{Dimension, FileError, Limit, Problem};
 
 /// Why a scene cannot be resolved: in the document, or in a file that it names.
 enum ResolveError {
@@ -40,6 +40,8 @@ struct Collected<'a> {
     file: &'a SceneFile,
     forms: Vec<Form>,
     objects: Vec<Draft<'a>>,
+    /// The bytes of the names of the objects.
+    names: usize,
     disabled: BTreeSet<DisabledPair>,
     meshes: MeshTable,
     joints_beyond_limits: Vec<JointBeyondLimits>,
@@ -62,14 +64,14 @@ struct Common<'a> {
 }
 
 impl Scene {
-    /// The scene of a document that was parsed.
+    /// The scene of a document that was parsed; a table with the files that were read before.
     pub(super) fn resolve(
         source: Source,
         file: SceneFile,
-        folder: &Path,
+        meshes: MeshTable,
     ) -> Result<Self, FileError> {
-        let mut collected = Collected::new(&file, folder);
-        let objects = collected.add_all(folder).and_then(|()| Ok(collected.take_objects()?));
+        let mut collected = Collected::new(&file, meshes);
+        let objects = collected.add_all().and_then(|()| Ok(collected.take_objects()?));
         let objects = objects.map_err(|error| match error {
             ResolveError::Document(fault) => source.error(fault),
             ResolveError::File(error) => error,
@@ -80,20 +82,21 @@ impl Scene {
 }
 
 impl<'a> Collected<'a> {
-    /// Nothing of a document yet, whose paths are relative to a folder.
-    fn new(file: &'a SceneFile, folder: &Path) -> Self {
+    /// Nothing of a document yet.
+    const fn new(file: &'a SceneFile, meshes: MeshTable) -> Self {
         Self {
             file,
             forms: Vec::new(),
             objects: Vec::new(),
+            names: 0,
             disabled: BTreeSet::new(),
-            meshes: MeshTable::new(folder),
+            meshes,
             joints_beyond_limits: Vec::new(),
         }
     }
 
     /// Adds all objects in their order, and reads all files.
-    fn add_all(&mut self, folder: &Path) -> Result<(), ResolveError> {
+    fn add_all(&mut self) -> Result<(), ResolveError> {
         let file = self.file;
         file.shapes.values().try_for_each(|shape| self.meshes.read_files(shape))?;
         for (index, object) in file.objects.iter().enumerate() {
@@ -103,7 +106,7 @@ impl<'a> Collected<'a> {
             self.add_meshes(meshes, format!("meshes[{index}]"))?;
         }
         for (index, robot) in file.robots.iter().enumerate() {
-            self.add_robot(robot, &format!("robots[{index}]"), folder)?;
+            self.add_robot(robot, &format!("robots[{index}]"))?;
         }
         for query in file.queries.values() {
             if let QueryFile::Cast(cast) = query {
@@ -121,19 +124,32 @@ impl<'a> Collected<'a> {
         let motion = Motion::read(&object.motion, dimension).within("motion").within(&path)?;
         let common = Common { groups: &object.groups, query: object.query, motion };
         let form = self.form(object.shape.clone(), path.clone(), "shape");
-        match &object.repeat {
-            None => self.add(object.name.clone(), form, start, common),
-            Some(repeat) => {
-                let grid = Grid::read(repeat, dimension).within("repeat").within(&path)?;
-                let limit = MAX_OBJECTS.saturating_sub(self.objects.len());
-                check_count(grid.len(), limit).within("repeat.count").within(&path)?;
-                for index in 0..grid.len() {
-                    let indices = grid.indices(index);
-                    let name = format!("{}[{}]", object.name, text_of(&indices));
-                    self.add(name, form, start.translated(grid.offset(&indices)), common);
-                }
-            }
+        let Some(repeat) = &object.repeat else {
+            self.expect(1, object.name.len()).within("name").within(&path)?;
+            self.add(object.name.clone(), form, start, common);
+            return Ok(());
+        };
+        let grid = Grid::read(repeat, dimension).within("repeat").within(&path)?;
+        let name = object.name.len() + grid.text_len();
+        self.expect(grid.len(), grid.len().saturating_mul(name))
+            .within("repeat.count")
+            .within(&path)?;
+        for index in 0..grid.len() {
+            let indices = grid.indices(index);
+            let name = format!("{}[{}]", object.name, text_of(&indices));
+            self.add(name, form, start.translated(grid.offset(&indices)), common);
         }
+        Ok(())
+    }
+
+    /// Objects may be added, whose names have so many bytes together.
+    fn expect(&mut self, objects: usize, names: usize) -> Result<(), Problem> {
+        let files = &self.meshes.files;
+        let total = self.objects.len().saturating_add(objects);
+        check(Limit::Objects, total, files.limits.objects)?;
+        let names = self.names.saturating_add(names);
+        check(Limit::Names, names, files.allowed(files.limits.names))?;
+        self.names = names;
         Ok(())
     }
 
@@ -146,7 +162,9 @@ impl<'a> Collected<'a> {
         let parts = self.meshes.read(&meshes.path)?.parts().iter();
         let parts = parts.filter(|part| !part.triangles.is_empty());
         let names: Vec<String> = parts.map(|part| part.name.clone()).collect();
+        let prefix = meshes.name.as_ref().map_or(0, |name| name.len() + 1);
         for part in names {
+            self.expect(1, prefix + part.len()).within(&path)?;
             let source = MeshSource {
                 path: meshes.path.clone(),
                 part: Some(part.clone()),
@@ -162,27 +180,24 @@ impl<'a> Collected<'a> {
         Ok(())
     }
 
-    fn add_robot(
-        &mut self,
-        robot: &'a RobotFile,
-        path: &str,
-        folder: &Path,
-    ) -> Result<(), ResolveError> {
+    fn add_robot(&mut self, robot: &'a RobotFile, path: &str) -> Result<(), ResolveError> {
         let dimension = self.file.dimension;
         let start = Placement::read(&robot.position, dimension).within("position").within(path)?;
         let Placement::Three(base) = start else {
             let problem = Problem::WrongDimension { what: "a robot", dimension };
             return Err(Fault::from(problem).within(path).into());
         };
-        let read = Robot::read(robot, folder)?;
+        let read = self.meshes.read_robot(robot)?;
         let links = read.links(robot, &base).within(path)?;
         let common = Common { groups: &robot.groups, query: robot.query, motion: None };
         let prefix = robot.name.as_deref().unwrap_or(&read.name);
         let first = self.objects.len();
-        let pairs = read.disabled_pairs(&links).into_iter();
+        let pairs = read.disabled_pairs().into_iter();
         self.disabled.extend(pairs.map(|pair| DisabledPair::new(pair.map(|link| first + link))));
+        self.expect(0, read.num_joints().saturating_mul(prefix.len())).within(path)?;
         self.joints_beyond_limits.extend(read.beyond_limits(robot, prefix));
         for RobotLink { name, shape, frame } in links {
+            self.expect(1, prefix.len() + 1 + name.len()).within(path)?;
             self.meshes.read_files(&shape)?;
             let form = self.form(ShapeRef::Inline(Box::new(shape)), path.to_owned(), "");
             self.add(format!("{prefix}/{name}"), form, Placement::Three(frame), common);
@@ -251,6 +266,12 @@ impl Grid {
         self.count.iter().fold(1, |product: usize, count| product.saturating_mul(*count))
     }
 
+    /// The most bytes that the indices of a name take, with their brackets.
+    fn text_len(&self) -> usize {
+        let digits = |count: &usize| count.to_string().len() + 1;
+        self.count.iter().map(digits).sum::<usize>() + 1
+    }
+
     /// The index along each axis; the last axis runs fastest.
     fn indices(&self, index: usize) -> Vec<usize> {
         let mut rest = index;
@@ -275,9 +296,4 @@ impl Grid {
 /// Indices as names have them.
 fn text_of(indices: &[usize]) -> String {
     indices.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
-}
-
-fn check_count(given: usize, limit: usize) -> Result<(), Problem> {
-    let what = "objects";
-    if given > limit { Err(Problem::TooMany { what, given, limit }) } else { Ok(()) }
 }

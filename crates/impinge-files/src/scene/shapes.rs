@@ -1,6 +1,7 @@
 //! From the shapes of a document to those of the library.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use impinge::math::{Point, Unit, Vector};
 use impinge::shape::{
@@ -14,8 +15,12 @@ use impinge_record::{
 use super::pose::{Placement, unit, vector};
 use super::{MeshTable, SceneSpace};
 use crate::error::{Fault, Within};
-use crate::format::{ChildFile, DiagonalsFile, HeightFieldFile, ShapeFile, ShapeRef};
-use crate::{Dimension, Problem};
+use crate::files::check;
+use crate::format::{ChildFile, DiagonalsFile, HeightFieldFile, MeshSource, ShapeFile, ShapeRef};
+use crate::{Dimension, Limit, Problem};
+
+/// What two shapes of files must have in common to be the same: path, part, bits of the scale, kind.
+type MeshKey = (PathBuf, Option<String>, [u64; 3], u8);
 
 /// Makes shapes; one of a name is made once.
 pub(super) struct Builder<'a, N: SceneSpace<D>, const D: usize> {
@@ -23,6 +28,9 @@ pub(super) struct Builder<'a, N: SceneSpace<D>, const D: usize> {
     shapes: &'a BTreeMap<String, ShapeFile>,
     meshes: &'a MeshTable,
     made: BTreeMap<&'a str, ShapeHandle<N, D>>,
+    of_files: BTreeMap<MeshKey, ShapeHandle<N, D>>,
+    /// The vertices and corners of the shapes of files.
+    elements: usize,
     /// The names of the shapes that hold the one that is being made.
     holders: Vec<&'a str>,
     depth: u32,
@@ -35,7 +43,16 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
         shapes: &'a BTreeMap<String, ShapeFile>,
         meshes: &'a MeshTable,
     ) -> Self {
-        Self { dimension, shapes, meshes, made: BTreeMap::new(), holders: Vec::new(), depth: 0 }
+        Self {
+            dimension,
+            shapes,
+            meshes,
+            made: BTreeMap::new(),
+            of_files: BTreeMap::new(),
+            elements: 0,
+            holders: Vec::new(),
+            depth: 0,
+        }
     }
 
     /// The shape of a reference.
@@ -133,8 +150,24 @@ impl<'a, N: SceneSpace<D>, const D: usize> Builder<'a, N, D> {
             }
             ShapeFile::Rounded { shape, radius } => self.rounded(shape, *radius),
             ShapeFile::Compound { children } => self.compound(children),
-            ShapeFile::MeshFile(source) => self.meshes.shape(source),
+            ShapeFile::MeshFile(source) => self.mesh_file(source),
         }
+    }
+
+    /// The shape of a file. One with the same part, scale and kind is the same shape.
+    fn mesh_file(&mut self, source: &MeshSource) -> Result<ShapeHandle<N, D>, Fault> {
+        let scale = source.scale.factors().map(f64::to_bits);
+        let key = (source.path.clone(), source.part.clone(), scale, source.kind as u8);
+        if let Some(made) = self.of_files.get(&key) {
+            return Ok(made.clone());
+        }
+        let files = &self.meshes.files;
+        let total = self.elements.saturating_add(self.meshes.elements(source)?);
+        check(Limit::Elements, total, files.allowed(files.limits.elements))?;
+        self.elements = total;
+        let made: ShapeHandle<N, D> = self.meshes.shape(source)?;
+        self.of_files.insert(key, made.clone());
+        Ok(made)
     }
 
     fn rounded(&mut self, shape: &ShapeRef, radius: f64) -> Result<ShapeHandle<N, D>, Fault> {

@@ -91,6 +91,16 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
     /// # Errors
     /// If a position leaves the range of numbers; the world is unchanged then, apart from the time.
     pub fn step(&mut self, seconds: f64) -> Result<(), RecordError> {
+        self.move_objects(seconds)?;
+        self.recorder.update();
+        Ok(())
+    }
+
+    /// [`Self::step`] without the update, for those who look at the positions before it.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn move_objects(&mut self, seconds: f64) -> Result<(), RecordError> {
         self.seconds += seconds;
         let living = self.movers.iter().filter(|mover| self.recorder.contains(mover.handle));
         let moved = living.filter_map(|mover| {
@@ -101,7 +111,6 @@ impl<N: SceneSpace<D>, const D: usize> SceneWorld<N, D> {
         if !moved.is_empty() && seconds != 0.0 {
             self.recorder.set_positions(&moved)?;
         }
-        self.recorder.update();
         Ok(())
     }
 

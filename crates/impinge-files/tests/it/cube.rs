@@ -139,7 +139,7 @@ pub(crate) fn ply_binary(is_little: bool) -> Vec<u8> {
 }
 
 /// Positions, then indices of 16 bits.
-fn gltf_buffer() -> Vec<u8> {
+pub(crate) fn gltf_buffer() -> Vec<u8> {
     let mut bytes: Vec<u8> = CORNERS.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
     let indices = triangles().into_iter().flatten();
     bytes.extend(indices.flat_map(|index| u16::try_from(index).expect("below 8").to_le_bytes()));
@@ -161,8 +161,19 @@ fn gltf_json(buffer: &str) -> String {
 }
 
 pub(crate) fn gltf_text() -> String {
+    gltf_with("")
+}
+
+/// With more buffers behind its own.
+pub(crate) fn gltf_with(more: &str) -> String {
     let data = base64(&gltf_buffer());
-    gltf_json(&format!("\"uri\": \"data:application/octet-stream;base64,{data}\", "))
+    let text = gltf_json(&format!("\"uri\": \"data:application/octet-stream;base64,{data}\", "));
+    text.replace("\"byteLength\": 168}", &format!("\"byteLength\": 168}}{more}"))
+}
+
+/// With its buffer in a file.
+pub(crate) fn gltf_with_uri(uri: &str) -> String {
+    gltf_json(&format!("\"uri\": \"{uri}\", "))
 }
 
 /// The first corner is the origin and not written: the accessor of the positions has no view of its own, and seven
@@ -189,11 +200,17 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 pub(crate) fn glb() -> Vec<u8> {
-    let mut json = gltf_json("").into_bytes();
+    glb_with("{\"byteLength\": 168}", 168)
+}
+
+/// With these buffers, and a binary chunk of so many bytes.
+pub(crate) fn glb_with(buffers: &str, bytes: usize) -> Vec<u8> {
+    let mut json = gltf_json("").replace("{\"byteLength\": 168}", buffers).into_bytes();
     while !json.len().is_multiple_of(4) {
         json.push(b' ');
     }
-    let buffer = gltf_buffer();
+    let mut buffer = gltf_buffer();
+    buffer.resize(bytes, 0);
     let mut bytes = b"glTF".to_vec();
     let length = 12 + 8 + json.len() + 8 + buffer.len();
     for number in [2, length, json.len()] {

@@ -141,7 +141,9 @@ fn a_six_axis_arm_with_meshes() {
     let urdf = six_axes(folder.path());
     let path = folder.path().join("arm_description/urdf/six.urdf");
     fs::write(&path, &urdf).expect("it is written");
-    let upright = load(&path).expect("packages are found above the file");
+    fs::write(folder.path().join("arm_description/package.xml"), "<package/>")
+        .expect("it is written");
+    let upright = load(&path).expect("the package is found above the file");
     assert_eq!(upright.names().len(), 7, "the links");
     assert_eq!(upright.mesh_files().count(), 7, "their meshes");
     let mut world = upright.world::<f64, 3>().expect("a world");

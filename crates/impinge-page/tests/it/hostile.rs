@@ -21,7 +21,9 @@ fn answered(engine: &mut Engine, bytes: &[u8]) -> Value {
     let answer = engine.call(bytes);
     let (text, payload) = parts(&answer).expect("an answer has the layout of a message");
     assert!(payload.len() % 4 == 0, "sections are aligned");
-    serde_json::from_slice(text).expect("its text is JSON")
+    let answer: Value = serde_json::from_slice(text).expect("its text is JSON");
+    assert_eq!(answer["error"].is_string(), answer["code"].is_string(), "an error has a code");
+    answer
 }
 
 /// A generator of the family of Marsaglia's xorshift.

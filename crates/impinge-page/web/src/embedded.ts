@@ -1,14 +1,13 @@
 // What the file carries: the scene that it opens, a recording, and the engine.
 
+import { PageError } from "./messages";
+
 export interface Scene {
   open: "recording" | "live" | "samples";
   title: string;
   /** Where the bytes of a live recording come from. */
   log?: string;
 }
-
-/** The file lacks something that it needs; the text names it. */
-export class FileError extends Error {}
 
 /** What the page opens. */
 export function readScene(): Scene {
@@ -31,7 +30,7 @@ export async function readModule(): Promise<Uint8Array<ArrayBuffer>> {
 function textOf(id: string): string {
   const text = document.getElementById(id)?.textContent?.trim();
   if (!text) {
-    throw new FileError(`the file has no element #${id} with a text in it`);
+    throw new PageError(`The file has no element #${id} with a text in it.`);
   }
   return text;
 }

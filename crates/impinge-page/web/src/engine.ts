@@ -27,8 +27,16 @@ export interface Exports {
 /** What a stage is made of. */
 export type Source = { kind: "recording"; bytes: Uint8Array } | { kind: "stream" } | { kind: "sample"; name: string };
 
-/** The engine refused a message; the text is for people, and nothing has changed. */
-export class EngineError extends Error {}
+/** The engine refused a message, and nothing has changed. The text is not for readers: `messages.ts` has theirs. */
+export class EngineError extends Error {
+  constructor(
+    text: string,
+    /** What went wrong, in a word of the protocol. */
+    readonly code: string,
+  ) {
+    super(text);
+  }
+}
 
 /** Compiles a module. It asks nothing of its surroundings, so that it has no imports. */
 export async function loadEngine(bytes: Uint8Array<ArrayBuffer>): Promise<Engine> {
@@ -130,7 +138,7 @@ export class Engine {
     const text = this.encoder.encode(JSON.stringify(message));
     const start = 4 + padded(text.length);
     const address = this.exports.reserve(start + payload.length);
-    if (address === 0) throw new EngineError(`there is no memory for ${payload.length} bytes`);
+    if (address === 0) throw new EngineError(`there is no memory for ${payload.length} bytes`, "memory");
     // `reserve` and `call` may move the memory: views are made after each.
     const bytes = new Uint8Array(this.exports.memory.buffer, address, start + payload.length);
     new DataView(bytes.buffer, address).setUint32(0, text.length, true);
@@ -146,7 +154,7 @@ export class Engine {
     const length = new DataView(buffer, address).getUint32(0, true);
     const text: unknown = JSON.parse(this.decoder.decode(new Uint8Array(buffer, address + 4, length)));
     if (text !== null && typeof text === "object" && "error" in text) {
-      throw new EngineError(String(text.error));
+      throw new EngineError(String(text.error), "code" in text ? String(text.code) : "");
     }
     return { text, payload: new Payload(buffer, address + 4 + padded(length)) };
   }

@@ -2,6 +2,7 @@
 
 import { type Engine, EngineError } from "./engine";
 import { number } from "./format";
+import { sentence } from "./messages";
 import { type Links, objectPanel, pairPanel, rayPanel } from "./panels";
 import type { Info, Vec3 } from "./protocol";
 import type { AnswerLine } from "./view";
@@ -73,7 +74,8 @@ export class Inquiry {
       else this.write("", () => []);
     } catch (error) {
       if (!(error instanceof EngineError)) throw error;
-      this.write(error.message, () => [document.createTextNode(error.message)]);
+      const text = sentence(error);
+      this.write(text, () => [document.createTextNode(text)]);
     }
     return [];
   }

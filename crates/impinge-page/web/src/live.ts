@@ -1,13 +1,25 @@
 // A recording that grows while it is watched.
 
+import { PageError } from "./messages";
+
 /** Hands over the bytes of a stream in order, and returns when it ends; a failed request is an error with its reason. */
 export async function follow(address: string, take: (bytes: Uint8Array) => void): Promise<void> {
-  const response = await fetch(address);
-  if (!response.ok || !response.body) throw new Error(`${address} answers ${response.status} ${response.statusText}`);
+  const response = await fetch(address).catch(lost);
+  if (!response.ok || !response.body) throw new PageError(refusal(response));
   const reader = response.body.getReader();
   for (;;) {
-    const { done, value } = await reader.read();
+    const { done, value } = await reader.read().catch(lost);
     if (done) return;
     take(value);
   }
+}
+
+/** Why there is no stream. */
+function refusal({ status, statusText }: Response): string {
+  if (status === 503) return "Too many pages follow this recording. Close one of them and load this page again.";
+  return `The recording cannot be followed: its program answers ${status} ${statusText}.`;
+}
+
+function lost(): never {
+  throw new PageError("The connection to the program of this recording is lost.");
 }

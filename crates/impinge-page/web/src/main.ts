@@ -7,6 +7,7 @@ import { type Engine, loadEngine } from "./engine";
 import { sampleInAddress, showGallery } from "./gallery";
 import { interact } from "./interaction";
 import { follow } from "./live";
+import { sentence } from "./messages";
 import type { Info } from "./protocol";
 import { makeRenderer } from "./view";
 import { Viewer } from "./viewer";
@@ -82,7 +83,7 @@ class Page {
       });
     follow(address, take).then(
       () => this.viewer?.ended(),
-      (error: unknown) => complain(`The recording cannot be followed: ${text(error)}`),
+      (error: unknown) => complain(sentence(error)),
     );
   }
 }
@@ -110,13 +111,8 @@ function attempt(act: () => void): void {
   try {
     act();
   } catch (error) {
-    complain(text(error));
+    complain(sentence(error));
   }
-}
-
-/** The message of whatever was thrown. */
-function text(error: unknown): string {
-  return error instanceof Error ? error.message : String(error);
 }
 
 /** A page that cannot be opened shows the error instead of staying blank. */
@@ -126,4 +122,4 @@ async function main(): Promise<void> {
   page.open();
 }
 
-main().catch((error: unknown) => complain(`This page cannot be shown: ${text(error)}`));
+main().catch((error: unknown) => complain(`This page cannot be shown. ${sentence(error)}`));

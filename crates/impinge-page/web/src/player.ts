@@ -113,7 +113,7 @@ export class Player {
       this.wanted = null;
       if (step !== this.status.step) this.take(this.engine.seek(step));
     }
-    if (this.playing) this.run(Math.min(seconds, MAX_PAUSE));
+    if (this.playing) this.run(Math.max(0, Math.min(seconds, MAX_PAUSE)));
   }
 
   /** Takes the whole due steps. */
@@ -121,7 +121,7 @@ export class Player {
     const step = this.info.time_step > 0 ? this.info.time_step : 1 / 60;
     this.owed += (seconds * this.speed) / step;
     const steps = Math.min(Math.floor(this.owed), MAX_STEPS);
-    if (steps === 0) return;
+    if (steps <= 0) return;
     this.owed = Math.min(this.owed - steps, 1);
     if (this.atEnd) {
       this.playing = false;

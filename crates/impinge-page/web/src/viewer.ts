@@ -7,6 +7,7 @@ import { type Engine, EngineError } from "./engine";
 import { counted } from "./format";
 import { Inquiry } from "./inquiry";
 import { Layers } from "./layers";
+import { sentence } from "./messages";
 import { eventList, eventText, readoutList } from "./panels";
 import { Player } from "./player";
 import type { Info, Status } from "./protocol";
@@ -42,8 +43,10 @@ export class Viewer {
   private pace = 0;
   /** What differs from the engine's state or from the camera. */
   private stale = { ...ALL };
-  /** When things were done last, in milliseconds. */
-  private last = { time: 0, panels: 0, summary: 0 };
+  /** The time of the last picture, in milliseconds; none was drawn yet. */
+  private time: number | null = null;
+  /** When panels and the summary were written last; they are out of date. */
+  private last = { panels: -Infinity, summary: -Infinity };
 
   constructor(
     private readonly engine: Engine,
@@ -68,7 +71,7 @@ export class Viewer {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.recolor(), {
       signal: this.signal,
     });
-    this.loop(performance.now());
+    requestAnimationFrame((time) => this.loop(time));
   }
 
   /** Aborted by `close`: listeners end with it. */
@@ -79,7 +82,7 @@ export class Viewer {
   /** The frame, the picture and the panels are made anew. */
   refresh(): void {
     this.stale = { ...ALL };
-    this.last.panels = 0;
+    this.last.panels = -Infinity;
   }
 
   /** Only the camera moved. */
@@ -124,7 +127,7 @@ export class Viewer {
       act();
     } catch (error) {
       if (!(error instanceof EngineError)) throw error;
-      this.complain(error.message);
+      this.complain(sentence(error));
     }
   }
 
@@ -138,15 +141,17 @@ export class Viewer {
     this.stale = { ...ALL };
     this.form.update(status.controls);
     this.transport.update();
-    if (status.diverged) this.complain(status.diverged);
+    if (status.diverged) this.complain(`The replay differs from its recording (${status.diverged}).`);
   }
 
-  /** Once for each picture of the screen, until the stage is closed. */
+  /** Once for each picture of the screen, until the stage is closed. All times are those of pictures: other clocks
+   * may be ahead of them. */
   private loop(time: number): void {
     if (this.signal.aborted) return;
-    this.attempt(() => this.player.tick((time - this.last.time) / 1000));
-    this.watchPace(time - this.last.time);
-    this.last.time = time;
+    const passed = Math.max(0, time - (this.time ?? time));
+    this.time = time;
+    this.attempt(() => this.player.tick(passed / 1000));
+    this.watchPace(passed);
     this.attempt(() => this.bringUpToDate(time));
     requestAnimationFrame((next) => this.loop(next));
   }

@@ -269,3 +269,16 @@ test("a file that lacks its engine says so", options, async () => {
   assert.match(await textOf(page, "#notice"), /This page cannot be shown/);
   await page.close();
 });
+
+test("a sample runs at once, though the clock is ahead of the first picture", options, async () => {
+  const { page, errors } = await visit(browser, "about:blank", { fake: true, motion: true });
+  // The pictures of this browser have the times of half a second ago.
+  await page.evaluateOnNewDocument(() => {
+    const later = performance.now.bind(performance);
+    performance.now = () => later() + 500;
+  });
+  await page.goto(`${samples}#sample=boxes2:60`);
+  await until(page, /^step [1-9]/);
+  assert.deepEqual(errors, []);
+  await page.close();
+});

@@ -122,7 +122,10 @@ class FakeEngine {
   }
 
   private go(message: Record<string, unknown>): object {
-    this.step = message.do === "seek" ? (message.step as number) : this.step + ((message.steps as number) ?? 1);
+    const steps = ((message.do === "seek" ? message.step : message.steps) as number) ?? 1;
+    // As the module refuses them.
+    if (!(Number.isInteger(steps) && steps >= 0)) return { error: `invalid value: ${steps}`, code: "message" };
+    this.step = message.do === "seek" ? steps : this.step + steps;
     this.step = Math.min(this.step, this.stage.steps ?? Infinity);
     this.moved.clear();
     return this.status();
@@ -222,7 +225,7 @@ class FakeEngine {
 
   private object(object: number): object {
     const box = this.boxes[object];
-    if (!box) return { error: `no object has the number ${object}` };
+    if (!box) return { error: `no object has the number ${object}`, code: "no-object" };
     return {
       object,
       shape: { kind: "cuboid", text: "cuboid, half extents 0.5 × 0.5 × 0.5" },

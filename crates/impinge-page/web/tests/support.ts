@@ -92,6 +92,10 @@ export interface Look {
   touch?: boolean;
   /** With the engine of boxes instead of the module. */
   fake?: boolean;
+  /** Samples run at once, as they do for readers who do not prefer less motion. */
+  motion?: boolean;
+  /** Nothing is drawn: software would take its time, and the test does not look at pictures. */
+  undrawn?: boolean;
 }
 
 export async function visit(browser: Browser, address: string, look: Look = {}): Promise<Visit> {
@@ -111,12 +115,35 @@ export async function visit(browser: Browser, address: string, look: Look = {}):
   });
   await page.emulateMediaFeatures([
     { name: "prefers-color-scheme", value: look.dark ? "dark" : "light" },
-    { name: "prefers-reduced-motion", value: "reduce" },
+    { name: "prefers-reduced-motion", value: look.motion ? "no-preference" : "reduce" },
   ]);
+  // A banner is an error too, however soon it is gone again.
+  await page.exposeFunction("banner", (text: string) => errors.push(`banner: ${text}`));
+  await page.evaluateOnNewDocument(watchBanner);
+  if (look.undrawn) await page.evaluateOnNewDocument(drawNothing);
   if (look.fake)
     await page.evaluateOnNewDocument(readFileSync(join(process.env.IMPINGE_PAGE_TESTS ?? "", "fake.js"), "utf8"));
   await page.goto(address);
   return { page, errors };
+}
+
+/** Runs in the page: all goes on as it does elsewhere, but for the graphics processor. */
+function drawNothing(): void {
+  const context = WebGL2RenderingContext.prototype;
+  context.drawArrays = context.drawElements = context.drawArraysInstanced = context.drawElementsInstanced = () => {};
+}
+
+/** Runs in the page: reports each text of the notice while it is shown. */
+function watchBanner(): void {
+  const report = (window as unknown as { banner: (text: string) => void }).banner;
+  addEventListener("DOMContentLoaded", () => {
+    const notice = document.getElementById("notice");
+    if (!notice) return;
+    const look = (): void => {
+      if (!notice.hidden) report(notice.querySelector("p")?.textContent ?? "");
+    };
+    new MutationObserver(look).observe(notice, { attributes: true, childList: true, subtree: true });
+  });
 }
 
 /** Waits until the summary, which is what assistive technology reads, matches. */

@@ -1,0 +1,113 @@
+//! Which objects of a world may be near each other, one pair after the other: none are kept.
+
+use core::cell::Cell;
+use core::cmp::Ordering;
+
+use impinge::batch::{BatchError, Control, Shapes, Side, boxes};
+use impinge::bounding_volume::{Aabb, BoundingVolume as _};
+use impinge::partitioning::BoxTree;
+use impinge::world::{CollisionObject, CollisionWorld};
+
+use crate::error::CliError;
+use crate::space::Stage;
+
+/// The pairs of a world are computed within the distance by so many rounding errors of it.
+const ROUNDING_ERRORS: f64 = 1024.0;
+
+/// The objects of a world and the boxes around them.
+pub(crate) struct Boxed<'a, N: Stage<D>, const D: usize, T> {
+    objects: Vec<&'a CollisionObject<N, D, T>>,
+    tree: BoxTree<N, D>,
+    /// The object of each box of the tree: what is nowhere has none.
+    owners: Vec<usize>,
+}
+
+impl<'a, N: Stage<D>, const D: usize, T> Boxed<'a, N, D, T> {
+    /// The boxes of all objects. O(n log n).
+    pub(crate) fn new(world: &'a CollisionWorld<N, D, T>) -> Result<Self, CliError> {
+        let objects: Vec<_> = world.collision_objects().collect();
+        let shapes: Vec<_> = objects.iter().map(|object| object.shape().clone()).collect();
+        let poses: Vec<_> = objects.iter().map(|object| N::pose(object.position())).collect();
+        let refused = |error: BatchError| CliError::Objects(error.to_string());
+        let side = Side::try_new(Shapes::Each(&shapes), &poses).map_err(refused)?;
+        let found = boxes(&side, &Control::new()).map_err(refused)?;
+        let (owners, found): (Vec<_>, Vec<_>) =
+            found.into_iter().enumerate().filter_map(|(index, aabb)| Some((index, aabb?))).unzip();
+        let tree = BoxTree::try_from_boxes(&found);
+        let tree = tree.map_err(|error| CliError::Objects(error.to_string()))?;
+        Ok(Self { objects, tree, owners })
+    }
+
+    /// An object by its number.
+    pub(crate) fn object(&self, index: u32) -> &'a CollisionObject<N, D, T> {
+        self.objects[index as usize]
+    }
+
+    /// How many objects there are.
+    pub(crate) fn len(&self) -> usize {
+        self.objects.len()
+    }
+
+    /// Calls `visit` with the numbers of each two objects, the first lower, that may interact by their groups and whose
+    /// boxes are at most a distance apart; `reach` gives the distance for an object, and an object that is tested
+    /// against itself is a pair too. `goes_on` is asked before each object.
+    pub(crate) fn each(
+        &self,
+        reach: impl Fn(&CollisionObject<N, D, T>) -> N,
+        mut visit: impl FnMut([u32; 2]),
+        goes_on: impl Fn() -> bool,
+    ) {
+        for (place, (owner, aabb)) in self.owners.iter().zip(self.tree.boxes()).enumerate() {
+            if !goes_on() {
+                return;
+            }
+            let own = self.objects[*owner];
+            let searched = grown(aabb, reach(own));
+            self.tree.visit_overlapping(&searched, |found| {
+                let other = self.objects[self.owners[found]];
+                let groups = own.collision_groups();
+                let may = match place.cmp(&found) {
+                    Ordering::Less => groups.can_interact_with_groups(other.collision_groups()),
+                    Ordering::Equal => groups.can_interact_with_self(),
+                    Ordering::Greater => false,
+                };
+                if may {
+                    visit([*owner, self.owners[found]].map(number));
+                }
+            });
+        }
+    }
+}
+
+/// The number of an object. A tree numbers its boxes by 32 bits.
+fn number(index: usize) -> u32 {
+    u32::try_from(index).unwrap_or(u32::MAX)
+}
+
+/// A box, grown on all sides.
+fn grown<N: Stage<D>, const D: usize>(aabb: &Aabb<N, D>, reach: N) -> Aabb<N, D> {
+    let reach = reach * (N::ONE + N::EPSILON * N::lit(ROUNDING_ERRORS));
+    aabb.loosened(reach)
+}
+
+/// Refuses a world whose next update would keep more than `limit` pairs, if its boxes are fattened by `margin`.
+///
+/// Costs nothing where there are so few objects that all pairs are within the limit, and O(n log n) and the pairs up to
+/// the limit otherwise.
+pub(crate) fn check_pairs<N: Stage<D>, const D: usize, T>(
+    world: &CollisionWorld<N, D, T>,
+    margin: f64,
+    limit: usize,
+) -> Result<(), CliError> {
+    let objects = world.len();
+    if objects.saturating_mul(objects.saturating_sub(1)) / 2 <= limit {
+        return Ok(());
+    }
+    let reach = |object: &CollisionObject<N, D, T>| object.query_type().query_limit();
+    let longest = world.collision_objects().map(reach).fold(N::ZERO, impinge::math::max);
+    let others = N::lit(2.0 * margin) + longest;
+    let count = Cell::new(0_usize);
+    let visit = |_| count.set(count.get() + 1);
+    Boxed::new(world)?.each(|object| others + reach(object), visit, || count.get() <= limit);
+    if count.get() > limit { Err(CliError::TooManyPairs { limit }) } else { Ok(()) }
+}

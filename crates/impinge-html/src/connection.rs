@@ -1,0 +1,104 @@
+//! Connections that end at a deadline.
+
+use std::io::{self, Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+
+/// A connection of a client.
+///
+/// A time limit of the system counts from each read and write anew, so that a client which sends a byte now and then
+/// would never reach it. Here all reads and writes until the deadline share what is left.
+#[derive(Debug)]
+pub(crate) struct Connection {
+    stream: TcpStream,
+    deadline: Instant,
+}
+
+impl Connection {
+    /// A connection that has this long.
+    pub(crate) fn new(stream: TcpStream, time: Duration) -> io::Result<Self> {
+        stream.set_nodelay(true)?;
+        Ok(Self { stream, deadline: Instant::now() + time })
+    }
+
+    /// From now on it has this long.
+    pub(crate) fn allow(&mut self, time: Duration) {
+        self.deadline = Instant::now() + time;
+    }
+
+    /// The client has closed the connection, or sends more than it is asked for.
+    ///
+    /// Clients of this server say all in their first request; one that ends its side waits for no answer.
+    pub(crate) fn is_gone(&mut self) -> bool {
+        let mut byte = [0];
+        let read = self.stream.set_nonblocking(true).and_then(|()| self.stream.read(&mut byte));
+        let is_waiting = read.is_err_and(|error| error.kind() == io::ErrorKind::WouldBlock);
+        !is_waiting || self.stream.set_nonblocking(false).is_err()
+    }
+
+    /// What is left of the time.
+    fn left(&self) -> io::Result<Duration> {
+        let left = self.deadline.saturating_duration_since(Instant::now());
+        if left.is_zero() { Err(io::ErrorKind::TimedOut.into()) } else { Ok(left) }
+    }
+}
+
+impl Read for Connection {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        self.stream.set_read_timeout(Some(self.left()?))?;
+        self.stream.read(buffer)
+    }
+}
+
+impl Write for Connection {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.set_write_timeout(Some(self.left()?))?;
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::net::TcpListener;
+
+    use super::*;
+
+    /// Both ends of a connection; the first has no time left.
+    fn pair() -> (Connection, TcpStream) {
+        let listener = TcpListener::bind("127.0.0.1:0").expect("a free port");
+        let client = TcpStream::connect(listener.local_addr().expect("an address"));
+        let (server, _) = listener.accept().expect("a client");
+        (Connection::new(server, Duration::ZERO).expect("it is open"), client.expect("a server"))
+    }
+
+    #[test]
+    fn bytes_do_not_move_the_deadline() {
+        let (mut server, mut client) = pair();
+        client.write_all(b"GET /").expect("it is open");
+        let late = |result: io::Result<usize>| result.map_err(|error| error.kind());
+        assert_eq!(
+            late(server.read(&mut [0])),
+            Err(io::ErrorKind::TimedOut),
+            "though a byte is there"
+        );
+        assert_eq!(late(server.write(b"HTTP")), Err(io::ErrorKind::TimedOut));
+        server.allow(Duration::from_secs(60));
+        assert_eq!(late(server.read(&mut [0; 8])), Ok(5));
+    }
+
+    #[test]
+    fn a_client_that_closes_or_talks_on_is_gone() {
+        let (mut waiting, client) = pair();
+        assert!(!waiting.is_gone() && !waiting.is_gone(), "it waits");
+        drop(client);
+        // Ends: the system hands the end over at once, but promises no more than soon.
+        while !waiting.is_gone() {}
+        let (mut server, mut talker) = pair();
+        talker.write_all(b"more").expect("it is open");
+        while !server.is_gone() {}
+    }
+}

@@ -1,0 +1,28 @@
+// What a reader is told where something goes wrong. The engine's own words are for those who write pages.
+
+import { EngineError } from "./engine";
+
+/** An error whose text is written for readers. */
+export class PageError extends Error {}
+
+/** By the code of the engine. */
+const SENTENCES: Record<string, string> = {
+  message: "This page has made a mistake and goes on without what was asked. Loading it again may help.",
+  "unknown-sample": "There is no sample of this name.",
+  "no-object": "This object is gone.",
+  world: "The world does not take this position.",
+  sample: "The sample does not take this.",
+  "no-recording": "What this page carries is not a recording.",
+  version: "The recording was written by another version of impinge, which this page cannot read.",
+  damaged: "The recording is damaged and cannot be read.",
+  foreign: "The recording is of a kind of world, shape or filter that this page does not have.",
+  memory: "The browser has no memory left for this.",
+};
+const UNKNOWN = "Something went wrong in this page. Loading it again may help.";
+
+/** A sentence about whatever was thrown. What it was stands in the browser's console. */
+export function sentence(error: unknown): string {
+  if (error instanceof PageError) return error.message;
+  console.warn(error);
+  return (error instanceof EngineError && SENTENCES[error.code]) || UNKNOWN;
+}
