@@ -13,7 +13,6 @@ mod answer;
 mod checker;
 mod error;
 mod functions;
-mod kept_world;
 mod options;
 mod pairs;
 mod pictures;
@@ -25,18 +24,18 @@ mod shapes;
 mod side;
 mod space;
 mod supervise;
+mod threads;
 mod tiles;
 mod turning;
-mod typed_world;
 mod vectors;
 mod world;
-mod world_queries;
 
 use pyo3::prelude::*;
 
 /// The library behind the package `impinge`.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    threads::note_process(module)?;
     module.add_class::<shapes::Shape>()?;
     module.add_class::<world::World>()?;
     module.add_class::<checker::NativeChecker>()?;

@@ -6,6 +6,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::pictures::Pictured;
+use crate::threads::settle;
 use crate::turning::Turning;
 
 /// A scalar and a dimension.
@@ -85,6 +86,7 @@ pub(crate) trait Task {
 
 /// Runs a task in a scalar and a dimension.
 pub(crate) fn run_in<T: Task>(kind: Kind, task: T) -> PyResult<T::Answer> {
+    settle()?;
     match (kind.is_double, kind.is_spatial) {
         (false, false) => task.run::<f32, 2>(),
         (false, true) => task.run::<f32, 3>(),

@@ -9,18 +9,19 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::kept::KeptWorld;
+use super::queries::WorldQueries;
 use crate::answer::Column;
 use crate::error;
-use crate::kept_world::KeptWorld;
 use crate::options::{GroupLists, ObjectOptions, QueryOptions};
 use crate::pictures::{PictureView, picture};
 use crate::poses::Poses;
 use crate::shapes::ShapesArgument;
 use crate::side::SideArgument;
 use crate::space::{Kind, Numeric};
+use crate::threads::Crew;
 use crate::vectors::Vectors;
 use crate::world::{AnyWorld, Arrays};
-use crate::world_queries::WorldQueries;
 
 /// A world of the library.
 pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
@@ -206,8 +207,10 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
         Ok(())
     }
 
-    fn update(&mut self, py: Python<'_>) {
-        py.detach(|| self.world.update());
+    fn update(&mut self, py: Python<'_>) -> PyResult<()> {
+        let crew = Crew::of(py, None)?;
+        py.detach(|| crew.run(|| self.world.update()));
+        Ok(())
     }
 
     fn record(&mut self) -> PyResult<()> {

@@ -9,13 +9,13 @@ use impinge::world::{CollisionGroups, CollisionObject, NearObject, QueryFilter};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::typed::TypedWorld;
 use crate::answer::Column;
 use crate::error;
 use crate::options::FilterOptions;
 use crate::side::{Elements, GivenSide, SideArgument, common};
 use crate::space::{Kind, Numeric};
 use crate::supervise::{Call, each};
-use crate::typed_world::TypedWorld;
 use crate::vectors::Vectors;
 use crate::world::Arrays;
 

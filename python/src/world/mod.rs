@@ -3,21 +3,26 @@
 //! A handle in Python is a number of 64 bits: the index of the object, and above it how often that index was used before.
 //! It never comes to mean another object of its world.
 
+mod kept;
+mod queries;
+mod typed;
+
 use impinge::math::na::convert;
 use impinge::world::CollisionWorld;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::kept_world::KeptWorld;
+use self::kept::KeptWorld;
+use self::queries::{Asking, WorldQueries};
+use self::typed::TypedWorld;
 use crate::options::{FilterOptions, GroupLists, ObjectOptions, QueryOptions};
 use crate::pictures::PictureView;
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
 use crate::space::{Kind, Numeric, Task, run_in};
 use crate::supervise::{Call, Threads};
-use crate::typed_world::TypedWorld;
-use crate::world_queries::{Asking, WorldQueries};
+use crate::threads::settle;
 
 /// Columns as Python has them.
 pub(crate) type Arrays<'py> = PyResult<Vec<Bound<'py, PyAny>>>;
@@ -41,7 +46,7 @@ pub(crate) trait AnyWorld: Send + Sync {
     fn set_vertices(&mut self, handle: u64, vertices: &Bound<'_, PyAny>) -> PyResult<()>;
     fn set_groups(&mut self, handles: &[u64], groups: &GroupLists) -> PyResult<()>;
     fn set_query_types(&mut self, handles: &[u64], query: &QueryOptions) -> PyResult<()>;
-    fn update(&mut self, py: Python<'_>);
+    fn update(&mut self, py: Python<'_>) -> PyResult<()>;
     fn record(&mut self) -> PyResult<()>;
     fn stop_recording(&mut self) -> Option<Vec<u8>>;
     fn is_recorded(&self) -> bool;
@@ -120,6 +125,7 @@ impl World {
     }
 
     fn set_vertices(&mut self, handle: u64, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
+        settle()?;
         self.world.set_vertices(handle, vertices)
     }
 
@@ -131,11 +137,12 @@ impl World {
         self.world.set_query_types(&handles, &query)
     }
 
-    fn update(&mut self, py: Python<'_>) {
-        self.world.update(py);
+    fn update(&mut self, py: Python<'_>) -> PyResult<()> {
+        self.world.update(py)
     }
 
     fn record(&mut self) -> PyResult<()> {
+        settle()?;
         self.world.record()
     }
 
@@ -152,9 +159,10 @@ impl World {
         &self,
         py: Python<'py>,
         view: PictureView,
-    ) -> (&'static str, Bound<'py, PyBytes>) {
+    ) -> PyResult<(&'static str, Bound<'py, PyBytes>)> {
+        settle()?;
         let (format, bytes) = py.detach(|| self.world.picture(&view));
-        (format, PyBytes::new(py, &bytes))
+        Ok((format, PyBytes::new(py, &bytes)))
     }
 
     fn handles(&self) -> Vec<u64> {
@@ -194,6 +202,7 @@ impl World {
         threads: Option<Threads>,
         progress: Option<Py<PyAny>>,
     ) -> Arrays<'py> {
+        settle()?;
         let call = Call::new(threads, progress);
         self.world.queries().ask(&question, (&given, self.kind), filter.as_ref(), &call)
     }
