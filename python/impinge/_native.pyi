@@ -216,6 +216,7 @@ def signed_distance(
     poses: PosesLike,
     points: ArrayLike,
     *,
+    surface: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Any: ...
@@ -224,6 +225,7 @@ def contains(
     poses: PosesLike,
     points: ArrayLike,
     *,
+    surface: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Any: ...

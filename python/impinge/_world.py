@@ -409,12 +409,25 @@ class World:
         self,
         points: ArrayLike,
         *,
+        surface: bool = False,
         filter: Filter | None = None,
         threads: int | None = None,
         progress: Progress | None = None,
     ) -> Rows:
-        """For each point (D,) or (n, D) the objects that hold it, in order of handles."""
-        return Rows(*self._ask(Question("containing"), [points], filter, threads, progress))
+        """For each point (D,) or (n, D) the objects that hold it, in order of handles.
+
+        Closed meshes in 3D and closed lines in 2D are solids here. ValueError names an object that the question is about
+        whose mesh, line or height field is not closed, near or far: leave it out with `filter`, or have such objects asked as
+        surfaces, which hold the points on them, with `surface=True`.
+
+        >>> from impinge import *
+        >>> world = World(dim=2)
+        >>> room = world.add(Polyline([[0, 0], [4, 0], [4, 4], [0, 4]], [[0, 1], [1, 2], [2, 3], [3, 0]]), None)
+        >>> world.containing([[2, 2], [5, 2]]).handle.tolist()
+        [0]
+        """
+        question = Question("containing", surface=bool(surface))
+        return Rows(*self._ask(question, [points], filter, threads, progress))
 
     def project_points(
         self,

@@ -22,6 +22,7 @@ mod recordings;
 mod scene;
 mod shapes;
 mod side;
+mod solid;
 mod space;
 mod supervise;
 mod threads;

@@ -357,6 +357,14 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         }
     }
 
+    /// The shapes that are given.
+    pub(crate) fn distinct(&self) -> &[ShapeHandle<N, D>] {
+        match self {
+            Self::One(shape) => core::slice::from_ref(*shape),
+            Self::Each(shapes) | Self::Picked { shapes, .. } => shapes,
+        }
+    }
+
     /// The shape of an element; a single one is for all.
     pub(crate) fn at(&self, element: usize) -> &ShapeHandle<N, D> {
         let index = |len| if len == 1 { 0 } else { element };

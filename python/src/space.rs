@@ -6,6 +6,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::pictures::Pictured;
+use crate::solid::Bounding;
 use crate::threads::settle;
 use crate::turning::Turning;
 
@@ -69,11 +70,14 @@ impl Kind {
 
 /// A scalar and a dimension in which Python works.
 pub(crate) trait Numeric<const D: usize>:
-    Recordable<D> + Element + Pictured<D> + Turning<D>
+    Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D>
 {
 }
 
-impl<N: Recordable<D> + Element + Pictured<D> + Turning<D>, const D: usize> Numeric<D> for N {}
+impl<N, const D: usize> Numeric<D> for N where
+    N: Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D>
+{
+}
 
 /// A computation that is generic over the scalar and the dimension. It is a type, because a closure cannot be generic.
 pub(crate) trait Task {

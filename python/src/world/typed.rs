@@ -1,5 +1,7 @@
 //! A world of one scalar and dimension behind [`AnyWorld`]: handles, bulk changes, events and contacts.
 
+use std::collections::BTreeMap;
+
 use impinge::math::Point;
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent};
 use impinge::query::Proximity;
@@ -18,6 +20,7 @@ use crate::pictures::{PictureView, picture};
 use crate::poses::Poses;
 use crate::shapes::ShapesArgument;
 use crate::side::SideArgument;
+use crate::solid::{Standing, standing};
 use crate::space::{Kind, Numeric};
 use crate::threads::Crew;
 use crate::vectors::Vectors;
@@ -29,11 +32,13 @@ pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     margin: N,
     /// For each index how often it was used, and the handle of the library that has it now.
     slots: Vec<(u32, CollisionObjectHandle)>,
+    /// The objects that are surfaces or lines, or have some as children.
+    pub(super) surfaces: BTreeMap<CollisionObjectHandle, Standing>,
 }
 
 impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
     pub(crate) const fn new(world: KeptWorld<N, D>, margin: N) -> Self {
-        Self { world, margin, slots: Vec::new() }
+        Self { world, margin, slots: Vec::new(), surfaces: BTreeMap::new() }
     }
 
     /// The handles of the library.
@@ -101,7 +106,22 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
                 return Err(error::of_row(&refused, "shapes", row));
             }
         }
+        for (row, handle) in handles.iter().enumerate() {
+            self.note_surface(*handle, &shape_of(row));
+        }
         Ok(())
+    }
+
+    /// Notes what an object is that has this shape now.
+    pub(super) fn note_surface(
+        &mut self,
+        handle: CollisionObjectHandle,
+        shape: &ShapeHandle<N, D>,
+    ) {
+        match standing(shape) {
+            Some(standing) => self.surfaces.insert(handle, standing),
+            None => self.surfaces.remove(&handle),
+        };
     }
 
     /// The shape of an object with other vertices; `None` if it is no mesh and no line of segments.
@@ -144,12 +164,19 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
                 }
             }
         }
+        for (element, handle) in added.iter().enumerate() {
+            self.note_surface(*handle, given.shape(element));
+        }
         Ok(added.into_iter().map(|handle| self.name(handle)).collect())
     }
 
     fn remove(&mut self, handles: &[u64]) -> PyResult<()> {
         let fresh = self.fresh(handles, "handles")?;
-        self.world.remove(&fresh).map_err(|refused| error::of_call(&refused))
+        self.world.remove(&fresh).map_err(|refused| error::of_call(&refused))?;
+        for handle in &fresh {
+            self.surfaces.remove(handle);
+        }
+        Ok(())
     }
 
     fn set_poses(&mut self, handles: &[u64], poses: &Bound<'_, PyAny>) -> PyResult<()> {
