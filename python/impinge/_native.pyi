@@ -1,7 +1,7 @@
 """The extension module: what `impinge` exports of it is documented there."""
 
 from collections.abc import Sequence
-from typing import Any, Protocol, TypeAlias, final
+from typing import Any, Literal, Protocol, TypeAlias, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +20,8 @@ from impinge._results import (
 from impinge._shapes import Picked
 from impinge._tiles import Tiles
 
+__version__: str
+
 class Progress(Protocol):
     def update(self, count: int, /) -> Any: ...
 
@@ -31,11 +33,21 @@ class Shape:
     @property
     def dim(self) -> int: ...
     @property
-    def dtype(self) -> str: ...
+    def dtype(self) -> Literal["float32", "float64"]: ...
+    @property
+    def vertices(self) -> NDArray[np.floating[Any]]: ...
+    @property
+    def faces(self) -> NDArray[np.uint32]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __hash__(self) -> int: ...
     def _repr_html_(self) -> str: ...
 
 Shapes: TypeAlias = Shape | Sequence[Shape] | Picked
 PosesLike: TypeAlias = ArrayLike | Poses | None
+
+Floats: TypeAlias = NDArray[np.floating[Any]]
+# One shape for each element: the answer is an array.
+Several: TypeAlias = Sequence[Shape] | Picked
 
 @final
 class World:
@@ -43,7 +55,7 @@ class World:
     @property
     def dim(self) -> int: ...
     @property
-    def dtype(self) -> str: ...
+    def dtype(self) -> Literal["float32", "float64"]: ...
     @property
     def is_recorded(self) -> bool: ...
     def add(self, shapes: Shapes, poses: PosesLike, options: Any) -> list[int]: ...
@@ -56,38 +68,71 @@ class World:
     def update(self) -> None: ...
     def record(self) -> None: ...
     def stop_recording(self) -> bytes | None: ...
+    def to_bytes(self) -> tuple[bytes, list[int]]: ...
+    def fill(self, bytes: bytes, ages: list[int]) -> None: ...
     def picture(self, view: Any) -> tuple[str, bytes]: ...
     def handles(self) -> list[int]: ...
     def shapes(self, handles: Any) -> list[Shape]: ...
-    def poses(self, handles: Any) -> NDArray[Any]: ...
-    def contact_events(self) -> list[NDArray[Any]]: ...
-    def proximity_events(self) -> list[NDArray[Any]]: ...
-    def contacts(self) -> list[NDArray[Any]]: ...
-    def proximities(self) -> list[NDArray[Any]]: ...
+    def poses(self, handles: Any) -> Floats: ...
+    def contact_events(self) -> list[Floats]: ...
+    def proximity_events(self) -> list[Floats]: ...
+    def contacts(self) -> list[Floats]: ...
+    def proximities(self) -> list[Floats]: ...
     def ask(
         self, question: Any, given: list[Any], filter: Any, threads: int | None, progress: Progress | None
-    ) -> list[NDArray[Any]]: ...
+    ) -> list[Floats]: ...
 
 def picture_of(shapes: Shapes, poses: PosesLike, view: Any) -> tuple[str, bytes]: ...
 def recording_page(bytes: bytes, title: str) -> str | None: ...
 @final
 class NativeChecker:
     def __new__(cls, *arguments: Any) -> NativeChecker: ...
-    def set_obstacles(self, shapes: list[Shape], poses: NDArray[Any], ignored: NDArray[np.uint32]) -> None: ...
-    def place(self, rows: NDArray[Any], of_bodies: bool) -> NDArray[Any]: ...
+    def set_obstacles(self, shapes: list[Shape], poses: Floats, ignored: NDArray[np.uint32]) -> None: ...
+    def place(self, rows: Floats, of_bodies: bool) -> Floats: ...
     def ask(
         self,
         question: str,
-        rows: NDArray[Any],
+        rows: Floats,
         limit: float,
         count: int,
         threads: int | None,
         progress: Progress | None,
-    ) -> list[NDArray[Any]]: ...
+    ) -> list[Floats]: ...
 
 def scene_bytes(shapes: Shapes, poses: PosesLike) -> bytes: ...
-def scene_of_bytes(bytes: bytes) -> tuple[list[Shape], NDArray[Any], int, str]: ...
+def scene_of_bytes(bytes: bytes) -> tuple[list[Shape], Floats, int, Literal["float32", "float64"]]: ...
 def shape_of_bytes(bytes: bytes) -> Shape: ...
+@overload
+def distance(
+    shape1: Shape,
+    poses1: None,
+    shape2: Shape,
+    poses2: None,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> float: ...
+@overload
+def distance(
+    shape1: Several,
+    poses1: PosesLike,
+    shape2: Shapes,
+    poses2: PosesLike,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Floats: ...
+@overload
+def distance(
+    shape1: Shapes,
+    poses1: PosesLike,
+    shape2: Several,
+    poses2: PosesLike,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Floats: ...
+@overload
 def distance(
     shape1: Shapes,
     poses1: PosesLike,
@@ -117,6 +162,40 @@ def witness(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Witness: ...
+@overload
+def proximity(
+    shape1: Shape,
+    poses1: None,
+    shape2: Shape,
+    poses2: None,
+    margin: float = 0.0,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> int: ...
+@overload
+def proximity(
+    shape1: Several,
+    poses1: PosesLike,
+    shape2: Shapes,
+    poses2: PosesLike,
+    margin: float = 0.0,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> NDArray[np.uint8]: ...
+@overload
+def proximity(
+    shape1: Shapes,
+    poses1: PosesLike,
+    shape2: Several,
+    poses2: PosesLike,
+    margin: float = 0.0,
+    *,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> NDArray[np.uint8]: ...
+@overload
 def proximity(
     shape1: Shapes,
     poses1: PosesLike,
@@ -185,7 +264,7 @@ def pairs_within(
 ) -> NDArray[np.uint32]: ...
 def boxes(
     shapes: Shapes, poses: PosesLike, *, threads: int | None = None, progress: Progress | None = None
-) -> NDArray[Any]: ...
+) -> Floats: ...
 def pairs_in_tile(
     shapes: Shapes,
     poses: PosesLike,
@@ -197,10 +276,10 @@ def pairs_in_tile(
     progress: Progress | None = None,
 ) -> NDArray[np.uint64]: ...
 def tile_cuts(
-    boxes: NDArray[Any], number: int, clearance: float, dim: int, dtype: str
-) -> tuple[NDArray[np.uint32], NDArray[Any]]: ...
-def tile_bounds(tiles: Tiles) -> NDArray[Any]: ...
-def tiles_meeting(tiles: Tiles, boxes: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.uint32]]: ...
+    boxes: Floats, number: int, clearance: float, dim: int, dtype: str
+) -> tuple[NDArray[np.uint32], Floats]: ...
+def tile_bounds(tiles: Tiles) -> Floats: ...
+def tiles_meeting(tiles: Tiles, boxes: Floats) -> tuple[NDArray[np.int64], NDArray[np.uint32]]: ...
 def tile_owners(tiles: Tiles, points: ArrayLike) -> NDArray[np.uint32]: ...
 def project_points(
     shape: Shapes,
@@ -211,6 +290,17 @@ def project_points(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Projection: ...
+@overload
+def signed_distance(
+    shape: Several,
+    poses: PosesLike,
+    points: ArrayLike,
+    *,
+    surface: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Floats: ...
+@overload
 def signed_distance(
     shape: Shapes,
     poses: PosesLike,
@@ -220,6 +310,17 @@ def signed_distance(
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Any: ...
+@overload
+def contains(
+    shape: Several,
+    poses: PosesLike,
+    points: ArrayLike,
+    *,
+    surface: bool = False,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> NDArray[np.bool_]: ...
+@overload
 def contains(
     shape: Shapes,
     poses: PosesLike,

@@ -18,6 +18,7 @@ mod pairs;
 mod pictures;
 mod points;
 mod poses;
+mod read_back;
 mod recordings;
 mod scene;
 mod shapes;
@@ -37,6 +38,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     threads::note_process(module)?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<shapes::Shape>()?;
     module.add_class::<world::World>()?;
     module.add_class::<checker::NativeChecker>()?;

@@ -6,6 +6,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::pictures::Pictured;
+use crate::read_back::Cornered;
 use crate::solid::Bounding;
 use crate::threads::settle;
 use crate::turning::Turning;
@@ -70,12 +71,12 @@ impl Kind {
 
 /// A scalar and a dimension in which Python works.
 pub(crate) trait Numeric<const D: usize>:
-    Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D>
+    Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D> + Cornered<D>
 {
 }
 
 impl<N, const D: usize> Numeric<D> for N where
-    N: Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D>
+    N: Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D> + Cornered<D>
 {
 }
 

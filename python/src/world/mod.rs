@@ -5,6 +5,7 @@
 
 mod kept;
 mod queries;
+mod state;
 mod typed;
 
 use impinge::math::na::convert;
@@ -50,6 +51,10 @@ pub(crate) trait AnyWorld: Send + Sync {
     fn record(&mut self) -> PyResult<()>;
     fn stop_recording(&mut self) -> Option<Vec<u8>>;
     fn is_recorded(&self) -> bool;
+    /// A world with the same objects as bytes, and how often each index was used.
+    fn to_bytes(&self) -> PyResult<(Vec<u8>, Vec<u32>)>;
+    /// Fills a new world.
+    fn fill(&mut self, bytes: &[u8], ages: &[u32]) -> PyResult<()>;
     fn picture(&self, view: &PictureView) -> (&'static str, Vec<u8>);
     fn handles(&self) -> Vec<u64>;
     fn shapes(&self, kind: Kind, handles: &[u64]) -> PyResult<Vec<crate::shapes::Shape>>;
@@ -139,6 +144,19 @@ impl World {
 
     fn update(&mut self, py: Python<'_>) -> PyResult<()> {
         self.world.update(py)
+    }
+
+    /// A world with the same objects as bytes, and how often each index was used.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, Vec<u32>)> {
+        settle()?;
+        let (bytes, ages) = self.world.to_bytes()?;
+        Ok((PyBytes::new(py, &bytes), ages))
+    }
+
+    /// Makes a new world that of `to_bytes`.
+    fn fill(&mut self, bytes: &[u8], ages: Vec<u32>) -> PyResult<()> {
+        settle()?;
+        self.world.fill(bytes, &ages)
     }
 
     fn record(&mut self) -> PyResult<()> {

@@ -29,9 +29,9 @@ use crate::world::{AnyWorld, Arrays};
 /// A world of the library.
 pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     pub(crate) world: KeptWorld<N, D>,
-    margin: N,
+    pub(super) margin: N,
     /// For each index how often it was used, and the handle of the library that has it now.
-    slots: Vec<(u32, CollisionObjectHandle)>,
+    pub(super) slots: Vec<(u32, CollisionObjectHandle)>,
     /// The objects that are surfaces or lines, or have some as children.
     pub(super) surfaces: BTreeMap<CollisionObjectHandle, Standing>,
 }
@@ -250,6 +250,14 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
 
     fn is_recorded(&self) -> bool {
         self.world.is_recorded()
+    }
+
+    fn to_bytes(&self) -> PyResult<(Vec<u8>, Vec<u32>)> {
+        self.write().map_err(|refused| error::of_call(&refused))
+    }
+
+    fn fill(&mut self, bytes: &[u8], ages: &[u32]) -> PyResult<()> {
+        self.read(bytes, ages).map_err(|damage| PyValueError::new_err(damage.to_string()))
     }
 
     fn picture(&self, view: &PictureView) -> (&'static str, Vec<u8>) {
