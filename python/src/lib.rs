@@ -13,6 +13,7 @@ mod answer;
 mod checker;
 mod error;
 mod functions;
+mod manager;
 mod options;
 mod pairs;
 mod pictures;
@@ -42,6 +43,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<shapes::Shape>()?;
     module.add_class::<world::World>()?;
     module.add_class::<checker::NativeChecker>()?;
+    module.add_class::<manager::Manager>()?;
     functions::add_to(module)?;
     tiles::add_to(module)?;
     module.add_function(wrap_pyfunction!(pictures::picture_of, module)?)?;
