@@ -101,7 +101,7 @@ class Poses:
 
         >>> rounded = [[0.866, -0.5, 0, 1], [0.5, 0.866, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
         >>> Poses.nearest_to(rounded).matrices[0].round(6).tolist()
-        [0.866025, -0.5, 0.0, 1.0]
+        [0.866019, -0.500011, 0.0, 1.0]
         """
         poses = cls.from_matrices(matrices)
         given = _finite(poses.matrices, "matrices")
