@@ -7,7 +7,7 @@
 
 use impinge::math::{Point, Pose, Real, Space};
 use impinge::query::PointQuery;
-use impinge::shape::{Compound, HeightField, Polyline, ShapeHandle, TriMesh};
+use impinge::shape::{Compound, HeightField, Polyline, ShapeHandle, ShapeKind, TriMesh};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -80,6 +80,9 @@ impl<N: Real> Bounding<3> for N {
 pub(crate) fn standing<N: Numeric<D>, const D: usize>(
     shape: &ShapeHandle<N, D>,
 ) -> Option<Standing> {
+    if shape.geometry().kind() != ShapeKind::Composite {
+        return None;
+    }
     if let Some(compound) = shape.as_shape::<Compound<N, D>>() {
         let all = compound.children().iter().filter_map(|(_, child)| standing(child));
         return all.reduce(|one, other| if one == Standing::Closed { other } else { one });

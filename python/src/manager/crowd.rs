@@ -20,7 +20,7 @@ pub(super) type World = CollisionWorld<f64, 3, ()>;
 pub(super) type Object = CollisionObject<f64, 3, ()>;
 pub(super) type Solid = ShapeHandle<f64, 3>;
 
-/// After so many changes the world is updated, so that a question finds few of them.
+/// After so many changes without a question the world is updated, so that a question finds few of them.
 const EAGER: u64 = 16;
 
 /// Two objects, the one of the lower handle first, or one of each crowd.
@@ -50,6 +50,8 @@ pub(super) struct Crowd {
     pub(super) changes: Changes,
     /// The number of the last change that the last update of the world saw.
     updated: u64,
+    /// The number of the last change before the last question.
+    asked: u64,
     /// The pairs that touched at the last update.
     touching: BTreeSet<Pair>,
     kept: Option<Kept>,
@@ -65,6 +67,7 @@ impl Crowd {
             handles: Vec::new(),
             changes: Changes::default(),
             updated: 0,
+            asked: 0,
             touching: BTreeSet::new(),
             kept: None,
             beside: BTreeMap::new(),
@@ -209,6 +212,7 @@ impl Crowd {
 
     /// A pair that touches, if any does: the same one as long as it does.
     pub(super) fn touching_pair(&mut self) -> Option<Pair> {
+        self.asked = self.changes.now();
         let first = self.touching.first().copied();
         if let Some(pair) = first.filter(|&pair| self.still_touch(pair)) {
             return Some(pair);
@@ -219,6 +223,7 @@ impl Crowd {
 
     /// The nearest two objects; of several pairs that touch one, of other equals the first.
     pub(super) fn nearest_pair(&mut self) -> Option<Nearest> {
+        self.asked = self.changes.now();
         let found = self.overlap().or_else(|| {
             self.update();
             self.overlap()
@@ -316,7 +321,7 @@ impl Crowd {
 
     fn note(&mut self, index: u32) {
         self.changes.note(index);
-        if self.changes.now() - self.updated >= EAGER {
+        if self.changes.now() - self.asked.max(self.updated) >= EAGER {
             self.update();
         }
     }
