@@ -6,11 +6,16 @@
 >>> distances = impinge.distance(impinge.Cuboid([1, 1, 1]), None, impinge.Ball(0.5), poses)
 >>> distances.shape, float(distances[-1])
 ((1000,), 8.5)
+
+`pip install ./python` in the repository of impinge builds it from source. That takes Rust 1.95 or later with cargo
+(https://rustup.rs), a C compiler to link, and some minutes; maturin and NumPy are fetched by pip. The page of recordings is
+part of it where it is built as `python/README.md` tells. `impinge.__version__` says which version it is.
 """
 
 from impinge._checker import NO_BODY, Checker, Frame, NearestPairs
 from impinge._native import (
     Shape,
+    __version__,
     boxes,
     cast_rays,
     closest_points,
@@ -125,6 +130,7 @@ __all__ = [
     "WorldHit",
     "WorldImpact",
     "WorldProjection",
+    "__version__",
     "boxes",
     "cast_rays",
     "closest_points",

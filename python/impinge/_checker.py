@@ -67,6 +67,8 @@ class Checker:
     [1, 2]
     >>> round(float(checker.nearest(configurations[0]).distance[0]), 6)
     0.25
+
+    It pickles, with its obstacles.
     """
 
     def __init__(
@@ -86,21 +88,26 @@ class Checker:
         if len(frame_of) != len(bodies):
             raise ValueError(f"on has {len(frame_of)} elements, where {len(bodies)} are needed")
         self._counts = (len(frames), len(bodies))
-        self._native = NativeChecker(
-            self.dim,
-            self.dtype,
-            _columns(frames, self.dim, self.dtype),
-            columns,
-            (bodies, frame_of, self._poses(poses, len(bodies), "poses")),
-            _pairs(pairs, "pairs"),
-        )
+        placed, apart = self._poses(poses, len(bodies), "poses"), _pairs(pairs, "pairs")
+        read = _columns(frames, self.dim, self.dtype)
+        self._native = NativeChecker(self.dim, self.dtype, read, columns, (bodies, frame_of, placed), apart)
+        # Of its own, for pickles: whoever made it may change arrays later.
+        own = [frame._replace(origin=origin.copy()) for frame, origin in zip(frames, read[1], strict=True)]
+        self._made_of = (own, columns, bodies, frame_of, placed.copy(), apart.copy())
+        self._obstacles: tuple[Any, ...] | None = None
 
     def set_obstacles(self, shapes: Sequence[Shape], poses: PosesLike = None, ignored: ArrayLike = ()) -> None:
         """Replaces all obstacles by shapes (o,) at poses (o, D+1, D+1); `ignored` (m, 2) are bodies and obstacles, each
         from zero, that may touch."""
         obstacles = list(shapes)
         placed = self._poses(poses, len(obstacles), "poses")
-        self._native.set_obstacles(obstacles, placed, _pairs(ignored, "ignored"))
+        may_touch = _pairs(ignored, "ignored")
+        self._native.set_obstacles(obstacles, placed, may_touch)
+        self._obstacles = (obstacles, placed.copy(), may_touch.copy())
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles what it was made of, and its obstacles."""
+        return (_unpickled, (self._made_of, self._obstacles))
 
     def frames(self, configurations: ArrayLike) -> NDArray[Any]:
         """The poses of all frames: (n, frames, D+1, D+1), or (frames, D+1, D+1)."""
@@ -169,7 +176,7 @@ class Checker:
         return poses.reshape(*rows.shape[:-1], count, size, size)
 
     def _rows(self, configurations: ArrayLike) -> NDArray[Any]:
-        rows = np.ascontiguousarray(configurations, dtype=self.dtype)
+        rows = np.require(configurations, dtype=self.dtype, requirements=["C", "A"])
         if rows.ndim not in (1, 2) or rows.shape[-1] != self.columns:
             need = f"({self.columns},) or (n, {self.columns})"
             raise ValueError(f"configurations has the shape {rows.shape}, where {need} is needed")
@@ -183,6 +190,14 @@ class Checker:
         if len(array) != count:
             raise ValueError(f"{name} has {len(array)} elements, where {count} are needed")
         return array
+
+
+def _unpickled(made_of: tuple[Any, ...], obstacles: tuple[Any, ...] | None) -> Checker:
+    """The checker of `Checker.__reduce__`."""
+    checker = Checker(*made_of)
+    if obstacles is not None:
+        checker.set_obstacles(*obstacles)
+    return checker
 
 
 def _pairs(pairs: ArrayLike, name: str) -> NDArray[np.uint32]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -11,6 +11,12 @@ if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, unused-ignore]
 
 Array = NDArray[Any]
+
+DType: TypeAlias = Literal["float32", "float64"] | type[np.float32] | type[np.float64] | type[float] | np.dtype[Any]
+"""The scalar of shapes and answers: its name, or the type of NumPy."""
+
+Order: TypeAlias = Literal["xyzw", "wxyz"]
+"""The order of the numbers of quaternions."""
 
 
 class Poses:
@@ -36,7 +42,7 @@ class Poses:
         translations: ArrayLike,
         quaternions: ArrayLike | None = None,
         *,
-        order: str | None = None,
+        order: Order | None = None,
         angles: ArrayLike | None = None,
     ) -> None:
         places = _finite(_floats(translations, "translations"), "translations")
@@ -86,6 +92,31 @@ class Poses:
         poses.matrices = array
         return poses
 
+    @classmethod
+    def nearest_to(cls, matrices: ArrayLike, tolerance: float = 1e-3) -> Poses:
+        """Of matrices (D+1, D+1) or (n, D+1, D+1) whose digits were rounded: their rotations become the nearest ones.
+
+        ValueError names the first matrix that has a number farther than `tolerance` from its nearest pose, as scaled and mirrored
+        ones have.
+
+        >>> rounded = [[0.866, -0.5, 0, 1], [0.5, 0.866, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
+        >>> Poses.nearest_to(rounded).matrices[0].round(6).tolist()
+        [0.866019, -0.500011, 0.0, 1.0]
+        """
+        poses = cls.from_matrices(matrices)
+        given = _finite(poses.matrices, "matrices")
+        left, _, right = np.linalg.svd(given[..., :-1, :-1])
+        # Of a matrix that mirrors the nearest rotation is far, whichever is taken.
+        turned = left * np.where(np.linalg.det(left @ right) < 0, -1.0, 1.0)[..., None, None] @ right
+        nearest = _joined(turned, given[..., :-1, -1])
+        off = np.abs(nearest - given).max(axis=(-2, -1))
+        if not (off <= tolerance).all():
+            row = int(np.argmax(off > tolerance))
+            name = "matrices" if given.ndim == 2 else f"matrices[{row}]"
+            raise ValueError(f"{name} is no rounded pose: a number is {off.flat[row]:.3g} off, where {tolerance:.3g} is allowed")
+        poses.matrices = nearest
+        return poses
+
     def __len__(self) -> int:
         if self.matrices.ndim == 2:
             raise TypeError("one pose has no length")
@@ -100,6 +131,19 @@ class Poses:
         return f"<impinge.Poses {self.matrices.shape}>"
 
 
+def dtype_name(given: Any) -> Literal["float32", "float64"]:
+    """The name of a scalar. ValueError for what is none that the library works in."""
+    try:
+        name = None if given is None else np.dtype(given).name
+    except TypeError:
+        name = None
+    if name == "float32":
+        return "float32"
+    if name == "float64":
+        return "float64"
+    raise ValueError(f'dtype is {given!r}: it is "float32" or "float64"')
+
+
 def _floats(given: ArrayLike, name: str) -> Array:
     return numbers(given, np.float64, name, "numbers")
 
@@ -111,7 +155,7 @@ def _finite(array: Array, name: str) -> Array:
     return array
 
 
-def _of_quaternions(quaternions: Array, order: str) -> Array:
+def _of_quaternions(quaternions: Array, order: Order) -> Array:
     _finite(quaternions, "quaternions")
     if quaternions.ndim not in (1, 2) or quaternions.shape[-1] != 4:
         raise ValueError(f"quaternions has the shape {quaternions.shape}, where (4,) or (n, 4) is needed")
@@ -155,11 +199,11 @@ def _joined(rotations: Array, translations: Array) -> Array:
 
 
 def numbers(given: Any, dtype: DTypeLike, name: str, what: str) -> Array:
-    """An argument as an array of this type in C order. TypeError for complex numbers, texts and ragged lists."""
+    """An argument as an array of this type, aligned and in C order. TypeError for complex numbers, texts and ragged lists."""
     try:
         array = np.asarray(given)
         if array.dtype.kind in "biufO":
-            return np.asarray(array, dtype=dtype, order="C")
+            return np.require(array, dtype=dtype, requirements=["C", "A"])
     except (TypeError, ValueError) as error:
         raise TypeError(f"{name} is no array of {what}: {type(given).__name__}") from error
     raise TypeError(f"{name} is no array of {what}: {array.dtype}")

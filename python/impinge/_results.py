@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats: TypeAlias = NDArray[np.floating[Any]]
 
 
 class Proximity(IntEnum):
@@ -62,14 +67,14 @@ class Nearest(NamedTuple):
 class Manifolds(NamedTuple):
     """Contact points in rows: those of pair i are `starts[i]` to `starts[i + 1]` of the other columns, (m,) and (m, D)."""
 
-    starts: Any
-    depth: Any
-    normal: Any
-    point1: Any
-    point2: Any
-    manifold: Any
-    part1: Any
-    part2: Any
+    starts: NDArray[np.int64]
+    depth: Floats
+    normal: Floats
+    point1: Floats
+    point2: Floats
+    manifold: NDArray[np.uint32]
+    part1: NDArray[np.uint32]
+    part2: NDArray[np.uint32]
 
     def of(self, pair: int) -> Manifolds:
         """The points of one pair.
@@ -83,8 +88,17 @@ class Manifolds(NamedTuple):
         if not 0 <= pair < len(self.starts) - 1:
             raise IndexError(f"there is no pair {pair}")
         begin, end = int(self.starts[pair]), int(self.starts[pair + 1])
-        columns = [column[begin:end] for column in self[1:]]
-        return Manifolds(self.starts[pair : pair + 2] - begin, *columns)
+        rows = slice(begin, end)
+        return Manifolds(
+            self.starts[pair : pair + 2] - begin,
+            self.depth[rows],
+            self.normal[rows],
+            self.point1[rows],
+            self.point2[rows],
+            self.manifold[rows],
+            self.part1[rows],
+            self.part2[rows],
+        )
 
 
 class Projection(NamedTuple):

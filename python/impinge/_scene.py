@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from impinge import _native
 from impinge._native import Shape
 from impinge._pictures import View, html_of
+from impinge._poses import DType, dtype_name
 
 if TYPE_CHECKING:
     from impinge._native import Shapes
@@ -41,7 +42,7 @@ class Scene:
         self._bytes = data
 
     @classmethod
-    def from_bytes(cls, data: bytes, *, dim: int | None = None, dtype: str | None = None) -> Scene:
+    def from_bytes(cls, data: bytes, *, dim: int | None = None, dtype: DType | None = None) -> Scene:
         """The scene of `to_bytes`. ValueError names the offset of what is damaged, or another dim or dtype than is asked for.
 
         >>> import impinge
@@ -51,7 +52,8 @@ class Scene:
         """
         scene = cls.__new__(cls)
         scene._take(bytes(data))
-        for name, asked, given in (("dim", dim, scene.dim), ("dtype", dtype, scene.dtype)):
+        wanted = None if dtype is None else dtype_name(dtype)
+        for name, asked, given in (("dim", dim, scene.dim), ("dtype", wanted, scene.dtype)):
             if asked not in (None, given):
                 raise ValueError(f"{name} is {asked!r}, but the scene is of {given!r}")
         return scene

@@ -1,21 +1,20 @@
 """The shapes, made from numbers and arrays.
 
-All lie around the origin of their own frame; capsules, cylinders and cones along y. `dtype` is "float64" or "float32":
-the scalar in which the library works with the shape. Refused arguments raise ValueError with the value.
+All lie around the origin of their own frame; capsules, cylinders and cones along y. `dtype` is "float64" or "float32",
+or NumPy's type: the scalar in which the library works with the shape. Two shapes are equal, and hash alike, if they are of one
+kind and made of the same numbers. `vertices` and `faces` are read back. Refused arguments raise ValueError with the value.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import Shape
-from impinge._poses import numbers
-
-DType = Literal["float32", "float64"]
+from impinge._poses import DType, dtype_name, numbers
 
 
 class Picked:
@@ -46,7 +45,7 @@ class Picked:
 def _make(
     name: str,
     dim: int,
-    dtype: str,
+    dtype: DType,
     values: ArrayLike = (),
     points: Any = None,
     parts: Any = None,
@@ -59,7 +58,7 @@ def _make(
     if not all(isinstance(child, Shape) for child in children):
         row = next(row for row, child in enumerate(children) if not isinstance(child, Shape))
         raise TypeError(f"shapes[{row}] is {type(children[row]).__name__}, where a Shape is needed")
-    return Shape(name, dim, dtype, flat, points, parts, list(children), poses, one_sided, keep_internal_edges)
+    return Shape(name, dim, dtype_name(dtype), flat, points, parts, list(children), poses, one_sided, keep_internal_edges)
 
 
 def _floats(values: ArrayLike, name: str) -> NDArray[np.float64]:
@@ -250,7 +249,7 @@ def Tetrahedron(corners: ArrayLike, *, dtype: DType = "float64") -> Shape:
     """A solid of four points (4, 3).
 
     >>> Tetrahedron([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    <impinge.Polytope 3D float64>
+    <impinge.Tetrahedron 3D float64>
     """
     points = _rows(corners, "corners")
     if points.shape != (4, 3):
@@ -273,7 +272,7 @@ def ConvexHull(points: ArrayLike, *, dtype: DType = "float64") -> Shape:
     """The convex hull of points (n, 3); in 2D of points (n, 2). ValueError if it has no volume (no area).
 
     >>> ConvexHull([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0.1, 0.1, 0.1]])
-    <impinge.Polytope 3D float64>
+    <impinge.ConvexHull 3D float64>
     """
     rows = _rows(points, "points")
     name = "ConvexHull" if rows.shape[1] == 3 else "ConvexPolygon"
@@ -294,8 +293,11 @@ def TriMesh(
 
     one_sided: nothing touches it from behind. keep_internal_edges: contacts treat each triangle on its own.
 
-    >>> TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
-    <impinge.Composite 3D float64>
+    A point is inside of a closed mesh for `contains`, `signed_distance` and `World.containing`; everything else sees a surface.
+
+    >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> mesh, mesh.vertices.shape, mesh.faces.tolist()
+    (<impinge.TriMesh 3D float64>, (3, 3), [[0, 1, 2]])
     """
     rows = _rows(vertices, "vertices")
     parts = _indices(triangles, 3, len(rows), "triangles")
@@ -320,8 +322,10 @@ def Polyline(
 ) -> Shape:
     """A line of segments: vertices (n, D), and the numbers of the ends (m, 2); without, one vertex after the other.
 
+    In 2D a point is inside of a closed line, as of a closed mesh in 3D.
+
     >>> Polyline([[0, 0], [1, 0], [1, 1]])
-    <impinge.Composite 2D float64>
+    <impinge.Polyline 2D float64>
     """
     rows = _rows(vertices, "vertices")
     if segments is None:
@@ -411,7 +415,7 @@ def Compound(shapes: Sequence[Shape], poses: Any) -> Shape:
 
     >>> import impinge
     >>> Compound([Ball(1), Cuboid([1, 1, 1])], impinge.Poses([[0, 0, 0], [3, 0, 0]]))
-    <impinge.Composite 3D float64>
+    <impinge.Compound 3D float64>
     """
     if isinstance(shapes, Shape):
         raise TypeError("shapes is a Shape, where a sequence of Shapes is needed")

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge import _native
+from impinge._poses import DType, dtype_name
 
 
 class TileRows(NamedTuple):
@@ -30,11 +31,11 @@ class Tiles:
     """
 
     def __init__(
-        self, axes: ArrayLike, cuts: ArrayLike, *, clearance: float = 0.0, dim: int = 3, dtype: str = "float64"
+        self, axes: ArrayLike, cuts: ArrayLike, *, clearance: float = 0.0, dim: int = 3, dtype: DType = "float64"
     ) -> None:
         self.axes: NDArray[np.uint32] = _column(axes, np.uint32, "axes")
-        self.cuts: NDArray[Any] = _column(cuts, dtype, "cuts")
-        self.clearance, self.dim, self.dtype = float(clearance), dim, dtype
+        self.clearance, self.dim, self.dtype = float(clearance), dim, dtype_name(dtype)
+        self.cuts: NDArray[Any] = _column(cuts, self.dtype, "cuts")
         # The library refuses what are no tiles.
         self._bounds = _native.tile_bounds(self)
 
@@ -81,7 +82,7 @@ class Tiles:
         return f"<impinge.Tiles of {len(self)} tiles, {self.dim}D {self.dtype}>"
 
 
-def _read(axes: list[int], cuts: list[float], clearance: float, dim: int, dtype: str) -> Tiles:
+def _read(axes: list[int], cuts: list[float], clearance: float, dim: int, dtype: DType) -> Tiles:
     return Tiles(axes, cuts, clearance=clearance, dim=dim, dtype=dtype)
 
 
@@ -100,13 +101,13 @@ def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
     (8, True)
     """
     array = np.asarray(boxes)
-    dtype = "float32" if array.dtype == np.float32 else "float64"
+    dtype: DType = "float32" if array.dtype == np.float32 else "float64"
     dim = array.shape[-1] if array.ndim == 3 and array.shape[-1] in (2, 3) else 3
-    axes, cuts = _native.tile_cuts(_boxes(array, dim, dtype), number, clearance, dim, dtype)
+    axes, cuts = _native.tile_cuts(_boxes(array, dim, dtype), number, clearance, dim, dtype_name(dtype))
     return Tiles(axes, cuts, clearance=clearance, dim=dim, dtype=dtype)
 
 
-def _boxes(given: ArrayLike, dim: int, dtype: str) -> NDArray[Any]:
+def _boxes(given: ArrayLike, dim: int, dtype: DType) -> NDArray[Any]:
     array = np.require(given, dtype=dtype, requirements=["C", "A"])
     if array.ndim != 3 or array.shape[1:] != (2, dim):
         raise ValueError(f"boxes has the shape {array.shape}, where (n, 2, {dim}) is needed in {dim}D")

@@ -3,50 +3,35 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge import _native
 from impinge._native import Shape
+from impinge._poses import DType, dtype_name
 from impinge._pictures import View, html_of
 from impinge._recording import Recording
-from impinge._world_arguments import (
-    Filter,
-    Options,
-    Query,
-    Question,
-    count_of,
-    groups_of,
-    handles_of,
-    limit,
-    structured,
-)
-from impinge._world_results import (
-    Handles,
-    HitRows,
-    ImpactRows,
-    NearRows,
-    Rows,
-    WorldHit,
-    WorldImpact,
-    WorldProjection,
-)
+from impinge._world_arguments import Options, Query, groups_of, handles_of, structured
+from impinge._world_queries import WorldQueries
+from impinge._world_results import Handles
 
 if TYPE_CHECKING:
-    from impinge._native import Progress
+    from impinge._native import PosesLike, Shapes
 
 EVENT = ["kind", "first", "second"]
 CONTACT = ["first", "second", "depth", "normal", "point1", "point2", "part1", "part2"]
 
 
-class World:
+class World(WorldQueries):
     """Objects with shapes and poses; `update` finds who touches whom.
 
     margin: by how much boxes are fattened, in lengths. dim: 2 or 3. dtype: "float64" or "float32", that of shapes and answers.
     Handles are uint64 arrays (n,); one never comes to mean another object of its world, and a stale one raises ValueError that
     names its row. Calls that raise change nothing. Queries see changes at once, pairs and events at the next `update`.
+
+    A world pickles, and its copy has the same handles; events and contacts of the copy begin at its first `update`.
 
     Queries are asked about many elements at once, and one element may be given alone. They take `filter` (a `Filter`),
     `threads` and `progress` (an object with `update(n)`, as tqdm's bars); other threads of Python run meanwhile, and Ctrl-C
@@ -63,11 +48,18 @@ class World:
     [0.1]
     """
 
-    def __init__(self, margin: float = 0.02, *, dim: int = 3, dtype: str = "float64") -> None:
+    def __init__(self, margin: float = 0.02, *, dim: int = 3, dtype: DType = "float64") -> None:
         if dim not in (2, 3):
             raise ValueError(f"dim is {dim}: it is 2 or 3")
-        self._world = _native.World(margin, dim, dtype)
+        self._margin = float(margin)
+        self._world = _native.World(self._margin, dim, dtype_name(dtype))
         self._recording: Recording | None = None
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles objects, handles, groups and query types; pairs, contacts and events begin anew at the next `update`."""
+        if self._recording is not None:
+            raise TypeError(f"the world is recorded: the recording {self._recording.title!r} has not stopped")
+        return (_unpickled, (self._margin, self.dim, self.dtype, *self._world.to_bytes()))
 
     @property
     def dim(self) -> int:
@@ -75,14 +67,14 @@ class World:
         return self._world.dim
 
     @property
-    def dtype(self) -> str:
+    def dtype(self) -> Literal["float32", "float64"]:
         """ "float32" or "float64"."""
         return self._world.dtype
 
     def add(
         self,
-        shapes: Any,
-        poses: Any,
+        shapes: Shapes,
+        poses: PosesLike,
         *,
         prediction: float = 0.0,
         margin: float | None = None,
@@ -116,7 +108,7 @@ class World:
         """
         self._world.remove(handles_of(handles))
 
-    def set_poses(self, handles: ArrayLike, poses: Any) -> None:
+    def set_poses(self, handles: ArrayLike, poses: PosesLike) -> None:
         """Moves objects (n,): a pose for each, or one for all.
 
         >>> from impinge import *
@@ -127,7 +119,7 @@ class World:
         """
         self._world.set_poses(handles_of(handles), poses)
 
-    def set_shapes(self, handles: ArrayLike, shapes: Any) -> None:
+    def set_shapes(self, handles: ArrayLike, shapes: Shapes) -> None:
         """Gives objects (n,) other shapes: one for each, or one for all.
 
         >>> from impinge import *
@@ -222,19 +214,19 @@ class World:
         """The shapes of objects, without handles of all."""
         return self._world.shapes(self.handles() if handles is None else handles_of(handles))
 
-    def poses(self, handles: ArrayLike | None = None) -> NDArray[Any]:
+    def poses(self, handles: ArrayLike | None = None) -> NDArray[np.floating[Any]]:
         """The poses of objects, without handles of all: (n, D+1, D+1)."""
         return self._world.poses(self.handles() if handles is None else handles_of(handles))
 
-    def contact_events(self) -> NDArray[Any]:
+    def contact_events(self) -> NDArray[np.void]:
         """What changed at the last update: a structured array (m,) with `kind` (1 started, 0 stopped), `first`, `second`."""
         return structured(EVENT, self._world.contact_events())
 
-    def proximity_events(self) -> NDArray[Any]:
+    def proximity_events(self) -> NDArray[np.void]:
         """What changed at the last update: a structured array (m,) with `kind` (a `Proximity`), `first`, `second`."""
         return structured(EVENT, self._world.proximity_events())
 
-    def contacts(self) -> NDArray[Any]:
+    def contacts(self) -> NDArray[np.void]:
         """All contact points as of the last update: a structured array (m,).
 
         Fields: `first`, `second` (handles), `depth` (a length, negative where they are apart), `normal` (D,) from the first to
@@ -242,242 +234,9 @@ class World:
         """
         return structured(CONTACT, self._world.contacts())
 
-    def proximities(self) -> NDArray[Any]:
+    def proximities(self) -> NDArray[np.void]:
         """The pairs with a margin that intersect or are within it: a structured array (m,) like `proximity_events`."""
         return structured(EVENT, self._world.proximities())
-
-    def cast_rays(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        max_time: float = np.inf,
-        *,
-        solid: bool = True,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> WorldHit:
-        """The first object that each ray meets.
-
-        origins, directions: (D,) or (n, D); times are in units of the length of a direction. solid: rays that begin inside an
-        object hit it at once; otherwise where they leave it.
-
-        >>> from impinge import *
-        >>> world = World()
-        >>> ball = world.add(Ball(1), None)
-        >>> world.cast_rays([[-3, 0, 0], [-3, 5, 0]], [1, 0, 0]).time.tolist()
-        [2.0, inf]
-        """
-        question = Question("ray_hit", limit(max_time, "max_time"), solid=bool(solid))
-        handle, time, normal = self._ask(question, [origins, directions], filter, threads, progress)
-        return WorldHit(time, normal, handle)
-
-    def ray_hits(
-        self,
-        origins: ArrayLike,
-        directions: ArrayLike,
-        max_time: float = np.inf,
-        *,
-        solid: bool = True,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> HitRows:
-        """All objects that each ray meets, each where it is met first; arguments as of `cast_rays`.
-
-        >>> from impinge import *
-        >>> world = World()
-        >>> balls = world.add(Ball(1), Poses([[0, 0, 0], [5, 0, 0]]))
-        >>> world.ray_hits([-3, 0, 0], [1, 0, 0]).time.tolist()
-        [2.0, 7.0]
-        """
-        question = Question("ray_hits", limit(max_time, "max_time"), solid=bool(solid))
-        return HitRows(*self._ask(question, [origins, directions], filter, threads, progress))
-
-    def cast_shape(
-        self,
-        shape: Any,
-        poses: Any,
-        velocities: ArrayLike,
-        max_time: float = np.inf,
-        target_distance: float = 0.0,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> WorldImpact:
-        """The first object that each moving shape comes within `target_distance` of; it does not turn.
-
-        velocities: (D,) or (n, D), lengths per unit of time; the rest as of `impinge.impact`.
-
-        >>> from impinge import *
-        >>> world = World()
-        >>> ball = world.add(Ball(1), None)
-        >>> world.cast_shape(Ball(1), Poses([-4, 0, 0]), [2, 0, 0]).time.tolist()
-        [1.0]
-        """
-        question = Question("cast", limit(max_time, "max_time"), limit(target_distance, "target_distance"))
-        found = self._ask(question, [shape, poses, velocities], filter, threads, progress)
-        handle, time, normal, point1, point2 = found
-        return WorldImpact(time, normal, handle, point1, point2)
-
-    def cast_shape_all(
-        self,
-        shape: Any,
-        poses: Any,
-        velocities: ArrayLike,
-        max_time: float = np.inf,
-        target_distance: float = 0.0,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> ImpactRows:
-        """All objects that each moving shape meets on its way; arguments as of `cast_shape`."""
-        question = Question("casts", limit(max_time, "max_time"), limit(target_distance, "target_distance"))
-        return ImpactRows(*self._ask(question, [shape, poses, velocities], filter, threads, progress))
-
-    def nearest(
-        self,
-        shape: Any,
-        poses: Any,
-        count: int = 1,
-        max_distance: float = np.inf,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> NearRows:
-        """For each placed shape the nearest objects, at most `count` of them and at most `max_distance` away.
-
-        >>> from impinge import *
-        >>> world = World()
-        >>> balls = world.add(Ball(1), Poses([[4, 0, 0], [9, 0, 0]]))
-        >>> world.nearest(Ball(1), None, count=2).distance.tolist()
-        [2.0, 7.0]
-        """
-        question = Question("near", limit(max_distance, "max_distance"), wanted=count_of(count))
-        return NearRows(*self._ask(question, [shape, poses], filter, threads, progress))
-
-    def within(
-        self,
-        shape: Any,
-        poses: Any,
-        distance: float,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> NearRows:
-        """For each placed shape all objects at most `distance` away, the nearest first."""
-        question = Question("near", limit(distance, "distance"))
-        return NearRows(*self._ask(question, [shape, poses], filter, threads, progress))
-
-    def overlapping(
-        self,
-        shape: Any,
-        poses: Any,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> Rows:
-        """For each placed shape the objects that it touches, in order of handles.
-
-        >>> from impinge import *
-        >>> world = World()
-        >>> balls = world.add(Ball(1), Poses([[0, 0, 0], [1, 0, 0], [9, 0, 0]]))
-        >>> world.overlapping(Ball(0.5), None).handle.tolist()
-        [0, 1]
-        """
-        return Rows(*self._ask(Question("overlapping"), [shape, poses], filter, threads, progress))
-
-    def overlaps_any(
-        self,
-        shape: Any,
-        poses: Any,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> NDArray[np.bool_]:
-        """Whether each placed shape touches an object: bools (n,). Quicker than `overlapping`."""
-        found = self._ask(Question("overlaps_any"), [shape, poses], filter, threads, progress)
-        return np.asarray(found[-1])
-
-    def containing(
-        self,
-        points: ArrayLike,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> Rows:
-        """For each point (D,) or (n, D) the objects that hold it, in order of handles."""
-        return Rows(*self._ask(Question("containing"), [points], filter, threads, progress))
-
-    def project_points(
-        self,
-        points: ArrayLike,
-        max_distance: float = np.inf,
-        *,
-        solid: bool = True,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> WorldProjection:
-        """For each point (D,) or (n, D) the nearest point on an object; one inside is its own if `solid`.
-
-        >>> from impinge import *
-        >>> world = World()
-        >>> ball = world.add(Ball(1), None)
-        >>> world.project_points([3, 0, 0]).point.tolist()
-        [[1.0, 0.0, 0.0]]
-        """
-        question = Question("project", limit(max_distance, "max_distance"), solid=bool(solid))
-        handle, point, is_inside = self._ask(question, [points], filter, threads, progress)
-        return WorldProjection(point, is_inside, handle)
-
-    def nearest_to_points(
-        self,
-        points: ArrayLike,
-        count: int = 1,
-        max_distance: float = np.inf,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> NearRows:
-        """For each point (D,) or (n, D) the nearest objects, at most `count` and at most `max_distance` away."""
-        question = Question("nearest_to_points", limit(max_distance, "max_distance"), wanted=count_of(count))
-        return NearRows(*self._ask(question, [points], filter, threads, progress))
-
-    def in_boxes(
-        self,
-        mins: ArrayLike,
-        maxs: ArrayLike,
-        *,
-        filter: Filter | None = None,
-        threads: int | None = None,
-        progress: Progress | None = None,
-    ) -> Rows:
-        """For each axis-aligned box the objects whose boxes meet it: corners mins and maxs, (D,) or (n, D).
-
-        ValueError names the row of a box whose least corner is above its greatest.
-        """
-        return Rows(*self._ask(Question("in_boxes"), [mins, maxs], filter, threads, progress))
-
-    def _ask(
-        self,
-        question: Question,
-        given: list[Any],
-        filter: Filter | None,
-        threads: int | None,
-        progress: Progress | None,
-    ) -> Any:
-        if filter is not None and not isinstance(filter, Filter):
-            raise TypeError(f"filter is {type(filter).__name__}, where an impinge.Filter is needed")
-        return self._world.ask(question, given, filter, threads, progress)
 
     def _picture(self, view: View) -> tuple[str, bytes]:
         return self._world.picture(view)
@@ -487,3 +246,10 @@ class World:
 
     def __repr__(self) -> str:
         return f"<impinge.World of {len(self)} objects, {self.dim}D {self.dtype}>"
+
+
+def _unpickled(margin: float, dim: int, dtype: DType, data: bytes, ages: list[int]) -> World:
+    """The world of `World.__reduce__`."""
+    world = World(margin, dim=dim, dtype=dtype)
+    world._world.fill(data, ages)
+    return world

@@ -64,6 +64,7 @@ class Question(NamedTuple):
     target_distance: float = 0.0
     wanted: int | None = None
     solid: bool = True
+    surface: bool = False
 
 
 def groups_of(
@@ -112,7 +113,7 @@ def handles_of(given: ArrayLike, name: str = "handles") -> Handles:
     return array.astype(np.uint64)
 
 
-def structured(names: Sequence[str], columns: Sequence[NDArray[Any]]) -> NDArray[Any]:
+def structured(names: Sequence[str], columns: Sequence[NDArray[Any]]) -> NDArray[np.void]:
     fields = [(name, column.dtype, column.shape[1:]) for name, column in zip(names, columns, strict=True)]
     table = np.empty(len(columns[0]), dtype=fields)
     for name, column in zip(names, columns, strict=True):

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-Handles = NDArray[np.uint64]
+Handles: TypeAlias = NDArray[np.uint64]
+Floats: TypeAlias = NDArray[np.floating[Any]]
 
 NO_OBJECT = int(np.iinfo(np.uint64).max)
 """The handle of no object, where a query has no answer."""
@@ -16,26 +17,26 @@ NO_OBJECT = int(np.iinfo(np.uint64).max)
 class WorldHit(NamedTuple):
     """What rays hit first: time (n,), normal (n, D) and handle (n,); infinite, NaN and `NO_OBJECT` without a hit."""
 
-    time: Any
-    normal: Any
+    time: Floats
+    normal: Floats
     handle: Handles
 
 
 class WorldImpact(NamedTuple):
     """What moving shapes meet first: time (n,), normal (n, D) from the shape to the object, handle (n,), points (n, D)."""
 
-    time: Any
-    normal: Any
+    time: Floats
+    normal: Floats
     handle: Handles
-    point1: Any
-    point2: Any
+    point1: Floats
+    point2: Floats
 
 
 class WorldProjection(NamedTuple):
     """The nearest points on objects: point (n, D), is_inside (n,), handle (n,); NaN and `NO_OBJECT` without one."""
 
-    point: Any
-    is_inside: Any
+    point: Floats
+    is_inside: NDArray[np.bool_]
     handle: Handles
 
 
@@ -51,8 +52,8 @@ class HitRows(NamedTuple):
 
     starts: NDArray[np.int64]
     handle: Handles
-    time: Any
-    normal: Any
+    time: Floats
+    normal: Floats
 
 
 class ImpactRows(NamedTuple):
@@ -60,10 +61,10 @@ class ImpactRows(NamedTuple):
 
     starts: NDArray[np.int64]
     handle: Handles
-    time: Any
-    normal: Any
-    point1: Any
-    point2: Any
+    time: Floats
+    normal: Floats
+    point1: Floats
+    point2: Floats
 
 
 class NearRows(NamedTuple):
@@ -71,6 +72,6 @@ class NearRows(NamedTuple):
 
     starts: NDArray[np.int64]
     handle: Handles
-    distance: Any
-    point1: Any
-    point2: Any
+    distance: Floats
+    point1: Floats
+    point2: Floats

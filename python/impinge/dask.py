@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
+import pyarrow.compute as pc  # type: ignore[import-untyped, unused-ignore]
 import pyarrow.dataset as ds  # type: ignore[import-untyped, unused-ignore]
 import pyarrow.parquet as pq  # type: ignore[import-untyped, unused-ignore]
 from dask.base import compute
@@ -79,7 +80,7 @@ def self_join(
 
     source: Parquet, as file, files or folder, with the columns of `objects_table`: `id` (integers of 0 or more, no two
     equal), `shape` (the number of an object of `shapes`, whose own poses do not count), `pose` ((D+1)**2 numbers, a matrix row
-    by row). output: a folder that all workers reach, which is made; `part-*.parquet` there have the columns `id1` < `id2`
+    by row, or D+1 lists of D+1 numbers, as pandas writes a column of matrices). output: a folder that all workers reach, which is made; `part-*.parquet` there have the columns `id1` < `id2`
     (uint64), ascending from part to part.
 
     The bytes of the output follow from `source`, `shapes`, `clearance` and `sample`: any number of tiles and of workers, and
@@ -178,10 +179,15 @@ def _row_groups(source: Any, dim: int) -> list[Any]:
     for name in ("id", "shape", "pose"):
         if name not in dataset.schema.names:
             raise ValueError(f"the source lacks the column {name!r}: it has {dataset.schema.names}")
-    size = getattr(dataset.schema.field("pose").type, "list_size", None)
-    if size != (dim + 1) ** 2:
-        needed = f"a list of the fixed size {(dim + 1) ** 2}"
-        raise ValueError(f"the column 'pose' is {dataset.schema.field('pose').type}, where {needed} is needed in {dim}D")
+    kind, depth = dataset.schema.field("pose").type, 0
+    leaf = kind
+    while _is_list(leaf):
+        leaf, depth = leaf.value_type, depth + 1
+    is_number = pa.types.is_floating(leaf) or pa.types.is_integer(leaf)
+    size = getattr(kind, "list_size", None)
+    if depth not in (1, 2) or not is_number or (depth == 1 and size not in (None, (dim + 1) ** 2)):
+        needed = f"a list of {(dim + 1) ** 2} numbers, or of {dim + 1} rows,"
+        raise ValueError(f"the column 'pose' is {kind}, where {needed} is needed in {dim}D")
     return [group for fragment in dataset.get_fragments() for group in fragment.split_by_row_group()]
 
 
@@ -191,9 +197,31 @@ def _read(table: Any, shapes: Scene) -> tuple[NDArray[np.uint64], Picked, NDArra
         if table[name].null_count:
             raise ValueError(f"the column {name!r} has nulls")
     ids = table["id"].cast(pa.uint64()).to_numpy()
-    width = shapes.dim + 1
-    poses = table["pose"].combine_chunks().flatten().to_numpy().reshape(-1, width, width)
+    poses = _matrices(table["pose"], shapes.dim + 1)
     return ids, Picked(shapes.shapes, table["shape"].to_numpy()), poses
+
+
+def _is_list(kind: Any) -> bool:
+    return bool(pa.types.is_list(kind) or pa.types.is_large_list(kind) or pa.types.is_fixed_size_list(kind))
+
+
+def _matrices(column: Any, width: int) -> NDArray[Any]:
+    """The matrices (n, width, width) of a column of lists of all their numbers, or of lists of rows."""
+    levels = []
+    while _is_list(column.type):
+        levels.append(pc.list_value_length(column).to_numpy())
+        column = pc.list_flatten(column)
+    wanted = [width * width] if len(levels) == 1 else [width, width]
+    for lengths, length in zip(levels, wanted, strict=True):
+        wrong = ~(lengths == length)
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            place = f"row {row}" if lengths is levels[0] else f"row {row // width}, list {row % width},"
+            raise ValueError(f"the column 'pose' has {lengths[row]} numbers or lists in {place} where {length} are needed")
+    if column.null_count:
+        raise ValueError("the column 'pose' has nulls")
+    numbers: NDArray[Any] = np.require(column.to_numpy(), requirements=["C", "A"])
+    return numbers.reshape(-1, width, width)
 
 
 def _sample(unit: Any, start: int, shapes: Scene, step: int) -> tuple[NDArray[np.uint64], NDArray[Any]]:

@@ -4,76 +4,42 @@
 
 Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as they are in trimesh: what is inside a surface without
 touching it does not collide. Where meshes overlap, distances are negative: minus the depth, of surfaces that of the triangles
-that are deepest in each other.
+that are deepest in each other. Of several pairs that overlap one is given.
+
+A manager keeps what it found: a question costs what changed since the last one, not what there is.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from impinge._native import Shape, contact_manifolds, nearest, pairs_within, project_points, witness
-from impinge._shapes import ConvexHull, Picked, TriMesh
+from impinge._native import Manager, Shape
+from impinge._trimesh_parts import (
+    ContactData,
+    DistanceData,
+    Geometry,
+    Placed,
+    contacts,
+    matrix_of,
+    measured,
+    rotation_and_stretch,
+)
 
 if TYPE_CHECKING:
     import trimesh
 
+__all__ = ["CollisionManager", "ContactData", "DistanceData", "scene_to_collision"]
+
 # What trimesh calls a mesh that was given with a query.
 EXTERNAL = "__external"
 
-
-class ContactData:
-    """A contact point of two meshes."""
-
-    def __init__(self, names: tuple[str, str], faces: tuple[int, int], row: Mapping[str, Any]) -> None:
-        self.names = set(names)
-        self._faces = dict(zip(names, faces, strict=True))
-        self._normal, self._point, self._depth = row["normal"], row["point"], row["depth"]
-
-    @property
-    def normal(self) -> NDArray[np.float64]:
-        """The unit normal, from the first mesh to the second."""
-        return np.asarray(self._normal)
-
-    @property
-    def point(self) -> NDArray[np.float64]:
-        """The point in the world, in the middle of the two surfaces."""
-        return np.asarray(self._point)
-
-    @property
-    def depth(self) -> float:
-        """How deep the meshes overlap there."""
-        return float(self._depth)
-
-    def index(self, name: str) -> int:
-        """The face of this mesh."""
-        return self._faces[name]
-
-
-class DistanceData:
-    """The nearest points of two meshes."""
-
-    def __init__(self, names: tuple[str, str], faces: tuple[int, int], found: Any) -> None:
-        self.names = set(names)
-        self._points = dict(zip(names, (found.point1, found.point2), strict=True))
-        self._faces = dict(zip(names, faces, strict=True))
-        self._distance = float(found.distance)
-
-    @property
-    def distance(self) -> float:
-        """How far the meshes are apart; negative where they overlap."""
-        return self._distance
-
-    def index(self, name: str) -> int:
-        """The face of this mesh."""
-        return self._faces[name]
-
-    def point(self, name: str) -> NDArray[np.float64]:
-        """The point on this mesh, in the world."""
-        return np.asarray(self._points[name])
+Contacts: TypeAlias = list[ContactData]
+Pairs: TypeAlias = set[tuple[str, str]]
+No: TypeAlias = Literal[False]
+Yes: TypeAlias = Literal[True]
 
 
 class CollisionManager:
@@ -90,27 +56,51 @@ class CollisionManager:
     """
 
     def __init__(self) -> None:
-        self._shapes: dict[str, Shape] = {}
-        # The triangles of convex meshes, which name faces.
-        self._surfaces: dict[str, Shape] = {}
-        self._transforms: dict[str, NDArray[np.float64]] = {}
+        self._engine = Manager()
+        # The index of each name in the engine, which knows where they are; name and mesh of each index.
+        self._indices: dict[str, int] = {}
+        self._meshes: dict[int, tuple[str, Geometry]] = {}
 
     def add_object(self, name: str, mesh: trimesh.Trimesh, transform: ArrayLike | None = None) -> Shape:
-        """Adds a mesh, or replaces the one of this name."""
-        matrix, surface = _matrix(transform), TriMesh(mesh.vertices, mesh.faces)
-        self._place(name, _shape(mesh, surface), surface, matrix)
-        return self._shapes[name]
+        """Adds a mesh, or replaces the one of this name. ValueError for a transform that is no rotation and translation."""
+        return self._add(Placed(name, Geometry.of(mesh), matrix_of(transform)))
 
     def remove_object(self, name: str) -> None:
         """Removes a mesh."""
-        self._known(name)
-        del self._shapes[name], self._surfaces[name], self._transforms[name]
+        index = self._known(name)
+        self._engine.remove(index)
+        del self._indices[name], self._meshes[index]
 
     def set_transform(self, name: str, transform: ArrayLike) -> None:
-        """Moves a mesh."""
-        self._known(name)
-        self._transforms[name] = _matrix(transform)
+        """Moves a mesh. ValueError for a transform that is no rotation and translation."""
+        index = self._indices.get(name)
+        if index is None:
+            index = self._known(name)
+        try:
+            self._engine.place(index, transform)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
 
+    @overload
+    def in_collision_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: No = ..., return_data: No = ...
+    ) -> bool: ...
+    @overload
+    def in_collision_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: Yes, return_data: No = ...
+    ) -> tuple[bool, set[str]]: ...
+    @overload
+    def in_collision_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: No = ..., return_data: Yes
+    ) -> tuple[bool, Contacts]: ...
+    @overload
+    def in_collision_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: Yes, return_data: Yes
+    ) -> tuple[bool, set[str], Contacts]: ...
+    @overload
+    def in_collision_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_names: bool = ..., return_data: bool = ...
+    ) -> Any: ...
     def in_collision_single(
         self,
         mesh: trimesh.Trimesh,
@@ -119,24 +109,85 @@ class CollisionManager:
         return_data: bool = False,
     ) -> Any:
         """Whether a mesh touches one of the manager: `bool`, and if wanted the names and the contacts."""
-        found, pairs, data = self._against(_single(mesh, transform), return_data)
-        return _answer(found, {name for name, _ in pairs}, data, return_names, return_data)
+        external = Placed(EXTERNAL, Geometry.of(mesh), matrix_of(transform))
+        shape = external.geometry.shape
+        if not (return_names or return_data):
+            return self._engine.meets_any(shape, external.transform)
+        met = self._engine.met_by(shape, external.transform)
+        data = contacts([(own, external) for own in self._placed(met)]) if return_data else []
+        return _answer(bool(met), {self._meshes[index][0] for index in met}, data, return_names, return_data)
 
+    @overload
+    def in_collision_internal(self, *, return_names: No = ..., return_data: No = ...) -> bool: ...
+    @overload
+    def in_collision_internal(self, *, return_names: Yes, return_data: No = ...) -> tuple[bool, Pairs]: ...
+    @overload
+    def in_collision_internal(self, *, return_names: No = ..., return_data: Yes) -> tuple[bool, Contacts]: ...
+    @overload
+    def in_collision_internal(self, *, return_names: Yes, return_data: Yes) -> tuple[bool, Pairs, Contacts]: ...
+    @overload
+    def in_collision_internal(self, return_names: bool = ..., return_data: bool = ...) -> Any: ...
     def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
         """Whether any two meshes touch; the names are pairs in ascending order."""
-        names = sorted(self._shapes)
-        rows = self._pairs(names, names) if len(names) > 1 else np.empty((0, 2), np.uint32)
-        data = self._contacts((names, rows[:, 0]), (self, names, rows[:, 1])) if return_data else []
-        pairs = {(names[one], names[other]) for one, other in rows.tolist()}
-        return _answer(bool(len(rows)), pairs, data, return_names, return_data)
+        if not (return_names or return_data):
+            return self._engine.is_touching()
+        rows, meshes = self._engine.touching(), self._meshes
+        names = {_ordered(meshes[one][0], meshes[other][0]) for one, other in rows}
+        data = contacts([_by_name(pair) for pair in self._pairs(rows, self)]) if return_data else []
+        return _answer(bool(rows), names, data, return_names, return_data)
 
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: No = ...
+    ) -> bool: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, *, return_names: Yes, return_data: No = ...
+    ) -> tuple[bool, Pairs]: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: Yes
+    ) -> tuple[bool, Contacts]: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, *, return_names: Yes, return_data: Yes
+    ) -> tuple[bool, Pairs, Contacts]: ...
+    @overload
+    def in_collision_other(
+        self, other_manager: CollisionManager, return_names: bool = ..., return_data: bool = ...
+    ) -> Any: ...
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """Whether a mesh touches one of another manager; the names are pairs, the own first."""
-        found, pairs, data = self._against(other_manager, return_data)
-        return _answer(found, pairs, data, return_names, return_data)
+        other = self._beside(other_manager)
+        if not (return_names or return_data):
+            return self._engine.is_touching_other(other._engine)
+        rows = self._engine.touching_other(other._engine)
+        names = {(self._meshes[one][0], other._meshes[index][0]) for one, index in rows}
+        data = contacts(self._pairs(rows, other)) if return_data else []
+        return _answer(bool(rows), names, data, return_names, return_data)
 
+    @overload
+    def min_distance_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: No = ..., return_data: No = ...
+    ) -> float: ...
+    @overload
+    def min_distance_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: Yes, return_data: No = ...
+    ) -> tuple[float, str]: ...
+    @overload
+    def min_distance_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: No = ..., return_data: Yes
+    ) -> tuple[float, DistanceData | None]: ...
+    @overload
+    def min_distance_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: Yes, return_data: Yes
+    ) -> tuple[float, str, DistanceData | None]: ...
+    @overload
+    def min_distance_single(
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_name: bool = ..., return_data: bool = ...
+    ) -> Any: ...
     def min_distance_single(
         self,
         mesh: trimesh.Trimesh,
@@ -145,147 +196,146 @@ class CollisionManager:
         return_data: bool = False,
     ) -> Any:
         """How far a mesh is from the nearest one of the manager."""
-        distance, names, data = self._nearest(_single(mesh, transform), None, return_data)
-        return _answer(distance, names[0], data, return_name, return_data)
+        external = Placed(EXTERNAL, Geometry.of(mesh), matrix_of(transform))
+        found = self._engine.nearest_to(external.geometry.shape, external.transform)
+        if found is None:
+            return _answer(float("inf"), "", None, return_name, return_data)
+        index, distance = found
+        data = measured(self._placed([index])[0], external) if return_data else None
+        distance = distance if data is None else data.distance
+        return _answer(distance, self._meshes[index][0], data, return_name, return_data)
 
+    @overload
+    def min_distance_internal(
+        self, name: str | None = ..., *, return_names: No = ..., return_data: No = ...
+    ) -> float: ...
+    @overload
+    def min_distance_internal(
+        self, name: str | None = ..., *, return_names: Yes, return_data: No = ...
+    ) -> tuple[float, tuple[str, str]]: ...
+    @overload
+    def min_distance_internal(
+        self, name: str | None = ..., *, return_names: No = ..., return_data: Yes
+    ) -> tuple[float, DistanceData | None]: ...
+    @overload
+    def min_distance_internal(
+        self, name: str | None = ..., *, return_names: Yes, return_data: Yes
+    ) -> tuple[float, tuple[str, str], DistanceData | None]: ...
+    @overload
+    def min_distance_internal(
+        self, name: str | None = ..., return_names: bool = ..., return_data: bool = ...
+    ) -> Any: ...
     def min_distance_internal(
         self, name: str | None = None, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """How far the nearest two meshes are apart; with a name, those of which one is this mesh."""
-        one, other = np.triu_indices(len(self._shapes), 1)
-        if name is not None:
-            self._known(name)
-            row = sorted(self._shapes).index(name)
-            is_wanted = (one == row) | (other == row)
-            one, other = one[is_wanted], other[is_wanted]
-        distance, names, data = self._nearest(self, (one, other), return_data)
-        return _answer(distance, tuple(sorted(names)), data, return_names, return_data)
+        engine = self._engine
+        found = engine.nearest() if name is None else engine.nearest_beside(self._known(name))
+        if found is None:
+            return _answer(float("inf"), ("", ""), None, return_names, return_data)
+        one, other, distance = found
+        names = _ordered(self._meshes[one][0], self._meshes[other][0])
+        data = measured(*_by_name(self._pairs([(one, other)], self)[0])) if return_data else None
+        return _answer(distance if data is None else data.distance, names, data, return_names, return_data)
 
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: No = ...
+    ) -> float: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, *, return_names: Yes, return_data: No = ...
+    ) -> tuple[float, tuple[str, str]]: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: Yes
+    ) -> tuple[float, DistanceData | None]: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, *, return_names: Yes, return_data: Yes
+    ) -> tuple[float, tuple[str, str], DistanceData | None]: ...
+    @overload
+    def min_distance_other(
+        self, other_manager: CollisionManager, return_names: bool = ..., return_data: bool = ...
+    ) -> Any: ...
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Any:
         """How far the nearest meshes of two managers are apart; the own name is the first."""
-        distance, names, data = self._nearest(other_manager, None, return_data)
-        return _answer(distance, names, data, return_names, return_data)
+        manager = self._beside(other_manager)
+        found = self._engine.nearest_other(manager._engine)
+        if found is None:
+            return _answer(float("inf"), ("", ""), None, return_names, return_data)
+        one, other, distance = found
+        names = self._meshes[one][0], manager._meshes[other][0]
+        data = measured(*self._pairs([(one, other)], manager)[0]) if return_data else None
+        return _answer(distance if data is None else data.distance, names, data, return_names, return_data)
 
-    def _place(self, name: str, shape: Shape, surface: Shape, matrix: NDArray[np.float64]) -> None:
-        self._shapes[name], self._surfaces[name], self._transforms[name] = shape, surface, matrix
+    def _add(self, placed: Placed) -> Shape:
+        try:
+            index = self._engine.add(placed.geometry.shape, placed.transform)
+        except ValueError as error:
+            raise ValueError(f"{placed.name}: {error}") from None
+        if placed.name in self._indices:
+            self.remove_object(placed.name)
+        self._indices[placed.name], self._meshes[index] = index, (placed.name, placed.geometry)
+        return placed.geometry.shape
 
-    def _faces(self, name: str, parts: Any, points: Any) -> NDArray[np.int64]:
-        """The faces that hold points of a mesh: its parts, or of a solid the triangles that are nearest."""
-        if self._shapes[name] is self._surfaces[name]:
-            return np.asarray(parts, dtype=np.int64)
-        found = project_points(self._surfaces[name], self._transforms[name], points, False)
-        return np.asarray(found.part, dtype=np.int64)
-
-    def _known(self, name: str) -> None:
-        if name not in self._shapes:
+    def _known(self, name: str) -> int:
+        if name not in self._indices:
             raise ValueError(f"{name} is not in the manager")
+        return self._indices[name]
 
-    def _placed(self, names: Iterable[str]) -> tuple[list[Shape], NDArray[np.float64]]:
-        names = list(names)
-        poses = np.array([self._transforms[name] for name in names]).reshape(-1, 4, 4)
-        return [self._shapes[name] for name in names], poses
+    def _placed(self, indices: list[int]) -> list[Placed]:
+        """Meshes where they are."""
+        transforms = self._engine.transforms(indices)
+        return [Placed(*self._meshes[index], matrix) for index, matrix in zip(indices, transforms, strict=True)]
 
-    def _pairs(
-        self, names: list[str], others: list[str], manager: CollisionManager | None = None
-    ) -> NDArray[np.uint32]:
-        """The rows of names that touch; without another manager of this one's own."""
-        if manager is None:
-            return pairs_within(*self._placed(names))
-        return pairs_within(*self._placed(names), *manager._placed(others))
+    def _pairs(self, rows: list[tuple[int, int]], other: CollisionManager) -> list[tuple[Placed, Placed]]:
+        """Pairs of an own mesh and one of a manager."""
+        ones, others = self._placed([one for one, _ in rows]), other._placed([index for _, index in rows])
+        return list(zip(ones, others, strict=True))
 
-    def _against(self, manager: CollisionManager, return_data: bool) -> tuple[bool, set[tuple[str, str]], list[Any]]:
-        names, others = sorted(self._shapes), sorted(manager._shapes)
-        if not names or not others:
-            return False, set(), []
-        rows = self._pairs(names, others, manager)
-        data = self._contacts((names, rows[:, 0]), (manager, others, rows[:, 1])) if return_data else []
-        return bool(len(rows)), {(names[one], others[other]) for one, other in rows.tolist()}, data
-
-    def _contacts(
-        self, own: tuple[list[str], Any], others: tuple[CollisionManager, list[str], Any]
-    ) -> list[ContactData]:
-        """All contact points of the pairs of these rows."""
-        (names, one), (manager, other_names, other) = own, others
-        if not len(one):
-            return []
-        (shapes1, poses1), (shapes2, poses2) = self._placed(names), manager._placed(other_names)
-        rows = contact_manifolds(Picked(shapes1, one), poses1[one], Picked(shapes2, other), poses2[other])
-        data = []
-        for pair in range(len(one)):
-            pair_names = names[int(one[pair])], other_names[int(other[pair])]
-            found = rows.of(pair)
-            if not len(found.depth):
-                continue
-            faces1 = self._faces(pair_names[0], found.part1, found.point1)
-            faces2 = manager._faces(pair_names[1], found.part2, found.point2)
-            for index in range(len(found.depth)):
-                faces = int(faces1[index]), int(faces2[index])
-                middle = (found.point1[index] + found.point2[index]) / 2
-                row = {"normal": found.normal[index], "point": middle, "depth": found.depth[index]}
-                data.append(ContactData(pair_names, faces, row))
-        return data
-
-    def _nearest(
-        self, manager: CollisionManager, rows: tuple[Any, Any] | None, with_data: bool
-    ) -> tuple[float, tuple[str, str], DistanceData | None]:
-        """The nearest of these pairs of numbers, or of all pairs of this manager and another."""
-        names, others = sorted(self._shapes), sorted(manager._shapes)
-        one, other = rows or (part.ravel() for part in np.indices((len(names), len(others))))
-        if not len(one):
-            return float("inf"), ("", ""), None
-        (shapes1, poses1), (shapes2, poses2) = self._placed(names), manager._placed(others)
-        best, distance = nearest(Picked(shapes1, one), poses1[one], Picked(shapes2, other), poses2[other])
-        first, second = int(one[best]), int(other[best])
-        pair = names[first], others[second]
-        # How deep meshes overlap, a witness alone tells.
-        if distance > 0 and not with_data:
-            return distance, pair, None
-        found = witness(shapes1[first], poses1[first], shapes2[second], poses2[second])
-        faces = (
-            int(self._faces(pair[0], found.part1, found.point1)),
-            int(manager._faces(pair[1], found.part2, found.point2)),
-        )
-        return float(found.distance), pair, DistanceData(pair, faces, found)
+    def _beside(self, other: CollisionManager) -> CollisionManager:
+        """Another manager, of itself a copy."""
+        return other if other is not self else _manager(self._placed(list(self._meshes)))
 
 
 def scene_to_collision(scene: trimesh.Scene) -> tuple[CollisionManager, dict[str, Shape]]:
-    """A manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes."""
-    manager = CollisionManager()
-    shapes: dict[Any, tuple[Shape, Shape]] = {}
+    """A manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes.
+
+    What a node scales, shears or mirrors is applied to the vertices of its shape; `set_transform` then places the shape as
+    it is here, by a rotation and a translation. ValueError names a node whose transform is no such map.
+    """
+    placed, known = [], {}
     for node in scene.graph.nodes_geometry:
-        transform, geometry = scene.graph[node]
-        if geometry not in shapes:
-            mesh = scene.geometry[geometry]
-            surface = TriMesh(mesh.vertices, mesh.faces)
-            shapes[geometry] = _shape(mesh, surface), surface
-        manager._place(node, *shapes[geometry], _matrix(transform))
-    return manager, dict(manager._shapes)
+        transform, name = scene.graph[node]
+        try:
+            rigid, stretch = rotation_and_stretch(matrix_of(transform))
+        except ValueError as error:
+            raise ValueError(f"the node {node!r}: {error}") from None
+        key = name, None if stretch is None else stretch.tobytes()
+        if key not in known:
+            geometry = Geometry.of(scene.geometry[name])
+            known[key] = geometry if stretch is None else geometry.stretched(stretch)
+        placed.append(Placed(node, known[key], rigid))
+    return _manager(placed), {one.name: one.geometry.shape for one in placed}
 
 
-def _single(mesh: trimesh.Trimesh, transform: ArrayLike | None) -> CollisionManager:
-    """A manager with one mesh."""
+def _manager(placed: Iterable[Placed]) -> CollisionManager:
     manager = CollisionManager()
-    manager.add_object(EXTERNAL, mesh, transform)
+    for one in placed:
+        manager._add(one)
     return manager
 
 
-def _shape(mesh: trimesh.Trimesh, surface: Shape) -> Shape:
-    """The solid of a convex mesh, the surface of others: of flat ones too, which are convex and have no volume."""
-    if not mesh.is_convex:
-        return surface
-    try:
-        return ConvexHull(mesh.vertices)
-    except ValueError:
-        return surface
+def _ordered(one: str, other: str) -> tuple[str, str]:
+    return (one, other) if one <= other else (other, one)
 
 
-def _matrix(transform: ArrayLike | None) -> NDArray[np.float64]:
-    matrix = np.eye(4) if transform is None else np.array(transform, dtype=np.float64)
-    if matrix.shape != (4, 4):
-        raise ValueError(f"transform has the shape {matrix.shape}, where (4, 4) is needed")
-    return matrix
+def _by_name(pair: tuple[Placed, Placed]) -> tuple[Placed, Placed]:
+    one, other = pair
+    return pair if one.name <= other.name else (other, one)
 
 
 def _answer(found: Any, names: Any, data: Any, with_names: bool, with_data: bool) -> Any:

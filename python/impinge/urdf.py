@@ -185,6 +185,9 @@ def _frame(joint: Any, links: dict[str, int], columns: list[str]) -> Frame:
     kind: Literal["revolute", "prismatic"] = "prismatic" if joint.type == "prismatic" else "revolute"
     if joint.mimic is None:
         return Frame(parent, origin, kind, axis, columns.index(joint.name))
+    if joint.mimic.joint not in columns:
+        known = f"the moving joints without a mimic are {columns}"
+        raise ValueError(f"joint {joint.name} mimics {joint.mimic.joint}, which is none of them: {known}")
     multiplier = 1.0 if joint.mimic.multiplier is None else joint.mimic.multiplier
     offset = 0.0 if joint.mimic.offset is None else joint.mimic.offset
     return Frame(parent, origin, kind, axis, columns.index(joint.mimic.joint), multiplier, offset)

@@ -34,6 +34,14 @@ impl Extent {
         }
     }
 
+    /// One fact about each element, of a list with as many.
+    pub(crate) fn of_list<T>(self, mut list: Vec<T>) -> Slots<T> {
+        match self {
+            Self::Lone { .. } if list.len() == 1 => Slots::One([list.remove(0)]),
+            _ => Slots::Many(list),
+        }
+    }
+
     /// Room for one fact about each element.
     pub(crate) fn slots<T: Clone>(self, empty: T) -> Slots<T> {
         match self {

@@ -293,7 +293,7 @@ fn pairs_within<'py>(
 ///
 /// shape, poses: as of `distance`. points: (D,) or (n, D). Returns `Projection(point, is_inside, part)`, (n, D), (n,) and
 /// (n,). Errors as of `distance`; a point may be anything. A point inside is its own projection if `solid`, else it goes to
-/// the boundary. What is not finite has NaN and part 4294967295.
+/// the boundary. What is not finite has NaN and part 4294967295. Meshes and lines are surfaces here: no point is inside.
 ///
 /// >>> import impinge
 /// >>> impinge.project_points(impinge.Ball(1), None, [4, 0, 0]).point.tolist()
@@ -315,39 +315,46 @@ fn project_points<'py>(
 /// The distances of points from shapes, negative inside.
 ///
 /// Arguments and errors as of `project_points`. Returns a float or an array (n,), lengths; infinite for what is not finite.
+/// Closed meshes in 3D and closed lines in 2D are solids here, and in `contains`. `ValueError` names a mesh, line or height
+/// field that is not closed: it has no inside. With `surface=True` it is asked as a surface, from which no distance is negative.
 ///
 /// >>> import impinge
 /// >>> impinge.signed_distance(impinge.Ball(2), None, [[5, 0, 0], [0, 1, 0]]).tolist()
 /// [3.0, -1.0]
 #[pyfunction]
-#[pyo3(signature = (shape, poses, points, *, threads=None, progress=None))]
+#[pyo3(signature = (shape, poses, points, *, surface=false, threads=None, progress=None))]
 fn signed_distance<'py>(
     shape: &Object<'py>,
     poses: &Object<'py>,
     points: &Object<'py>,
+    surface: bool,
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    ask_points([shape, poses, points], PointQuestion::SignedDistance, Call::new(threads, progress))
+    let question = PointQuestion::SignedDistance { surface };
+    ask_points([shape, poses, points], question, Call::new(threads, progress))
 }
 
 /// Whether points are inside shapes, or on them.
 ///
-/// Arguments and errors as of `project_points`. Returns a bool or an array (n,) of bools.
+/// Arguments and errors as of `signed_distance`. Returns a bool or an array (n,) of bools. With `surface=True` a mesh, line or
+/// height field that is not closed has the points on it.
 ///
 /// >>> import impinge
 /// >>> impinge.contains(impinge.Cuboid([1, 1]), None, [[0, 0], [1, 1], [1, 2]]).tolist()
 /// [True, True, False]
 #[pyfunction]
-#[pyo3(signature = (shape, poses, points, *, threads=None, progress=None))]
+#[pyo3(signature = (shape, poses, points, *, surface=false, threads=None, progress=None))]
 fn contains<'py>(
     shape: &Object<'py>,
     poses: &Object<'py>,
     points: &Object<'py>,
+    surface: bool,
     threads: Option<Threads>,
     progress: Option<Py<PyAny>>,
 ) -> Answer<'py> {
-    ask_points([shape, poses, points], PointQuestion::Contains, Call::new(threads, progress))
+    let question = PointQuestion::Contains { surface };
+    ask_points([shape, poses, points], question, Call::new(threads, progress))
 }
 
 /// Where rays meet shapes.

@@ -13,33 +13,37 @@ mod answer;
 mod checker;
 mod error;
 mod functions;
-mod kept_world;
+mod manager;
 mod options;
 mod pairs;
 mod pictures;
 mod points;
 mod poses;
+mod read_back;
 mod recordings;
 mod scene;
 mod shapes;
 mod side;
+mod solid;
 mod space;
 mod supervise;
+mod threads;
 mod tiles;
 mod turning;
-mod typed_world;
 mod vectors;
 mod world;
-mod world_queries;
 
 use pyo3::prelude::*;
 
 /// The library behind the package `impinge`.
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    threads::note_process(module)?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<shapes::Shape>()?;
     module.add_class::<world::World>()?;
     module.add_class::<checker::NativeChecker>()?;
+    module.add_class::<manager::Manager>()?;
     functions::add_to(module)?;
     tiles::add_to(module)?;
     module.add_function(wrap_pyfunction!(pictures::picture_of, module)?)?;

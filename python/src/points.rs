@@ -1,26 +1,38 @@
 //! Questions about points and rays beside placed shapes.
 
 use impinge::batch::{HitColumns, PointBatch, ProjectionColumns, RayColumns};
+use impinge::math::Point;
 use impinge::math::na::convert;
 use pyo3::prelude::*;
 
 use crate::answer::{Column, Extent, PROJECTION, RAY_HIT, into_python};
 use crate::error::{self, not_nan};
 use crate::shapes::kind_of;
-use crate::side::SideArgument;
+use crate::side::{GivenSide, SideArgument};
+use crate::solid;
 use crate::space::{Kind, Numeric, Task, run_in};
-use crate::supervise::{Call, supervise};
+use crate::supervise::{Call, each, supervise};
 use crate::vectors::Vectors;
 
 /// What is asked of points.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PointQuestion {
     /// The nearest point; inside points are their own projection if `solid`.
-    Project {
-        solid: bool,
-    },
-    SignedDistance,
-    Contains,
+    Project { solid: bool },
+    /// Negative inside; open surfaces have no inside, and are refused unless `surface`.
+    SignedDistance { surface: bool },
+    /// Likewise.
+    Contains { surface: bool },
+}
+
+impl PointQuestion {
+    /// It is about what is inside, so that closed surfaces are solids; with `surface` of open ones.
+    const fn is_about_inside(self) -> Option<bool> {
+        match self {
+            Self::Project { .. } => None,
+            Self::SignedDistance { surface } | Self::Contains { surface } => Some(surface),
+        }
+    }
 }
 
 /// Points beside a side.
@@ -55,13 +67,19 @@ impl<'py> Task for AskPoints<'_, 'py> {
         let batch = batch.map_err(|error| error::of_batch(&error, "points"))?;
         let is_lone = given.is_lone() && points.is_lone();
         let extent = Extent::of(is_lone, given.is_quick(), batch.len());
+        if let Some(surface) = self.question.is_about_inside()
+            && given.has_surface(surface)?
+        {
+            let column = self.of_solids(&given, points.rows()?, extent)?;
+            return into_python(py, None, [column]);
+        }
         let found = supervise(py, extent, &self.call, |control| match self.question {
-            PointQuestion::SignedDistance => {
+            PointQuestion::SignedDistance { .. } => {
                 let mut distance = extent.slots(N::ZERO);
                 batch.signed_distances(control, &mut distance)?;
                 Ok(vec![Column::Numbers(distance)])
             }
-            PointQuestion::Contains => {
+            PointQuestion::Contains { .. } => {
                 let mut is_inside = extent.slots(false);
                 batch.contains(control, &mut is_inside)?;
                 Ok(vec![Column::Flags(is_inside)])
@@ -83,6 +101,37 @@ impl<'py> Task for AskPoints<'_, 'py> {
             found.map_err(|error| error::of_batch(&error, "points"))?;
         let class = matches!(self.question, PointQuestion::Project { .. }).then_some(&PROJECTION);
         into_python(py, class, columns)
+    }
+}
+
+impl AskPoints<'_, '_> {
+    /// The answers where a shape is a surface: closed ones are solids.
+    fn of_solids<N: Numeric<D>, const D: usize>(
+        &self,
+        given: &GivenSide<'_, '_, N, D>,
+        points: &[[N; D]],
+        extent: Extent,
+    ) -> PyResult<Column<N, D>> {
+        let (py, len, placed) = (self.points.py(), extent.len(), given.placed()?);
+        let at = |element: usize| {
+            let (shape, pose) = &placed[if placed.len() == 1 { 0 } else { element }];
+            let point = points[if points.len() == 1 { 0 } else { element }];
+            let is_finite = pose.is_finite() && point.iter().all(|x| x.is_finite_number());
+            is_finite.then_some((*shape, pose, Point::from(point)))
+        };
+        Ok(if let PointQuestion::Contains { .. } = self.question {
+            let holds = |element| {
+                at(element).is_some_and(|(shape, pose, point)| solid::contains(shape, pose, &point))
+            };
+            Column::Flags(extent.of_list(each(py, len, &self.call, holds)?))
+        } else {
+            let distance = |element| {
+                at(element).map_or(N::INFINITY, |(shape, pose, point)| {
+                    solid::signed_distance(shape, pose, &point)
+                })
+            };
+            Column::Numbers(extent.of_list(each(py, len, &self.call, distance)?))
+        })
     }
 }
 

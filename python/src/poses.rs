@@ -28,6 +28,7 @@ impl<'py, N: Numeric<D>, const D: usize> Poses<'py, N, D> {
         if let Ok(array) = given.cast::<PyArrayDyn<N>>()
             && is_usable::<D>(array.shape())
             && array.is_c_contiguous()
+            && array.is_aligned()
         {
             return Ok(Self { name, given: Some(Numbers::of(array, 2)?) });
         }

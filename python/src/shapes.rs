@@ -6,14 +6,15 @@ use std::sync::Arc;
 use impinge::batch::Shapes;
 use impinge::math::na::convert;
 use impinge::math::{Point, Space, Vector};
-use impinge::shape::{ShapeHandle, ShapeKind};
+use impinge::shape::{Compound, Polyline, ShapeHandle, ShapeKind, TriMesh};
 use impinge_record::{Field, Mesh, Problem, ShapeData};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyBool, PyBytes, PyTuple};
 
 use crate::poses::Poses;
+use crate::read_back;
 use crate::scene::scene_bytes;
 use crate::space::{Kind, Numeric, Task, run_in};
 
@@ -23,17 +24,14 @@ pub(crate) struct Shape {
     pub(crate) kind: Kind,
     /// A `ShapeHandle` of the kind.
     handle: Arc<dyn Any + Send + Sync>,
-    /// What the library calls shapes like it.
+    /// The function of the package that makes shapes like it.
     name: String,
 }
 
 impl Shape {
     /// A shape of the library as Python has it.
     pub(crate) fn of<N: Numeric<D>, const D: usize>(kind: Kind, shape: ShapeHandle<N, D>) -> Self {
-        let name = match shape.geometry().kind() {
-            ShapeKind::Plane => "HalfSpace".to_owned(),
-            kind => format!("{kind:?}"),
-        };
+        let name = public_name(&shape);
         Self { kind, handle: Arc::new(shape), name }
     }
 
@@ -101,9 +99,9 @@ impl Shape {
         run_in(kind, Make(&description))
     }
 
-    /// What kind of shape it is.
+    /// The function that makes shapes like it, such as `TriMesh`.
     #[getter]
-    fn name(&self) -> &str {
+    pub(crate) fn name(&self) -> &str {
         &self.name
     }
 
@@ -117,6 +115,35 @@ impl Shape {
     #[getter]
     fn dtype(&self) -> &'static str {
         self.kind.dtype()
+    }
+
+    /// The vertices (n, D) of a mesh, a line, a hull, a triangle or a segment, in the frame of the shape; `AttributeError`
+    /// of other shapes. A hull has those that its surface has.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        read_back::vertices(py, self)
+    }
+
+    /// The numbers of the vertices of each triangle of a mesh (m, 3), or of each segment of a line (m, 2);
+    /// `AttributeError` of other shapes.
+    #[getter]
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        read_back::faces(py, self)
+    }
+
+    /// Shapes are equal if they are of one kind, dim and dtype, and made of the same numbers.
+    fn __eq__(slf: &Bound<'_, Self>, other: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+        let py = slf.py();
+        let Ok(other) = other.cast::<Self>() else { return Ok(py.NotImplemented()) };
+        let is_equal = slf.is(other)
+            || (slf.get().kind == other.get().kind
+                && slf.get().name == other.get().name
+                && bytes_of(slf)?.as_bytes() == bytes_of(other)?.as_bytes());
+        Ok(PyBool::new(py, is_equal).to_owned().into_any().unbind())
+    }
+
+    fn __hash__(slf: &Bound<'_, Self>) -> PyResult<isize> {
+        bytes_of(slf)?.hash()
     }
 
     fn __repr__(&self) -> String {
@@ -133,9 +160,32 @@ impl Shape {
     /// Pickled as the bytes of a scene of this shape alone.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let py = slf.py();
-        let bytes = scene_bytes(slf.as_any(), &py.None().into_bound(py))?;
+        let bytes = bytes_of(slf)?;
         let read = py.import("impinge._native")?.getattr("shape_of_bytes")?;
         (read, (bytes,)).into_pyobject(py)
+    }
+}
+
+/// The bytes of a scene of this shape alone, which equal shapes share.
+fn bytes_of<'py>(shape: &Bound<'py, Shape>) -> PyResult<Bound<'py, PyBytes>> {
+    scene_bytes(shape.as_any(), &shape.py().None().into_bound(shape.py()))
+}
+
+/// The name of the function that makes such shapes; what else is there is called as the library calls it.
+fn public_name<N: Numeric<D>, const D: usize>(shape: &ShapeHandle<N, D>) -> String {
+    match shape.geometry().kind() {
+        ShapeKind::Plane => "HalfSpace".to_owned(),
+        ShapeKind::Polytope if N::is_tetrahedron(shape) => "Tetrahedron".to_owned(),
+        ShapeKind::Polytope => "ConvexHull".to_owned(),
+        ShapeKind::Composite if shape.as_shape::<TriMesh<N, D>>().is_some() => "TriMesh".to_owned(),
+        ShapeKind::Composite if shape.as_shape::<Polyline<N, D>>().is_some() => {
+            "Polyline".to_owned()
+        }
+        ShapeKind::Composite if shape.as_shape::<Compound<N, D>>().is_some() => {
+            "Compound".to_owned()
+        }
+        ShapeKind::Composite => "HeightField".to_owned(),
+        kind => format!("{kind:?}"),
     }
 }
 
@@ -354,6 +404,14 @@ impl<'a, 'py, N: Numeric<D>, const D: usize> ShapesArgument<'a, 'py, N, D> {
         match self {
             Self::One(shape) => Some(shape),
             _ => None,
+        }
+    }
+
+    /// The shapes that are given.
+    pub(crate) fn distinct(&self) -> &[ShapeHandle<N, D>] {
+        match self {
+            Self::One(shape) => core::slice::from_ref(*shape),
+            Self::Each(shapes) | Self::Picked { shapes, .. } => shapes,
         }
     }
 

@@ -1,6 +1,7 @@
 //! One side of a batch as Python gives it: shapes and poses.
 
 use impinge::batch::{BatchError, PoseSource, Side};
+use impinge::math::Pose;
 use impinge::shape::{ShapeHandle, ShapeKind};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -8,6 +9,7 @@ use pyo3::prelude::*;
 use crate::error;
 use crate::poses::{Poses, Source};
 use crate::shapes::ShapesArgument;
+use crate::solid;
 use crate::space::{Kind, Numeric};
 
 /// The arguments of a side, and what Python calls them.
@@ -55,6 +57,33 @@ impl<N: Numeric<D>, const D: usize> GivenSide<'_, '_, N, D> {
     /// The shape of an element.
     pub(crate) fn shape(&self, element: usize) -> &ShapeHandle<N, D> {
         self.shapes.at(element)
+    }
+
+    /// A shape is a surface or a line.
+    ///
+    /// # Errors
+    /// `ValueError` for one that is not closed, with its row; not if `surface`.
+    pub(crate) fn has_surface(&self, surface: bool) -> PyResult<bool> {
+        let [name, _] = self.names;
+        let mut has_surface = false;
+        for (row, shape) in self.shapes.distinct().iter().enumerate() {
+            let Some(standing) = solid::standing(shape) else { continue };
+            has_surface = true;
+            if !surface && self.shapes.lone().is_some() {
+                solid::refuse_open(Some(standing), name)?;
+            } else if !surface {
+                solid::refuse_open(Some(standing), &format!("{name}[{row}]"))?;
+            }
+        }
+        Ok(has_surface)
+    }
+
+    /// The shapes and poses of all elements; one if there is one for all.
+    pub(crate) fn placed(&self) -> PyResult<Vec<(&ShapeHandle<N, D>, Pose<N, D>)>> {
+        let poses = self.poses()?;
+        let len = self.side(&*poses)?.len();
+        let pose = |element| poses.pose(if poses.len() == 1 { 0 } else { element });
+        Ok((0..len).map(|element| (self.shape(element), pose(element))).collect())
     }
 
     /// The poses as the library reads them.

@@ -6,6 +6,9 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use crate::pictures::Pictured;
+use crate::read_back::Cornered;
+use crate::solid::Bounding;
+use crate::threads::settle;
 use crate::turning::Turning;
 
 /// A scalar and a dimension.
@@ -68,11 +71,14 @@ impl Kind {
 
 /// A scalar and a dimension in which Python works.
 pub(crate) trait Numeric<const D: usize>:
-    Recordable<D> + Element + Pictured<D> + Turning<D>
+    Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D> + Cornered<D>
 {
 }
 
-impl<N: Recordable<D> + Element + Pictured<D> + Turning<D>, const D: usize> Numeric<D> for N {}
+impl<N, const D: usize> Numeric<D> for N where
+    N: Recordable<D> + Element + Pictured<D> + Turning<D> + Bounding<D> + Cornered<D>
+{
+}
 
 /// A computation that is generic over the scalar and the dimension. It is a type, because a closure cannot be generic.
 pub(crate) trait Task {
@@ -85,6 +91,7 @@ pub(crate) trait Task {
 
 /// Runs a task in a scalar and a dimension.
 pub(crate) fn run_in<T: Task>(kind: Kind, task: T) -> PyResult<T::Answer> {
+    settle()?;
     match (kind.is_double, kind.is_spatial) {
         (false, false) => task.run::<f32, 2>(),
         (false, true) => task.run::<f32, 3>(),

@@ -7,16 +7,15 @@ use core::ops::ControlFlow;
 use core::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use core::time::Duration;
 use std::panic::resume_unwind;
-use std::sync::OnceLock;
 use std::thread;
 
 use impinge::batch::{BatchError, Control};
-use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
-use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 
 use crate::answer::Extent;
+use crate::threads::Crew;
 
 /// Batches of at most so many elements are done by the calling thread: the library does not share them out either.
 const SMALL: usize = 64;
@@ -117,7 +116,8 @@ fn released<T: Send>(
     if len <= SMALL && call.progress.is_none() {
         return Ok(py.detach(|| work(None)));
     }
-    py.detach(|| beside(call, &work))
+    let crew = Crew::of(py, call.threads)?;
+    py.detach(|| beside(call, &crew, &work))
 }
 
 /// Asks about chunks of elements; after a stop the rest is not asked.
@@ -144,21 +144,24 @@ fn in_chunks<T: Send>(
 }
 
 /// Works in another thread and looks after it in this one, which has released the interpreter.
-fn beside<T: Send>(call: &Call, work: &(impl Fn(Option<Report<'_>>) -> T + Sync)) -> PyResult<T> {
+fn beside<T: Send>(
+    call: &Call,
+    crew: &Crew,
+    work: &(impl Fn(Option<Report<'_>>) -> T + Sync),
+) -> PyResult<T> {
     let watch = Watch::default();
     let report = |done| watch.report(done);
     let caller = thread::current();
     thread::scope(|scope| {
         let worker = scope.spawn(|| {
-            let found = in_pool(call.threads, || work(Some(&report)));
+            let found = crew.run(|| work(Some(&report)));
             watch.is_finished.store(true, Ordering::Release);
             caller.unpark();
             found
         });
         let outcome = watch.wait(call);
         let found = worker.join().unwrap_or_else(|panic| resume_unwind(panic));
-        outcome?;
-        found.map_err(|error| PyRuntimeError::new_err(format!("no threads: {error}")))
+        outcome.map(|()| found)
     })
 }
 
@@ -206,23 +209,4 @@ impl Watch {
         }
         Ok(())
     }
-}
-
-/// Runs the work on so many threads.
-fn in_pool<T: Send>(
-    threads: Option<usize>,
-    work: impl FnOnce() -> T + Send,
-) -> Result<T, ThreadPoolBuildError> {
-    /// It is made once, since a single thread is asked for often, in measurements and in workers of others.
-    static ONE: OnceLock<ThreadPool> = OnceLock::new();
-    let make = |threads| ThreadPoolBuilder::new().num_threads(threads).build();
-    Ok(match (threads, ONE.get()) {
-        (None, _) => work(),
-        (Some(1), Some(pool)) => pool.install(work),
-        (Some(1), None) => {
-            let pool = make(1)?;
-            ONE.get_or_init(|| pool).install(work)
-        }
-        (Some(count), _) => make(count)?.install(work),
-    })
 }

@@ -46,6 +46,7 @@ impl<'py, N: Numeric<D>, const D: usize> Vectors<'py, N, D> {
         if let Ok(array) = given.cast::<PyArrayDyn<N>>()
             && matches!(array.shape(), [width] | [_, width] if *width == D)
             && array.is_c_contiguous()
+            && array.is_aligned()
         {
             return Ok(Self(Numbers::of(array, 1)?));
         }

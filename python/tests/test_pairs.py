@@ -97,8 +97,8 @@ def test_points_and_rays_in_a_batch_have_the_bits_of_single_ones(dim, dtype):
         for ask in (
             lambda at, solid=shape: impinge.project_points(solid, poses[at], points[at]),
             lambda at, solid=shape: impinge.project_points(solid, poses[at], points[at], False),
-            lambda at, solid=shape: impinge.signed_distance(solid, poses[at], points[at]),
-            lambda at, solid=shape: impinge.contains(solid, poses[at], points[at]),
+            lambda at, solid=shape: impinge.signed_distance(solid, poses[at], points[at], surface=True),
+            lambda at, solid=shape: impinge.contains(solid, poses[at], points[at], surface=True),
             lambda at, solid=shape: impinge.cast_rays(solid, poses[at], points[at], turned[at]),
             lambda at, solid=shape: impinge.cast_rays(solid, poses[at], points[at], turned[at], 1.0, False),
         ):

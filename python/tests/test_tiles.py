@@ -136,6 +136,33 @@ def test_self_join_is_one_process(client, source, tmp_path):
 
 
 
+@pytest.mark.parametrize("form", ["rows", "numbers", "fixed rows"])
+def test_matrices_as_others_write_them(source, tmp_path, form):
+    """Columns of pandas with a matrix in each cell, as lists of rows or flat, and nested lists of fixed size."""
+    pd, pa = pytest.importorskip("pandas"), pytest.importorskip("pyarrow")
+    import pyarrow.parquet as pq
+    from impinge.dask import self_join
+
+    _, scene, _ = source
+    shapes, picks, poses, ids = heap(300)
+    cells = [pose.ravel() if form == "numbers" else list(pose) for pose in poses]
+    path = tmp_path / "frame.parquet"
+    if form == "fixed rows":
+        kind = pa.list_(pa.list_(pa.float64(), 4), 4)
+        column = pa.array(poses.tolist(), kind)
+        pq.write_table(pa.table({"id": pa.array(ids), "shape": pa.array(picks), "pose": column}), path)
+    else:
+        pd.DataFrame({"id": ids, "shape": picks, "pose": cells}).to_parquet(path)
+    assert self_join(path, scene, tmp_path / "out", clearance=0.5) == len(in_one(shapes, picks, poses, ids, 0.5)) > 10
+    for number, (cell, message) in enumerate(
+        {0: ([[1.0] * 4] * 3, "row 1 where 4 are needed"), 1: ([[1.0] * 4] * 3 + [[1.0] * 5], "row 1, list 3, where 4")}.values()
+    ):
+        bad = tmp_path / f"bad-{number}.parquet"
+        pd.DataFrame({"id": [1, 2], "shape": [0, 0], "pose": [list(poses[0]), cell]}).to_parquet(bad)
+        with pytest.raises(ValueError, match=message):
+            self_join(bad, scene, tmp_path / "none")
+
+
 def test_a_killed_worker_changes_nothing(client, source, tmp_path, monkeypatch):
     import impinge.dask
 
@@ -175,7 +202,7 @@ def test_self_join_refuses(source, tmp_path):
     flat = objects_table([1], [0], impinge.Poses([[0, 0]]))
     cases = {
         "lacks the column 'shape'": flat.drop_columns(["shape"]),
-        "a list of the fixed size 16 is needed in 3D": flat,
+        "a list of 16 numbers, or of 4 rows, is needed in 3D": flat,
         "picks\\[0\\] is 9, but there are 5 shapes": objects_table([1], [9], impinge.Poses([[0, 0, 0]])),
         "the column 'id' has nulls": objects_table([1], [0], impinge.Poses([[0, 0, 0]])).set_column(
             0, "id", pa.array([None], pa.uint64())

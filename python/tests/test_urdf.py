@@ -85,3 +85,12 @@ def test_what_is_refused(path):
         robot.self_collides([[0, 0, 0], [0, np.nan, 0]])
     with pytest.raises(ValueError, match="tail is no link"):
         robot.allow("tail", "base")
+
+
+@pytest.mark.parametrize("mimicked", ["nobody", "follow", "shoulder_fixed"])
+def test_a_mimic_of_an_unknown_joint_is_named(path, mimicked):
+    text = ARM.replace('mimic joint="slide"', f'mimic joint="{mimicked}"')
+    fixed = '<link name="nail"/><joint name="shoulder_fixed" type="fixed"><parent link="base"/><child link="nail"/></joint>'
+    path.write_text(text.replace("</robot>", f"{fixed}</robot>"))
+    with pytest.raises(ValueError, match=f"joint follow mimics {mimicked}.*shoulder.*elbow.*slide"):
+        Robot.load(path)

@@ -1,5 +1,7 @@
 """A program with types, for type checkers: what users write is not `Any` where it need not be, and nothing is missing."""
 
+from typing import Any
+
 import impinge
 import numpy as np
 from impinge import Filter, Poses, Recording, Scene, Shape, World
@@ -25,6 +27,23 @@ def record(world: World) -> Recording:
     return recording
 
 
+def managed(manager: CollisionManager) -> set[tuple[str, str]]:
+    """What is asked for decides what comes."""
+    touches: bool = manager.in_collision_internal()
+    distance: float = manager.min_distance_internal()
+    found, names, data = manager.in_collision_other(CollisionManager(), return_names=True, return_data=True)
+    depths: list[float] = [contact.depth for contact in data]
+    assert not touches and not found and not depths and distance > 0
+    return names
+
+
+def read_back(mesh: Shape) -> tuple[NDArray[np.floating[Any]], NDArray[np.uint32], bool]:
+    distances: NDArray[np.floating[Any]] = impinge.distance([mesh, mesh], None, mesh, None)
+    one: float = impinge.distance(mesh, None, mesh, None)
+    assert one == distances[0]
+    return mesh.vertices, mesh.faces, mesh == impinge.TriMesh(mesh.vertices, mesh.faces, dtype=np.float64)
+
+
 def main() -> None:
     world = World(0.01, dim=3)
     handles: NDArray[np.uint64] = world.add(impinge.Ball(1), Poses([[0, 0, 0], [5, 0, 0]]), membership=[1])
@@ -34,6 +53,8 @@ def main() -> None:
     times = impinge.impact(impinge.Ball(1), None, [1, 0, 0], impinge.Ball(1), None, [0, 0, 0]).time
     picture: impinge.Picture = impinge.picture(world, size=(64, 48))
     manager = CollisionManager()
+    assert managed(manager) == set()
+    assert read_back(impinge.TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))[2]
     print(free.shape, len(data) > 0, times, picture.format, manager.in_collision_internal())
 
 

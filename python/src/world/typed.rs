@@ -1,5 +1,7 @@
 //! A world of one scalar and dimension behind [`AnyWorld`]: handles, bulk changes, events and contacts.
 
+use std::collections::BTreeMap;
+
 use impinge::math::Point;
 use impinge::narrow_phase::{CollisionObjectHandle, ContactEvent};
 use impinge::query::Proximity;
@@ -9,30 +11,34 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::kept::KeptWorld;
+use super::queries::WorldQueries;
 use crate::answer::Column;
 use crate::error;
-use crate::kept_world::KeptWorld;
 use crate::options::{GroupLists, ObjectOptions, QueryOptions};
 use crate::pictures::{PictureView, picture};
 use crate::poses::Poses;
 use crate::shapes::ShapesArgument;
 use crate::side::SideArgument;
+use crate::solid::{Standing, standing};
 use crate::space::{Kind, Numeric};
+use crate::threads::Crew;
 use crate::vectors::Vectors;
 use crate::world::{AnyWorld, Arrays};
-use crate::world_queries::WorldQueries;
 
 /// A world of the library.
 pub(crate) struct TypedWorld<N: Numeric<D>, const D: usize> {
     pub(crate) world: KeptWorld<N, D>,
-    margin: N,
+    pub(super) margin: N,
     /// For each index how often it was used, and the handle of the library that has it now.
-    slots: Vec<(u32, CollisionObjectHandle)>,
+    pub(super) slots: Vec<(u32, CollisionObjectHandle)>,
+    /// The objects that are surfaces or lines, or have some as children.
+    pub(super) surfaces: BTreeMap<CollisionObjectHandle, Standing>,
 }
 
 impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
     pub(crate) const fn new(world: KeptWorld<N, D>, margin: N) -> Self {
-        Self { world, margin, slots: Vec::new() }
+        Self { world, margin, slots: Vec::new(), surfaces: BTreeMap::new() }
     }
 
     /// The handles of the library.
@@ -100,7 +106,22 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
                 return Err(error::of_row(&refused, "shapes", row));
             }
         }
+        for (row, handle) in handles.iter().enumerate() {
+            self.note_surface(*handle, &shape_of(row));
+        }
         Ok(())
+    }
+
+    /// Notes what an object is that has this shape now.
+    pub(super) fn note_surface(
+        &mut self,
+        handle: CollisionObjectHandle,
+        shape: &ShapeHandle<N, D>,
+    ) {
+        match standing(shape) {
+            Some(standing) => self.surfaces.insert(handle, standing),
+            None => self.surfaces.remove(&handle),
+        };
     }
 
     /// The shape of an object with other vertices; `None` if it is no mesh and no line of segments.
@@ -143,12 +164,19 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
                 }
             }
         }
+        for (element, handle) in added.iter().enumerate() {
+            self.note_surface(*handle, given.shape(element));
+        }
         Ok(added.into_iter().map(|handle| self.name(handle)).collect())
     }
 
     fn remove(&mut self, handles: &[u64]) -> PyResult<()> {
         let fresh = self.fresh(handles, "handles")?;
-        self.world.remove(&fresh).map_err(|refused| error::of_call(&refused))
+        self.world.remove(&fresh).map_err(|refused| error::of_call(&refused))?;
+        for handle in &fresh {
+            self.surfaces.remove(handle);
+        }
+        Ok(())
     }
 
     fn set_poses(&mut self, handles: &[u64], poses: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -206,8 +234,10 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
         Ok(())
     }
 
-    fn update(&mut self, py: Python<'_>) {
-        py.detach(|| self.world.update());
+    fn update(&mut self, py: Python<'_>) -> PyResult<()> {
+        let crew = Crew::of(py, None)?;
+        py.detach(|| crew.run(|| self.world.update()));
+        Ok(())
     }
 
     fn record(&mut self) -> PyResult<()> {
@@ -220,6 +250,14 @@ impl<N: Numeric<D>, const D: usize> AnyWorld for TypedWorld<N, D> {
 
     fn is_recorded(&self) -> bool {
         self.world.is_recorded()
+    }
+
+    fn to_bytes(&self) -> PyResult<(Vec<u8>, Vec<u32>)> {
+        self.write().map_err(|refused| error::of_call(&refused))
+    }
+
+    fn fill(&mut self, bytes: &[u8], ages: &[u32]) -> PyResult<()> {
+        self.read(bytes, ages).map_err(|damage| PyValueError::new_err(damage.to_string()))
     }
 
     fn picture(&self, view: &PictureView) -> (&'static str, Vec<u8>) {

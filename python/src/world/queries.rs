@@ -9,13 +9,14 @@ use impinge::world::{CollisionGroups, CollisionObject, NearObject, QueryFilter};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use super::typed::TypedWorld;
 use crate::answer::Column;
 use crate::error;
 use crate::options::FilterOptions;
 use crate::side::{Elements, GivenSide, SideArgument, common};
+use crate::solid;
 use crate::space::{Kind, Numeric};
 use crate::supervise::{Call, each};
-use crate::typed_world::TypedWorld;
 use crate::vectors::Vectors;
 use crate::world::Arrays;
 
@@ -33,6 +34,8 @@ pub(crate) struct Asking {
     /// Up to how many objects are wanted of each element; without, all.
     wanted: Option<usize>,
     solid: bool,
+    /// Open surfaces are asked as such.
+    surface: bool,
 }
 
 /// The questions that a world of any scalar and dimension answers.
@@ -124,6 +127,9 @@ impl<N: Numeric<D>, const D: usize> WorldQueries for TypedWorld<N, D> {
                 answer(self.rays(asking, &vectors)?)
             }
             ("project" | "nearest_to_points" | "containing", [points]) => {
+                if asking.name == "containing" && !asking.surface {
+                    self.refuse_open(&chosen)?;
+                }
                 let points = Vectors::of(points, "points")?;
                 answer(self.points(asking, &points)?)
             }
@@ -154,6 +160,13 @@ const fn placed<'a, 'py>(
 }
 
 impl Chosen {
+    /// The object is among them.
+    fn has<N: Numeric<D>, const D: usize>(&self, object: &CollisionObject<N, D, ()>) -> bool {
+        let groups = object.collision_groups();
+        self.groups.is_none_or(|own| own.can_interact_with_groups(groups))
+            && self.excluded.binary_search(&object.handle()).is_err()
+    }
+
     fn ask<N: Numeric<D>, const D: usize>(
         &self,
         element: usize,
@@ -228,11 +241,15 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
                     found.into_iter().collect()
                 }),
             ),
-            "containing" => (
+            "containing" if self.surfaces.is_empty() => (
                 Beside::Nothing,
                 Box::new(move |element, filter| {
                     self.alone(self.world.objects_containing(&at(element), filter))
                 }),
+            ),
+            "containing" => (
+                Beside::Nothing,
+                Box::new(move |element, filter| self.holding(&at(element), filter)),
             ),
             _ => (
                 Beside::Near,
@@ -244,6 +261,28 @@ impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
             ),
         };
         Ok(Prepared { len, beside, in_rows: asking.in_rows(), find })
+    }
+
+    /// The objects that hold a point, closed surfaces as what they bound.
+    fn holding(&self, point: &Point<N, D>, filter: &QueryFilter<'_, N, D, ()>) -> Vec<Found<N, D>> {
+        let Ok(here) = Aabb::try_new(*point, *point) else { return Vec::new() };
+        let holds = |object: &&CollisionObject<N, D, ()>| {
+            solid::contains(object.shape(), &N::pose(object.position()), point)
+        };
+        self.alone(self.world.objects_in_aabb(&here, filter).filter(holds))
+    }
+
+    /// Refuses open surfaces among the objects that a question is about, by the least handle.
+    fn refuse_open(&self, chosen: &Chosen) -> PyResult<()> {
+        for (&handle, &standing) in &self.surfaces {
+            let object = self.world.collision_object(handle);
+            let is_asked = object.is_some_and(|object| chosen.has(object));
+            if is_asked {
+                let name = format!("the object {}", self.of(handle));
+                solid::refuse_open(Some(standing), &name)?;
+            }
+        }
+        Ok(())
     }
 
     fn boxes<'a>(

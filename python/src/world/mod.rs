@@ -3,21 +3,27 @@
 //! A handle in Python is a number of 64 bits: the index of the object, and above it how often that index was used before.
 //! It never comes to mean another object of its world.
 
+mod kept;
+mod queries;
+mod state;
+mod typed;
+
 use impinge::math::na::convert;
 use impinge::world::CollisionWorld;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::kept_world::KeptWorld;
+use self::kept::KeptWorld;
+use self::queries::{Asking, WorldQueries};
+use self::typed::TypedWorld;
 use crate::options::{FilterOptions, GroupLists, ObjectOptions, QueryOptions};
 use crate::pictures::PictureView;
 use crate::shapes::kind_of;
 use crate::side::SideArgument;
 use crate::space::{Kind, Numeric, Task, run_in};
 use crate::supervise::{Call, Threads};
-use crate::typed_world::TypedWorld;
-use crate::world_queries::{Asking, WorldQueries};
+use crate::threads::settle;
 
 /// Columns as Python has them.
 pub(crate) type Arrays<'py> = PyResult<Vec<Bound<'py, PyAny>>>;
@@ -41,10 +47,14 @@ pub(crate) trait AnyWorld: Send + Sync {
     fn set_vertices(&mut self, handle: u64, vertices: &Bound<'_, PyAny>) -> PyResult<()>;
     fn set_groups(&mut self, handles: &[u64], groups: &GroupLists) -> PyResult<()>;
     fn set_query_types(&mut self, handles: &[u64], query: &QueryOptions) -> PyResult<()>;
-    fn update(&mut self, py: Python<'_>);
+    fn update(&mut self, py: Python<'_>) -> PyResult<()>;
     fn record(&mut self) -> PyResult<()>;
     fn stop_recording(&mut self) -> Option<Vec<u8>>;
     fn is_recorded(&self) -> bool;
+    /// A world with the same objects as bytes, and how often each index was used.
+    fn to_bytes(&self) -> PyResult<(Vec<u8>, Vec<u32>)>;
+    /// Fills a new world.
+    fn fill(&mut self, bytes: &[u8], ages: &[u32]) -> PyResult<()>;
     fn picture(&self, view: &PictureView) -> (&'static str, Vec<u8>);
     fn handles(&self) -> Vec<u64>;
     fn shapes(&self, kind: Kind, handles: &[u64]) -> PyResult<Vec<crate::shapes::Shape>>;
@@ -120,6 +130,7 @@ impl World {
     }
 
     fn set_vertices(&mut self, handle: u64, vertices: &Bound<'_, PyAny>) -> PyResult<()> {
+        settle()?;
         self.world.set_vertices(handle, vertices)
     }
 
@@ -131,11 +142,25 @@ impl World {
         self.world.set_query_types(&handles, &query)
     }
 
-    fn update(&mut self, py: Python<'_>) {
-        self.world.update(py);
+    fn update(&mut self, py: Python<'_>) -> PyResult<()> {
+        self.world.update(py)
+    }
+
+    /// A world with the same objects as bytes, and how often each index was used.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyBytes>, Vec<u32>)> {
+        settle()?;
+        let (bytes, ages) = self.world.to_bytes()?;
+        Ok((PyBytes::new(py, &bytes), ages))
+    }
+
+    /// Makes a new world that of `to_bytes`.
+    fn fill(&mut self, bytes: &[u8], ages: Vec<u32>) -> PyResult<()> {
+        settle()?;
+        self.world.fill(bytes, &ages)
     }
 
     fn record(&mut self) -> PyResult<()> {
+        settle()?;
         self.world.record()
     }
 
@@ -152,9 +177,10 @@ impl World {
         &self,
         py: Python<'py>,
         view: PictureView,
-    ) -> (&'static str, Bound<'py, PyBytes>) {
+    ) -> PyResult<(&'static str, Bound<'py, PyBytes>)> {
+        settle()?;
         let (format, bytes) = py.detach(|| self.world.picture(&view));
-        (format, PyBytes::new(py, &bytes))
+        Ok((format, PyBytes::new(py, &bytes)))
     }
 
     fn handles(&self) -> Vec<u64> {
@@ -194,6 +220,7 @@ impl World {
         threads: Option<Threads>,
         progress: Option<Py<PyAny>>,
     ) -> Arrays<'py> {
+        settle()?;
         let call = Call::new(threads, progress);
         self.world.queries().ask(&question, (&given, self.kind), filter.as_ref(), &call)
     }

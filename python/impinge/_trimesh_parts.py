@@ -1,0 +1,191 @@
+"""What the collision manager of `impinge.trimesh` gives and keeps: contacts, distances, and meshes as shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from impinge._native import Shape, contact_manifolds, project_points, witness
+from impinge._results import Witness
+from impinge._shapes import ConvexHull, TriMesh
+
+if TYPE_CHECKING:
+    import trimesh
+
+Matrix = NDArray[np.float64]
+
+# Under this key a mesh of trimesh keeps its geometry, until its vertices or faces change.
+KEY = "impinge_geometry"
+
+# By so much a linear map may differ from a rotation that stands for it.
+ROUNDING = 1e-6
+
+
+class ContactData:
+    """A contact point of two meshes."""
+
+    def __init__(self, names: tuple[str, str], faces: tuple[int, int], row: Mapping[str, Any]) -> None:
+        self.names = set(names)
+        self._faces = dict(zip(names, faces, strict=True))
+        self._normal, self._point, self._depth = row["normal"], row["point"], row["depth"]
+
+    @property
+    def normal(self) -> NDArray[np.float64]:
+        """The unit normal, from the first mesh to the second."""
+        return np.asarray(self._normal)
+
+    @property
+    def point(self) -> NDArray[np.float64]:
+        """The point in the world, in the middle of the two surfaces."""
+        return np.asarray(self._point)
+
+    @property
+    def depth(self) -> float:
+        """How deep the meshes overlap there."""
+        return float(self._depth)
+
+    def index(self, name: str) -> int:
+        """The face of this mesh."""
+        return self._faces[name]
+
+
+class DistanceData:
+    """The nearest points of two meshes."""
+
+    def __init__(self, names: tuple[str, str], faces: tuple[int, int], found: Witness) -> None:
+        self.names = set(names)
+        self._points = dict(zip(names, (found.point1, found.point2), strict=True))
+        self._faces = dict(zip(names, faces, strict=True))
+        self._distance = float(found.distance)
+
+    @property
+    def distance(self) -> float:
+        """How far the meshes are apart; negative where they overlap."""
+        return self._distance
+
+    def index(self, name: str) -> int:
+        """The face of this mesh."""
+        return self._faces[name]
+
+    def point(self, name: str) -> NDArray[np.float64]:
+        """The point on this mesh, in the world."""
+        return np.asarray(self._points[name])
+
+
+class Geometry:
+    """A mesh as a shape: the solid of a convex one, the surface of others.
+
+    Flat meshes are convex and have no volume: they are surfaces.
+    """
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, is_convex: bool) -> None:
+        self.vertices, self.faces = np.array(vertices, dtype=np.float64), np.array(faces)
+        self._surface: Shape | None = None
+        self.is_solid = is_convex
+        try:
+            self.shape = ConvexHull(self.vertices) if is_convex else self.surface
+        except ValueError:
+            self.is_solid, self.shape = False, self.surface
+
+    @classmethod
+    def of(cls, mesh: trimesh.Trimesh) -> Geometry:
+        """Of a mesh, which keeps it: it is made once for each state of the mesh."""
+        cache = getattr(mesh, "_cache", None)
+        found = None if cache is None else cache[KEY]
+        if isinstance(found, cls):
+            return found
+        made = cls(mesh.vertices, mesh.faces, bool(mesh.is_convex))
+        if cache is not None:
+            cache[KEY] = made
+        return made
+
+    @property
+    def surface(self) -> Shape:
+        """The triangles, which name faces."""
+        if self._surface is None:
+            self._surface = TriMesh(self.vertices, self.faces)
+        return self._surface
+
+    def stretched(self, stretch: Matrix) -> Geometry:
+        """The same mesh after a linear map (3, 3). Triangles of one that mirrors are turned over, so that they face outwards."""
+        faces = self.faces if np.linalg.det(stretch) > 0 else self.faces[:, ::-1]
+        return Geometry(self.vertices @ stretch.T, faces, self.is_solid)
+
+
+class Placed(NamedTuple):
+    """A mesh with a name and a transform."""
+
+    name: str
+    geometry: Geometry
+    transform: Matrix
+
+    def faces(self, parts: Any, points: Any) -> NDArray[np.int64]:
+        """The faces that hold points: parts of the surface, of a solid the triangles that are nearest."""
+        if not self.geometry.is_solid:
+            return np.asarray(parts, dtype=np.int64)
+        found = project_points(self.geometry.surface, self.transform, points, False)
+        return np.asarray(found.part, dtype=np.int64)
+
+
+def matrix_of(transform: ArrayLike | None) -> Matrix:
+    """A copy of a transform."""
+    matrix = np.eye(4) if transform is None else np.array(transform, dtype=np.float64, order="C")
+    if matrix.shape != (4, 4):
+        raise ValueError(f"transform has the shape {matrix.shape}, where (4, 4) is needed")
+    return matrix
+
+
+def rotation_and_stretch(transform: Matrix) -> tuple[Matrix, Matrix | None]:
+    """A transform without scale, and the linear map (3, 3) that is to be applied before; None if there is none.
+
+    ValueError if it flattens, is not finite or has another last row than 0, 0, 0, 1.
+    """
+    linear = transform[:3, :3]
+    if not np.isfinite(transform).all() or not np.array_equal(transform[3], [0, 0, 0, 1]):
+        raise ValueError(f"the transform is no affine map: {transform.tolist()}")
+    left, scales, right = np.linalg.svd(linear)
+    if not scales[-1] > ROUNDING * scales[0]:
+        raise ValueError(f"the transform flattens: its scales are {scales.tolist()}")
+    if np.abs(scales - 1).max() <= ROUNDING and np.linalg.det(linear) > 0:
+        return transform, None
+    # The polar decomposition; a map that mirrors does so before it turns.
+    rotation = left @ right
+    if np.linalg.det(rotation) < 0:
+        rotation = -rotation
+    rigid = transform.copy()
+    rigid[:3, :3] = rotation
+    return rigid, rotation.T @ linear
+
+
+def contacts(pairs: list[tuple[Placed, Placed]]) -> list[ContactData]:
+    """All contact points of pairs of meshes."""
+    if not pairs:
+        return []
+    ones, others = zip(*pairs, strict=True)
+    (shapes1, poses1), (shapes2, poses2) = _columns(ones), _columns(others)
+    rows = contact_manifolds(shapes1, poses1, shapes2, poses2)
+    data = []
+    for number, (one, other) in enumerate(pairs):
+        found = rows.of(number)
+        if not len(found.depth):
+            continue
+        faces = zip(one.faces(found.part1, found.point1), other.faces(found.part2, found.point2), strict=True)
+        for index, (face1, face2) in enumerate(faces):
+            middle = (found.point1[index] + found.point2[index]) / 2
+            row = {"normal": found.normal[index], "point": middle, "depth": found.depth[index]}
+            data.append(ContactData((one.name, other.name), (int(face1), int(face2)), row))
+    return data
+
+
+def _columns(placed: tuple[Placed, ...]) -> tuple[list[Shape], NDArray[np.float64]]:
+    return [one.geometry.shape for one in placed], np.array([one.transform for one in placed])
+
+
+def measured(one: Placed, other: Placed) -> DistanceData:
+    """The nearest or deepest points of two meshes."""
+    found = witness(one.geometry.shape, one.transform, other.geometry.shape, other.transform)
+    faces = int(one.faces(found.part1, found.point1)), int(other.faces(found.part2, found.point2))
+    return DistanceData((one.name, other.name), faces, found)

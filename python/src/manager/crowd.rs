@@ -1,0 +1,380 @@
+//! The objects of a collision manager in a world of proximities: which of them touch, and which two are nearest.
+//!
+//! What was found is kept: [`Crowd::touching`] by the events of updates, the nearest pair with the number of the change
+//! after which it was found. A question costs what changed since. A few moves are left to the question, more are brought into
+//! the world as they come ([`EAGER`]).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use impinge::math::Isometry3;
+use impinge::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
+use impinge::query::{Proximity, distance, proximity, witness};
+use impinge::shape::{Shape, ShapeHandle};
+use impinge::world::{CollisionGroups, CollisionObject, CollisionWorld, QueryFilter, WorldError};
+
+use super::changes::Changes;
+use super::reach::Reach;
+
+pub(super) type Handle = CollisionObjectHandle;
+pub(super) type World = CollisionWorld<f64, 3, ()>;
+pub(super) type Object = CollisionObject<f64, 3, ()>;
+pub(super) type Solid = ShapeHandle<f64, 3>;
+
+/// After so many changes without a question the world is updated, so that a question finds few of them.
+const EAGER: u64 = 16;
+
+/// Two objects, the one of the lower handle first, or one of each crowd.
+pub(super) type Pair = (Handle, Handle);
+
+/// Two objects and how far apart they are, negative where they overlap.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Nearest {
+    pub(super) pair: Pair,
+    pub(super) distance: f64,
+}
+
+/// The nearest pair after a change.
+#[derive(Debug)]
+struct Kept {
+    nearest: Nearest,
+    /// The number of the change.
+    then: u64,
+}
+
+/// Objects and what is known about them.
+#[derive(Debug)]
+pub(super) struct Crowd {
+    world: World,
+    /// The handle that an index had last.
+    handles: Vec<Handle>,
+    pub(super) changes: Changes,
+    /// The number of the last change that the last update of the world saw.
+    updated: u64,
+    /// The number of the last change before the last question.
+    asked: u64,
+    /// The pairs that touched at the last update.
+    touching: BTreeSet<Pair>,
+    kept: Option<Kept>,
+    /// The nearest pair with the object of an index.
+    beside: BTreeMap<u32, Kept>,
+    pub(super) reach: Reach,
+}
+
+impl Crowd {
+    pub(super) fn new() -> Self {
+        Self {
+            world: World::new(0.0),
+            handles: Vec::new(),
+            changes: Changes::default(),
+            updated: 0,
+            asked: 0,
+            touching: BTreeSet::new(),
+            kept: None,
+            beside: BTreeMap::new(),
+            reach: Reach::default(),
+        }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.world.len()
+    }
+
+    /// All objects, in order of their handles.
+    pub(super) fn objects(&self) -> impl Iterator<Item = &Object> {
+        self.world.collision_objects()
+    }
+
+    /// The index of a new object.
+    pub(super) fn add(
+        &mut self,
+        position: Isometry3<f64>,
+        shape: Solid,
+    ) -> Result<u32, WorldError> {
+        let query = GeometricQueryType::Proximity(0.0);
+        let groups = CollisionGroups::new();
+        let handle = self.world.try_add(position, shape.clone(), groups, query, ())?;
+        let index = index_of(handle);
+        self.reach.add(index, &*shape, &position);
+        match self.handles.get_mut(index as usize) {
+            Some(place) => *place = handle,
+            None => self.handles.push(handle),
+        }
+        self.note(index);
+        Ok(index)
+    }
+
+    pub(super) fn remove(&mut self, index: u32) -> Result<(), WorldError> {
+        self.world.try_remove(&[self.handle(index)])?;
+        self.reach.remove(index);
+        self.note(index);
+        Ok(())
+    }
+
+    pub(super) fn place(&mut self, index: u32, position: Isometry3<f64>) -> Result<(), WorldError> {
+        self.world.try_set_position(self.handle(index), position)?;
+        self.reach.place(index as usize, &position);
+        self.note(index);
+        Ok(())
+    }
+
+    /// The object of an index, which there is.
+    pub(super) fn object(&self, index: u32) -> Option<&Object> {
+        self.world.collision_object(self.handle(index))
+    }
+
+    /// The object of a handle, if there is one.
+    pub(super) fn get(&self, handle: Handle) -> Option<&Object> {
+        self.world.collision_object(handle)
+    }
+
+    /// An object touches the solid.
+    pub(super) fn meets_any(&self, position: &Isometry3<f64>, shape: &dyn Shape<f64, 3>) -> bool {
+        self.world.overlaps_any(position, shape, &QueryFilter::new())
+    }
+
+    /// The objects that touch the solid.
+    pub(super) fn met_by(
+        &self,
+        position: &Isometry3<f64>,
+        shape: &dyn Shape<f64, 3>,
+    ) -> impl Iterator<Item = &Object> {
+        self.world.objects_overlapping(position, shape, &QueryFilter::new())
+    }
+
+    /// The nearest object at most `limit` away, and how far it is, zero if they touch; the first of equals.
+    pub(super) fn nearest_to(
+        &self,
+        position: &Isometry3<f64>,
+        shape: &dyn Shape<f64, 3>,
+        limit: f64,
+    ) -> Option<(Handle, f64)> {
+        self.nearest_of(position, shape, limit, &QueryFilter::new())
+    }
+
+    /// The nearest object to the one of an index; it is kept.
+    pub(super) fn nearest_beside(&mut self, index: u32) -> Option<Nearest> {
+        let found = self.beside_changed(index).or_else(|| self.found_beside(index, f64::INFINITY));
+        match found {
+            Some(nearest) => {
+                let kept = Kept { nearest, then: self.changes.now() };
+                self.beside.insert(index, kept);
+            }
+            None => {
+                self.beside.remove(&index);
+            }
+        }
+        found
+    }
+
+    /// The nearest object to the one of an index, if that of the last time and the object itself have not changed: it, or one
+    /// that has.
+    fn beside_changed(&self, index: u32) -> Option<Nearest> {
+        let kept = self.beside.get(&index)?;
+        let changed = self.changes.since(kept.then)?;
+        let (one, other) = kept.nearest.pair;
+        if [one, other].iter().any(|&handle| changed.contains(&index_of(handle))) {
+            return None;
+        }
+        let own = self.object(index)?;
+        let mut best = kept.nearest;
+        for other in changed.iter().filter_map(|&index| self.object(index)) {
+            if self.reach.may_be_within(index, index_of(other.handle()), best.distance) {
+                let distance = between(own, other);
+                if distance < best.distance {
+                    best = self.signed(Nearest {
+                        pair: ordered(own.handle(), other.handle()),
+                        distance,
+                    })?;
+                }
+            }
+        }
+        Some(best)
+    }
+
+    /// The nearest object to the one of an index, at most `limit` away.
+    fn found_beside(&self, index: u32, limit: f64) -> Option<Nearest> {
+        let own = self.object(index)?;
+        let others = QueryFilter::new().exclude(own.handle());
+        let (other, distance) = self.nearest_of(own.position(), &**own.shape(), limit, &others)?;
+        self.signed(Nearest { pair: ordered(own.handle(), other), distance })
+    }
+
+    /// A pair with minus its depth instead of no distance.
+    fn signed(&self, nearest: Nearest) -> Option<Nearest> {
+        if nearest.distance > 0.0 { Some(nearest) } else { self.depth_of(nearest.pair) }
+    }
+
+    /// All pairs that touch.
+    pub(super) fn touching(&mut self) -> &BTreeSet<Pair> {
+        self.update();
+        &self.touching
+    }
+
+    /// A pair that touches, if any does: the same one as long as it does.
+    pub(super) fn touching_pair(&mut self) -> Option<Pair> {
+        self.asked = self.changes.now();
+        let first = self.touching.first().copied();
+        if let Some(pair) = first.filter(|&pair| self.still_touch(pair)) {
+            return Some(pair);
+        }
+        self.update();
+        self.touching.first().copied()
+    }
+
+    /// The nearest two objects; of several pairs that touch one, of other equals the first.
+    pub(super) fn nearest_pair(&mut self) -> Option<Nearest> {
+        self.asked = self.changes.now();
+        let found = self.overlap().or_else(|| {
+            self.update();
+            self.overlap()
+        });
+        let found = found.or_else(|| self.nearest_changed()).or_else(|| self.nearest_of_all());
+        self.kept = found.map(|nearest| Kept { nearest, then: self.changes.now() });
+        found
+    }
+
+    /// The first pair that touched at the last update, if it overlaps.
+    fn overlap(&self) -> Option<Nearest> {
+        let pair = *self.touching.first()?;
+        let nearest = self.kept_depth(pair).or_else(|| self.depth_of(pair))?;
+        (nearest.distance <= 0.0).then_some(nearest)
+    }
+
+    /// How deep a pair overlaps, if it was the last one and has not changed.
+    fn kept_depth(&self, pair: Pair) -> Option<Nearest> {
+        let kept = self.kept.as_ref().filter(|kept| kept.nearest.pair == pair)?;
+        let has_changed =
+            [pair.0, pair.1].iter().any(|&handle| self.has_changed(handle, kept.then));
+        let was_touching = kept.nearest.distance <= 0.0;
+        (was_touching && !has_changed).then_some(kept.nearest)
+    }
+
+    fn depth_of(&self, pair: Pair) -> Option<Nearest> {
+        Some(Nearest { pair, distance: -depth(self.get(pair.0)?, self.get(pair.1)?) })
+    }
+
+    /// The nearest pair, if that of the last time has not changed: it, or one of an object that has.
+    fn nearest_changed(&self) -> Option<Nearest> {
+        let kept = self.kept.as_ref().filter(|kept| kept.nearest.distance > 0.0)?;
+        let changed = self.changes.since(kept.then)?;
+        let (one, other) = kept.nearest.pair;
+        if [one, other].iter().any(|&handle| changed.contains(&index_of(handle))) {
+            return None;
+        }
+        let nearer = |best: Nearest, &index: &u32| {
+            let found = self.found_beside(index, best.distance);
+            found.filter(|found| found.distance < best.distance).unwrap_or(best)
+        };
+        Some(changed.iter().fold(kept.nearest, nearer))
+    }
+
+    /// The nearest pair of all: each object looks for nearer ones behind it, up to the least distance yet.
+    fn nearest_of_all(&self) -> Option<Nearest> {
+        let mut best = self.kept.as_ref().and_then(|kept| self.measured(kept.nearest.pair));
+        for own in self.objects() {
+            let handle = own.handle();
+            let is_behind = |other: &Object| other.handle() > handle;
+            let behind = QueryFilter::new().predicate(&is_behind);
+            let limit = best.map_or(f64::INFINITY, |best| best.distance);
+            let found = self.nearest_of(own.position(), &**own.shape(), limit, &behind);
+            if let Some((other, distance)) = found
+                && (distance < limit || best.is_none())
+            {
+                best = Some(Nearest { pair: (handle, other), distance });
+            }
+        }
+        best
+    }
+
+    fn nearest_of(
+        &self,
+        position: &Isometry3<f64>,
+        shape: &dyn Shape<f64, 3>,
+        limit: f64,
+        filter: &QueryFilter<'_, f64, 3, ()>,
+    ) -> Option<(Handle, f64)> {
+        let found = self.world.closest_object(position, shape, limit, filter)?;
+        Some((found.object.handle(), found.distance))
+    }
+
+    /// A pair of living objects and their distance now.
+    fn measured(&self, pair: Pair) -> Option<Nearest> {
+        let (one, other) = (self.get(pair.0)?, self.get(pair.1)?);
+        Some(Nearest { pair, distance: between(one, other) })
+    }
+
+    /// The object may have changed after so many changes.
+    pub(super) fn has_changed(&self, handle: Handle, then: u64) -> bool {
+        self.changes.may_include(index_of(handle), then)
+    }
+
+    /// A pair of the last update still touches.
+    fn still_touch(&self, (one, other): Pair) -> bool {
+        let (Some(object1), Some(object2)) = (self.get(one), self.get(other)) else { return false };
+        let has_changed = |handle| self.has_changed(handle, self.updated);
+        !(has_changed(one) || has_changed(other)) || touch(object1, object2)
+    }
+
+    fn handle(&self, index: u32) -> Handle {
+        self.handles[index as usize]
+    }
+
+    fn note(&mut self, index: u32) {
+        self.changes.note(index);
+        if self.changes.now() - self.asked.max(self.updated) >= EAGER {
+            self.update();
+        }
+    }
+
+    /// Brings [`Self::touching`] up to date.
+    fn update(&mut self) {
+        if self.updated == self.changes.now() {
+            return;
+        }
+        self.updated = self.changes.now();
+        self.world.update();
+        for event in self.world.proximity_events() {
+            let pair = ordered(event.collider1, event.collider2);
+            if event.new_status == Proximity::Intersecting {
+                self.touching.insert(pair);
+            } else {
+                self.touching.remove(&pair);
+            }
+        }
+    }
+}
+
+/// The index of an object.
+pub(super) fn index_of(handle: Handle) -> u32 {
+    u32::try_from(handle.uid()).expect("a world has fewer than 2^32 objects")
+}
+
+/// Two objects touch.
+pub(super) fn touch(one: &Object, other: &Object) -> bool {
+    let (shape1, shape2) = (&**one.shape(), &**other.shape());
+    proximity(one.position(), shape1, other.position(), shape2, 0.0) == Proximity::Intersecting
+}
+
+/// How deep two objects overlap that touch.
+pub(super) fn depth(one: &Object, other: &Object) -> f64 {
+    depth_at(one.position(), &**one.shape(), other)
+}
+
+/// How deep an object overlaps with a placed solid that it touches.
+pub(super) fn depth_at(
+    position: &Isometry3<f64>,
+    shape: &dyn Shape<f64, 3>,
+    other: &Object,
+) -> f64 {
+    let found = witness(position, shape, other.position(), &**other.shape(), f64::INFINITY);
+    found.map_or(0.0, |found| -found.distance)
+}
+
+/// How far two objects are apart.
+pub(super) fn between(one: &Object, other: &Object) -> f64 {
+    distance(one.position(), &**one.shape(), other.position(), &**other.shape())
+}
+
+fn ordered(one: Handle, other: Handle) -> Pair {
+    if one < other { (one, other) } else { (other, one) }
+}

@@ -1,0 +1,186 @@
+//! One crowd beside another: which objects of both touch, and which two are nearest.
+
+use std::collections::BTreeSet;
+
+use impinge::bounding_volume::BoundingVolume;
+
+use super::crowd::{Crowd, Nearest, Object, Pair, between, depth, index_of, touch};
+
+/// What is known of two crowds after changes of both.
+#[derive(Debug)]
+pub(super) struct Meeting {
+    /// The number of the other manager.
+    pub(super) other: u64,
+    /// The numbers of the last changes of both.
+    then: [u64; 2],
+    /// The pairs that touched then.
+    pub(super) touching: BTreeSet<Pair>,
+    /// The nearest pair, and when it was.
+    nearest: Option<(Nearest, [u64; 2])>,
+}
+
+/// Two crowds, the own one first.
+#[derive(Clone, Copy)]
+pub(super) struct Crowds<'a>(pub(super) &'a Crowd, pub(super) &'a Crowd);
+
+impl Meeting {
+    /// All pairs that touch.
+    pub(super) fn new(other: u64, crowds: Crowds<'_>) -> Self {
+        Self { other, then: crowds.now(), touching: crowds.all_touching(), nearest: None }
+    }
+
+    /// Finds out what the changes since then have led to.
+    pub(super) fn update(&mut self, crowds: Crowds<'_>) {
+        let then = core::mem::replace(&mut self.then, crowds.now());
+        let Some([changed1, changed2]) = crowds.changed(then) else {
+            self.touching = crowds.all_touching();
+            return;
+        };
+        self.touching.retain(|&(one, other)| {
+            !changed1.contains(&index_of(one)) && !changed2.contains(&index_of(other))
+        });
+        let Crowds(own, others) = crowds;
+        for object in changed1.iter().filter_map(|&index| own.object(index)) {
+            self.touching.extend(touching_of(object, own, others));
+        }
+        for object in changed2.iter().filter_map(|&index| others.object(index)) {
+            self.touching.extend(touching_of(object, others, own).map(|(other, one)| (one, other)));
+        }
+    }
+
+    /// A pair that touched still does.
+    pub(super) fn touching_pair(&self, Crowds(own, others): Crowds<'_>) -> Option<Pair> {
+        let pair = *self.touching.first()?;
+        let (one, other) = (own.get(pair.0)?, others.get(pair.1)?);
+        let has_changed =
+            own.has_changed(pair.0, self.then[0]) || others.has_changed(pair.1, self.then[1]);
+        (!has_changed || touch(one, other)).then_some(pair)
+    }
+
+    /// The first pair that touched, if it overlaps now, and how deep.
+    pub(super) fn overlap(&mut self, crowds: Crowds<'_>) -> Option<Nearest> {
+        let (Crowds(own, others), pair) = (crowds, *self.touching.first()?);
+        let known = self.nearest.filter(|(nearest, then)| {
+            let is_same = nearest.pair == pair && nearest.distance <= 0.0;
+            is_same && !own.has_changed(pair.0, then[0]) && !others.has_changed(pair.1, then[1])
+        });
+        let nearest = match known {
+            Some((nearest, _)) => nearest,
+            None => Nearest { pair, distance: -depth(own.get(pair.0)?, others.get(pair.1)?) },
+        };
+        if nearest.distance > 0.0 {
+            return None;
+        }
+        self.nearest = Some((nearest, crowds.now()));
+        Some(nearest)
+    }
+
+    /// The nearest pair of two crowds that do not touch.
+    pub(super) fn nearest_pair(&mut self, crowds: Crowds<'_>) -> Option<Nearest> {
+        let known = self.nearest.take();
+        let apart = known.filter(|(nearest, _)| nearest.distance > 0.0);
+        let found = apart.and_then(|known| crowds.nearest_changed(known));
+        let found = found.or_else(|| crowds.nearest_of_all(known.map(|(nearest, _)| nearest.pair)));
+        self.nearest = found.map(|nearest| (nearest, crowds.now()));
+        found
+    }
+}
+
+impl Crowds<'_> {
+    fn now(self) -> [u64; 2] {
+        [self.0.changes.now(), self.1.changes.now()]
+    }
+
+    /// The objects of both that changed after these changes; `None` if that is too long ago.
+    fn changed(self, then: [u64; 2]) -> Option<[BTreeSet<u32>; 2]> {
+        Some([self.0.changes.since(then[0])?, self.1.changes.since(then[1])?])
+    }
+
+    /// The smaller crowd searches the larger one, as far as its objects are near the box around that.
+    fn all_touching(self) -> BTreeSet<Pair> {
+        let Crowds(own, others) = self;
+        let is_smaller = own.len() <= others.len();
+        let (few, many) = if is_smaller { (own, others) } else { (others, own) };
+        let (Some(around_few), Some(around)) = (few.reach.around(), many.reach.around()) else {
+            return BTreeSet::new();
+        };
+        if !around_few.intersects(around) {
+            return BTreeSet::new();
+        }
+        let near = few.reach.within(around, 0.0).into_iter();
+        let objects = near.filter_map(|(_, index)| few.object(index));
+        let pairs = objects.flat_map(|object| touching_of(object, few, many));
+        pairs.map(|pair| if is_smaller { pair } else { (pair.1, pair.0) }).collect()
+    }
+
+    /// The nearest pair, if that of then has not changed: it, or one of an object that has.
+    fn nearest_changed(self, (mut best, then): (Nearest, [u64; 2])) -> Option<Nearest> {
+        let [changed1, changed2] = self.changed(then)?;
+        let (one, other) = best.pair;
+        if changed1.contains(&index_of(one)) || changed2.contains(&index_of(other)) {
+            return None;
+        }
+        let Crowds(own, others) = self;
+        for object in changed1.iter().filter_map(|&index| own.object(index)) {
+            best = nearer(object, others, Some(best)).unwrap_or(best);
+        }
+        for object in changed2.iter().filter_map(|&index| others.object(index)) {
+            best = nearer(object, own, Some(best)).map_or(best, Nearest::flipped);
+        }
+        Some(best)
+    }
+
+    /// The nearest pair of all; `known` is one that was near. The object of the smaller crowd that is nearest to the box
+    /// around the other one goes first, and those are left out that are farther from it than the nearest pair yet.
+    fn nearest_of_all(self, known: Option<Pair>) -> Option<Nearest> {
+        let Crowds(own, others) = self;
+        let mut best = known.and_then(|pair| {
+            let distance = between(own.get(pair.0)?, others.get(pair.1)?);
+            Some(Nearest { pair, distance })
+        });
+        let is_smaller = own.len() <= others.len();
+        let (few, many) = if is_smaller { (own, others) } else { (others, own) };
+        let around = many.reach.around()?;
+        let mut visit = |object: &Object| {
+            let found = nearer(object, many, best);
+            best = found.map(|found| if is_smaller { found } else { found.flipped() }).or(best);
+            best.map_or(f64::INFINITY, |best| best.distance)
+        };
+        let mut limit = visit(few.object(few.reach.first(around)?)?);
+        for (far, index) in few.reach.within(around, limit) {
+            if far < limit
+                && let Some(object) = few.object(index)
+            {
+                limit = visit(object);
+            }
+        }
+        best
+    }
+}
+
+impl Nearest {
+    const fn flipped(self) -> Self {
+        Self { pair: (self.pair.1, self.pair.0), ..self }
+    }
+}
+
+/// The pairs of an object and others that touch.
+fn touching_of<'a>(
+    object: &'a Object,
+    own: &Crowd,
+    others: &'a Crowd,
+) -> impl Iterator<Item = Pair> + use<'a> {
+    let index = index_of(object.handle());
+    let around = others.reach.around();
+    let is_near = around.is_some_and(|around| own.reach.may_meet(index, around));
+    let met = is_near.then(|| others.met_by(object.position(), &**object.shape()));
+    met.into_iter().flatten().map(|other| (object.handle(), other.handle()))
+}
+
+/// The nearest of the others, if nearer than the best yet.
+fn nearer(object: &Object, others: &Crowd, best: Option<Nearest>) -> Option<Nearest> {
+    let limit = best.map_or(f64::INFINITY, |best| best.distance);
+    let (other, distance) = others.nearest_to(object.position(), &**object.shape(), limit)?;
+    let is_nearer = distance < limit || best.is_none();
+    is_nearer.then(|| Nearest { pair: (object.handle(), other), distance })
+}

@@ -1,0 +1,157 @@
+//! Pools of threads, each in the process that made it.
+//!
+//! After `fork` the child has the memory of its parent's pools and none of their threads: what is given to such a pool never
+//! begins. Rayon's global pool is that of the process that loaded this module ([`note_process`]). Any other process is a
+//! child of it, and makes pools of its own when they are first needed.
+//!
+//! ```text
+//!                    | first process          | a child
+//!   threads=None     | rayon's global pool    | [`POOLS`], one thread for each core
+//!   threads=1        | [`POOLS`]              | [`POOLS`]
+//!   threads=n        | a pool for this call   | a pool for this call
+//!   other work       | rayon's global pool    | the calling thread alone ([`settle`])
+//! ```
+//!
+//! Pools belong to a process id, which each call that may share out work compares. Other work asks a flag that Python sets in
+//! a child ([`note_fork`]). The list of pools is locked by threads that hold the interpreter alone. Python forks while it
+//! holds the interpreter, so a child never finds the list locked.
+
+use core::cell::Cell;
+use core::sync::atomic::{AtomicBool, Ordering};
+use std::process;
+use std::sync::{Arc, Mutex, OnceLock, TryLockError};
+
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+
+/// The process whose threads rayon's global pool has.
+static FIRST: OnceLock<u32> = OnceLock::new();
+
+/// This process is a child of the first one.
+static IS_CHILD: AtomicBool = AtomicBool::new(false);
+
+/// The pools of the current process that are kept.
+static POOLS: Mutex<Pools> = Mutex::new(Pools { process: 0, all: None, one: None });
+
+thread_local! {
+    /// The child process in which this thread is a pool of one thread; 0 if it is none.
+    static SETTLED: Cell<u32> = const { Cell::new(0) };
+}
+
+/// Pools that are asked for often.
+struct Pools {
+    /// Whose they are.
+    process: u32,
+    /// A thread for each core.
+    all: Option<Arc<ThreadPool>>,
+    one: Option<Arc<ThreadPool>>,
+}
+
+/// The threads of one call.
+pub(crate) enum Crew {
+    /// Those of rayon's global pool.
+    Global,
+    Pool(Arc<ThreadPool>),
+}
+
+impl Crew {
+    /// As many threads as are asked for; one for each core if that is `None`.
+    ///
+    /// # Errors
+    /// `RuntimeError` if the system refuses threads.
+    pub(crate) fn of(_attached: Python<'_>, threads: Option<usize>) -> PyResult<Self> {
+        let process = process::id();
+        let pool = match threads {
+            None if is_first(process) => return Ok(Self::Global),
+            None => kept(process, 0, |pools| &mut pools.all),
+            Some(1) => kept(process, 1, |pools| &mut pools.one),
+            Some(count) => make(count),
+        };
+        let refused = |error| PyRuntimeError::new_err(format!("no threads: {error}"));
+        Ok(Self::Pool(pool.map_err(refused)?))
+    }
+
+    /// Runs `work`, whose parts these threads share.
+    pub(crate) fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        match self {
+            Self::Global => work(),
+            Self::Pool(pool) => pool.install(work),
+        }
+    }
+}
+
+/// Notes that this process is the one that loaded the module, and has Python call [`note_fork`] in its children.
+pub(crate) fn note_process(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    FIRST.get_or_init(process::id);
+    let py = module.py();
+    // Windows has no `fork`.
+    if let Some(register) = py.import("os")?.getattr_opt("register_at_fork")? {
+        let hook = PyDict::new(py);
+        hook.set_item("after_in_child", wrap_pyfunction!(note_fork, module)?)?;
+        register.call((), Some(&hook))?;
+    }
+    Ok(())
+}
+
+/// Notes that this process is a child.
+#[pyfunction]
+fn note_fork() {
+    IS_CHILD.store(true, Ordering::Relaxed);
+}
+
+/// Keeps work that is done in the calling thread, outside of a [`Crew`], from being shared with threads that a child does not
+/// have: there the calling thread becomes a pool of itself alone, once. That costs a few kilobytes for each thread.
+///
+/// # Errors
+/// `RuntimeError` if the system refuses a pool.
+pub(crate) fn settle() -> PyResult<()> {
+    if !IS_CHILD.load(Ordering::Relaxed) {
+        return Ok(());
+    }
+    let process = process::id();
+    if SETTLED.get() == process {
+        return Ok(());
+    }
+    // A thread that was such a pool in the parent stays one: the pool has no other thread.
+    if rayon::current_thread_index().is_none() {
+        let own = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+        own.map_err(|error| PyRuntimeError::new_err(format!("no pool: {error}")))?;
+    }
+    SETTLED.set(process);
+    Ok(())
+}
+
+fn is_first(process: u32) -> bool {
+    *FIRST.get_or_init(|| process) == process
+}
+
+/// The pool of this process in a place of the list, made where it lacks.
+fn kept(
+    process: u32,
+    count: usize,
+    place: impl FnOnce(&mut Pools) -> &mut Option<Arc<ThreadPool>>,
+) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+    let mut pools = match POOLS.try_lock() {
+        Ok(pools) => pools,
+        Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+        // A fork past Python left it locked for ever.
+        Err(TryLockError::WouldBlock) => return make(count),
+    };
+    if pools.process != process {
+        let stale = core::mem::replace(&mut *pools, Pools { process, all: None, one: None });
+        // To drop a pool is to wait for its threads, which are the parent's.
+        core::mem::forget(stale);
+    }
+    let place = place(&mut pools);
+    if let Some(pool) = place {
+        return Ok(pool.clone());
+    }
+    Ok(place.insert(make(count)?).clone())
+}
+
+/// A new pool of `count` threads; with 0, one for each core.
+fn make(count: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+    ThreadPoolBuilder::new().num_threads(count).build().map(Arc::new)
+}

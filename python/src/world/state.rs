@@ -1,0 +1,131 @@
+//! Worlds as bytes: a recording of the calls that make a world with the same objects.
+//!
+//! A place of the memory that no object has at the moment has one while the recording is made, and is left by it: so indices
+//! are the same, and also which one is taken next. How often each was used is beside the bytes.
+
+use impinge::math::Pose;
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::shape::{Ball, ShapeHandle};
+use impinge::world::{CollisionGroups, CollisionObject};
+use impinge_record::{ReadError, RecordError, Recorder, Registry, Replay};
+
+use super::typed::TypedWorld;
+use crate::space::Numeric;
+
+impl<N: Numeric<D>, const D: usize> TypedWorld<N, D> {
+    /// The bytes, and how often each index was used.
+    pub(super) fn write(&self) -> Result<(Vec<u8>, Vec<u32>), RecordError> {
+        let mut recorder = Recorder::<N, D, ()>::new(self.margin, Registry::new())?;
+        let mut objects = self.world.collision_objects().peekable();
+        let mut handles = Vec::with_capacity(self.slots.len());
+        for index in 0..self.slots.len() {
+            let object = objects.next_if(|object| object.handle().uid() == index);
+            handles.push(match object {
+                Some(object) => recorder.add(
+                    *object.position(),
+                    object.shape().clone(),
+                    *object.collision_groups(),
+                    object.query_type(),
+                    (),
+                ),
+                None => {
+                    let (here, groups) = (N::isometry(&Pose::identity()), CollisionGroups::new());
+                    recorder.add(here, placeholder(), groups, contacts(), ())
+                }
+            }?);
+        }
+        for index in self.vacant() {
+            recorder.remove(&[handles[index]])?;
+        }
+        let ages = self.slots.iter().map(|slot| slot.0).collect();
+        Ok((recorder.finish().bytes, ages))
+    }
+
+    /// The indices without an object, in an order that leaves the one on top that is taken next.
+    fn vacant(&self) -> impl Iterator<Item = usize> {
+        self.world.vacant_indices().filter(|index| *index < self.slots.len())
+    }
+
+    /// Makes this world, which is new, that of the bytes.
+    pub(super) fn read(&mut self, bytes: &[u8], ages: &[u32]) -> Result<(), Damage> {
+        let mut replay = Replay::open(bytes, &Registry::<N, D, ()>::new())?;
+        replay.seek_end()?;
+        let old = replay.world();
+        let mut objects = old.collision_objects().peekable();
+        for (index, &age) in ages.iter().enumerate() {
+            let object = objects.next_if(|object| object.handle().uid() == index);
+            let handle = self.copy(object)?;
+            if handle.uid() != index {
+                return Err(Damage::Handles);
+            }
+            self.slots.push((age, handle));
+            if let Some(object) = object {
+                self.note_surface(handle, object.shape());
+            }
+        }
+        if objects.next().is_some() {
+            return Err(Damage::Handles);
+        }
+        for index in old.vacant_indices() {
+            let slot = self.slots.get(index).ok_or(Damage::Handles)?;
+            self.world.remove(&[slot.1])?;
+        }
+        Ok(())
+    }
+
+    /// Adds what an object is, or a placeholder.
+    fn copy(
+        &mut self,
+        object: Option<&CollisionObject<N, D, ()>>,
+    ) -> Result<impinge::narrow_phase::CollisionObjectHandle, RecordError> {
+        match object {
+            Some(object) => {
+                let (shape, groups) = (object.shape().clone(), *object.collision_groups());
+                self.world.add(*object.position(), shape, groups, object.query_type())
+            }
+            None => {
+                let (here, groups) = (N::isometry(&Pose::identity()), CollisionGroups::new());
+                self.world.add(here, placeholder(), groups, contacts())
+            }
+        }
+    }
+}
+
+/// Why bytes are not those of a world.
+#[derive(Debug)]
+pub(super) enum Damage {
+    Read(ReadError),
+    World(RecordError),
+    /// There are other objects than handles.
+    Handles,
+}
+
+impl From<ReadError> for Damage {
+    fn from(error: ReadError) -> Self {
+        Self::Read(error)
+    }
+}
+
+impl From<RecordError> for Damage {
+    fn from(error: RecordError) -> Self {
+        Self::World(error)
+    }
+}
+
+impl core::fmt::Display for Damage {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Read(error) => error.fmt(f),
+            Self::World(error) => error.fmt(f),
+            Self::Handles => f.write_str("the objects are not those of the handles"),
+        }
+    }
+}
+
+fn placeholder<N: Numeric<D>, const D: usize>() -> ShapeHandle<N, D> {
+    ShapeHandle::new(Ball::new(N::ONE))
+}
+
+const fn contacts<N: impinge::math::Real>() -> GeometricQueryType<N> {
+    GeometricQueryType::Contacts(N::ZERO, N::ZERO)
+}
