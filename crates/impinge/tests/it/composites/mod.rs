@@ -9,6 +9,7 @@ mod composite_points;
 mod composite_rays;
 mod composite_worlds;
 mod compounds;
+mod doubled_parts;
 mod height_field_seams;
 mod height_fields;
 mod internal_edges;
