@@ -1,5 +1,6 @@
 //! Compounds, meshes, lines and fields.
 
+mod cast_out_of_floors;
 mod closed_meshes;
 mod composite_contacts;
 mod composite_distance;
