@@ -20,4 +20,5 @@ mod ray_corpus;
 mod ray_kinds;
 mod ray_shapes;
 mod scale;
+mod scale_of_answers;
 mod scaling;
