@@ -79,8 +79,8 @@ fn shapes_that_nest_too_deep_are_refused() {
         shape = ShapeHandle::new(rounded);
     }
     add(&mut recorder, shape.clone()).expect("just so deep");
-    let deeper = Rounded::try_from_handle(shape, 0.5).expect("a ball is convex");
-    assert_eq!(add(&mut recorder, ShapeHandle::new(deeper)), Err(RecordError::TooComplex));
+    let deeper = Rounded::try_from_handle(shape, 0.5).expect_err("the library takes no more");
+    assert_eq!(deeper, ShapeError::TooDeep { depth: impinge_record::MAX_DEPTH + 1 });
 }
 
 #[test]

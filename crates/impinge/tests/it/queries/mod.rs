@@ -1,12 +1,14 @@
 //! Questions about one shape and two.
 
 mod corpus_coverage;
+mod directions;
 mod extremes;
 mod hull;
 mod impact;
 mod impact_laws;
 mod impact_turning;
 mod mass;
+mod nested;
 mod pair_table;
 mod point_by_hand;
 mod point_shapes;
