@@ -24,3 +24,4 @@ mod ray_shapes;
 mod scale;
 mod scale_of_answers;
 mod scaling;
+mod shared_corners;
