@@ -2,7 +2,7 @@
 
 use impinge::bounding_volume::Aabb;
 use impinge::dim2::math::{Isometry, Point};
-use impinge::dim2::shape::{Geometry, Polyline, Rounded, ShapeHandle, TriMesh};
+use impinge::dim2::shape::{Geometry, Polyline, Rounded, ShapeError, ShapeHandle, TriMesh};
 use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 use impinge::shape::{Ball, Shape};
 use impinge_record::{Problem, RecordError, Recorder, Registry, Replay, validate};

@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 use crate::collide::Pair;
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Real, exact, filled, max, max_component, min};
-use crate::shape::{Geometry, Kind};
+use crate::shape::{Geometry, Kind, SupportMap};
 
 /// What may be a rounding error of the distance of two solids, in epsilon of their sizes and how far they are apart.
 const ROUNDING: f64 = 64.0;
@@ -30,7 +30,7 @@ pub(super) fn settled<N: Real, const D: usize>(
 
 fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let [reach1, reach2] = [pair.first, pair.second]
-        .mapped(|kind| Geometry(kind).as_support_map().map_or(N::ZERO, |map| map.reach()));
+        .mapped(|kind| Geometry(kind).as_support_map().map_or(N::ZERO, SupportMap::reach));
     let size = reach1 + reach2 + max_component(&pair.pose12.translation);
     N::lit(ROUNDING) * N::EPSILON * size
 }

@@ -59,6 +59,8 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     own: Vector<N, D>,
     /// The part of the normal along the face or segment that is asked.
     lean: Vector<N, D>,
+    /// A piece into which no direction rises along `lean` by more than this lies on the other side.
+    room: N,
     /// The normal and the pieces, that which is asked and all others, lie flat.
     is_flat: bool,
     /// A piece lies on the side that the normal leans to: the seam is no rim there.
@@ -80,6 +82,14 @@ impl<N: Real, const D: usize> Seam<N, D> {
         Self::new(own, normal, normal - own * along, is_level(along))
     }
 
+    /// A seam that is an edge: what leans along it more than across it is no normal of a rim.
+    pub(in crate::shape) fn along(mut self, edge: &Vector<N, D>) -> Self {
+        if let Some((along, _)) = unit(edge) {
+            self.room -= along.dot(&self.lean).abs();
+        }
+        self
+    }
+
     /// A seam between segments, asked by the one with the direction `own`.
     pub(in crate::shape) fn of_segments(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
         let along = own.dot(normal);
@@ -91,6 +101,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
             normal: *normal,
             own,
             lean,
+            room: slack(),
             is_flat,
             is_hemmed: false,
             is_in_cone: true,
@@ -125,7 +136,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
         let (own, flatness) = (rise(&self.normal), front.abs());
         self.is_in_cone &= own <= slack();
         self.is_flat &= is_level(line.dot(&self.own));
-        self.is_hemmed |= self.is_flat && rise(&self.lean) > slack();
+        self.is_hemmed |= self.is_flat && rise(&self.lean) > self.room;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
             // One piece twice, with its front up in one of them.
@@ -155,7 +166,7 @@ mod tests {
 
     /// Whether the edge of some faces, each by the way into it and its front, has a normal.
     fn admits(normal: &Vector<f64, 3>, faces: &[(Vector<f64, 3>, Vector<f64, 3>)]) -> bool {
-        let mut seam = Seam::of_faces(faces[0].1, normal);
+        let mut seam = Seam::of_faces(faces[0].1, normal).along(&Vector::<f64, 3>::z());
         for (inward, front) in faces {
             seam.add_face(|way| inward.dot(way), front);
         }
@@ -180,5 +191,8 @@ mod tests {
         assert!(!admits(&v(0.0, 1.0), &ridge), "within half a degree of both");
         let sharp = [(v(-1.0, -0.3), v(-0.3, 1.0)), (v(1.0, -0.3), v(0.3, 1.0))];
         assert!(admits(&v(0.0, 1.0), &sharp), "a ridge has it");
+        let level = [(v(-1.0, 0.0), v(0.0, 1.0)), (v(1.0, 0.0), v(0.0, 1.0))];
+        let along = Vector::<f64, 3>::new(0.0, 1.0, 0.004).normalize();
+        assert!(!admits(&along, &level) && !admits(&along, &level[..1]), "along the edge");
     }
 }

@@ -15,9 +15,9 @@ fn along<N: Real, const D: usize>(axis: usize, length: f64) -> Vector<N, D> {
 fn half_spaces<N: Real, const D: usize>() {
     let zero = Unit::new_normalize(Vector::<N, D>::zeros());
     let refused = HalfSpace::<N, D>::try_new(zero).expect_err("no direction");
-    assert!(
-        matches!(refused, ShapeError::NotFinite { what: "the normal", value } if value.is_nan())
-    );
+    let is_named =
+        matches!(refused, ShapeError::NotFinite { what: "the normal", value } if value.is_nan());
+    assert!(is_named, "{refused:?}");
     for length in [0.0, 0.5, 0.98, 1.02, 2.0, 1e10] {
         let normal = Unit::new_unchecked(along::<N, D>(D - 1, length));
         let refused = HalfSpace::<N, D>::try_new(normal).expect_err("not of length 1");
@@ -58,7 +58,7 @@ fn positions<N: Space<D>, const D: usize>(good: N::Isometry, bad: N::Isometry, e
     }
     let is_named = |error: WorldError, is_new: bool| match error {
         WorldError::Rotation { handle, length } => {
-            assert_eq!(handle.is_none(), is_new);
+            assert_eq!(handle.is_none(), is_new, "the object is named");
             assert!((length - expected).abs() <= 1e-6 * expected, "{length}");
         }
         other => panic!("{other:?}"),
@@ -73,7 +73,7 @@ fn positions<N: Space<D>, const D: usize>(good: N::Isometry, bad: N::Isometry, e
         let refused = world.try_set_position_with_prediction(handle, at, next);
         is_named(refused.expect_err("no rotation"), false);
     }
-    assert!(world.try_set_position(handle, good).is_ok());
+    assert!(world.try_set_position(handle, good).is_ok(), "a position");
 }
 
 fn positions2<N: Space<2, Isometry = Isometry2<N>>>() {

@@ -32,10 +32,12 @@ fn on_small_stack(run: impl FnOnce() + Send + 'static) {
 
 fn ask_all(one: &ShapeHandle<f32, 3>, other: &ShapeHandle<f32, 3>) {
     let (here, there) = (Isometry3::identity(), Isometry3::translation(3.0, 0.5, 0.1));
-    assert!(distance(&here, &**one, &there, &**other) > 0.0);
-    assert_eq!(proximity(&here, &**one, &here, &**one, 0.0), Proximity::Intersecting);
-    assert!(contact(&here, &**one, &here, &**other, 0.1).is_some());
-    assert!(witness(&here, &**one, &there, &**other, f32::INFINITY).is_some());
+    assert!(distance(&here, &**one, &there, &**other) > 0.0, "apart");
+    let own = proximity(&here, &**one, &here, &**one, 0.0);
+    assert_eq!(own, Proximity::Intersecting, "with itself");
+    assert!(contact(&here, &**one, &here, &**other, 0.1).is_some(), "at one place");
+    let nearest = witness(&here, &**one, &there, &**other, f32::INFINITY);
+    assert!(nearest.is_some(), "finite");
     let moving = Moving::new(&there, &Vector::<f32, 3>::new(-1.0, 0.0, 0.0), &**other);
     let _ = impact(&Moving::still(&here, &**one), &moving, &ImpactOptions::new());
     let turning = ConstantVelocities::<f32, 3>::new(there, Vector::zeros(), Vector::<f32, 3>::z());
@@ -47,14 +49,14 @@ fn ask_all(one: &ShapeHandle<f32, 3>, other: &ShapeHandle<f32, 3>) {
     let _ = one.project_point(&here, &Point::<f32, 3>::new(9.0, 4.0, 1.0), true);
     let _ = mass_properties(&**one, 1.0);
     let scaled = one.scaled(&Vector::<f32, 3>::repeat(2.0)).expect("uniform");
-    assert!(format!("{scaled:?}").len() > 1);
+    assert!(!format!("{scaled:?}").is_empty(), "it is written");
     let mut world = CollisionWorld::<f32, 3, ()>::new(0.02);
     for (shape, at) in [(one, here), (other, here)] {
         let query = GeometricQueryType::Contacts(0.0, 0.0);
         world.add(at, shape.clone(), CollisionGroups::new(), query, ());
     }
     world.update();
-    assert_eq!(world.contact_pairs().count(), 1);
+    assert_eq!(world.contact_pairs().count(), 1, "they touch");
 }
 
 #[test]

@@ -194,7 +194,7 @@ impl<N: Real> HeightField<N, 3> {
             return answer;
         }
         let [start, end] = [own.points[side % 3], own.points[(side + 1) % 3]];
-        let mut seam = Seam::of_faces(own.front, normal);
+        let mut seam = Seam::of_faces(own.front, normal).along(&(end - start));
         for face in [Some(own), other.as_ref()].into_iter().flatten() {
             let inward = face.beyond(ends).and_then(|tip| inward_of(&[start, end, tip]));
             if let Some(inward) = inward {

@@ -75,10 +75,9 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
                 Some(_) => (),
                 None => {
                     for exit in [1, 2].map(|turn| (entered + turn) % 3) {
-                        let span = stretch(other, exit);
-                        if !crossed_before(&crossed, other, exit) {
-                            crossed.extend(span.map(|span| (other, exit, Some(span))));
-                        }
+                        let is_new = !crossed_before(&crossed, other, exit);
+                        let span = stretch(other, exit).filter(|_| is_new);
+                        crossed.extend(span.map(|span| (other, exit, Some(span))));
                     }
                 }
             });
@@ -124,12 +123,11 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
                 let corners = self.corners(triangle);
                 let line = SideLine::of(&corners, opposite);
                 let [place, _] = line.span(&[corners[at], corners[at]]);
+                let is_within =
+                    |[from, to]: [N; 2]| from + line.room < place && place < to - line.room;
                 self.each_along(triangle, opposite, |other, inward, span| {
-                    let is_within =
-                        |[from, to]: [N; 2]| from + line.room < place && place < to - line.room;
-                    if span.is_none_or(is_within) {
-                        visit(other, inward);
-                    }
+                    let found = Some(inward).filter(|_| span.is_none_or(is_within));
+                    found.into_iter().for_each(|inward| visit(other, inward));
                 });
             }
         }

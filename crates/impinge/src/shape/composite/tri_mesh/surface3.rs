@@ -127,7 +127,9 @@ impl<N: Real> TriMesh<N, 3> {
         if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
             return answer;
         }
-        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
+        let corners = self.corners(part);
+        let edge = corners[(side + 1) % 3] - corners[side];
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal).along(&edge);
         let mut add = |triangle: u32, inward: Vector<N, 3>| {
             seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
         };
@@ -135,8 +137,6 @@ impl<N: Real> TriMesh<N, 3> {
             add(part, inward);
         }
         self.each_beyond(part, side, add);
-        let corners = self.corners(part);
-        let edge = corners[(side + 1) % 3] - corners[side];
         is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.sticks_out(part, side))
     }
 
