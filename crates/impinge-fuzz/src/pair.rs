@@ -2,7 +2,7 @@
 
 use std::fmt::Debug;
 
-use impinge::math::{AbstractRotation, Isometry, Pose, Space, Vector, max};
+use impinge::math::{AbstractRotation, Isometry, Pose, Space, max};
 use impinge::query::{self, ClosestPoints, Proximity};
 use impinge::shape::{Shape, ShapeHandle, ShapeKind};
 
@@ -87,9 +87,6 @@ impl<N: Space<D>, R: AbstractRotation<N, D>, const D: usize> Debug for Pair<N, R
 pub(crate) fn same<A: PartialEq + Debug>(one: &A, other: &A) -> bool {
     one == other || format!("{one:?}") == format!("{other:?}")
 }
-
-/// Powers of two that all lengths are multiplied by.
-const POWERS: [f64; 2] = [64.0, 1.0 / 1024.0];
 
 #[derive(Clone, Copy)]
 enum Question {
@@ -229,9 +226,6 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         let contact = self.contact(prediction);
         let flip = |other: &Option<query::Contact<N, D>>| other.map(|contact| contact.flipped());
         self.check_flip(&contact, &self.swapped().contact(prediction), flip);
-        if self.is_moderate {
-            POWERS.iter().for_each(|power| self.check_scaled(&contact, prediction, N::lit(*power)));
-        }
         let Some(contact) = contact else { return };
         assert!(self.is_placed() && contact.depth >= -prediction, "{contact:?} of\n{self:?}");
         if !self.is_moderate {
@@ -245,23 +239,6 @@ impl<N: Space<D>, R: AbstractRotation<N, D> + Copy, const D: usize> Pair<N, R, D
         assert!((length - N::ONE).abs() <= N::EPSILON * N::lit(64.0), "{contact:?} of\n{self:?}");
         let error = contact.world2 - (contact.world1 - *contact.normal * depth);
         assert!(error.norm() <= self.tolerance(), "{contact:?} of\n{self:?}");
-    }
-
-    /// With all lengths times a power of two the contact is the same, to the bit. Shapes that cannot be scaled are
-    /// not asked.
-    fn check_scaled(&self, contact: &Option<query::Contact<N, D>>, prediction: N, scale: N) {
-        let factors = Vector::<N, D>::repeat(scale);
-        let (Ok(g1), Ok(g2)) = (self.g1.scaled(&factors), self.g2.scaled(&factors)) else { return };
-        let mut scaled = Self { g1, g2, ..self.swapped().swapped() };
-        scaled.m1.translation.vector *= scale;
-        scaled.m2.translation.vector *= scale;
-        let found = scaled.contact(prediction * scale).map(|found| query::Contact {
-            world1: found.world1 / scale,
-            world2: found.world2 / scale,
-            normal: found.normal,
-            depth: found.depth / scale,
-        });
-        assert!(same(contact, &found), "{contact:?}, but {found:?} scaled by {scale}:\n{self:?}");
     }
 
     fn check_witness(&self, limit: N) {

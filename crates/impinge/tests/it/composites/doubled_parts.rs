@@ -68,7 +68,7 @@ fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
                     // How deep a solid is below a face follows from where that is cut.
                     let is_asked =
                         index != OTHER_CUT || once.is_none_or(|(depth, _)| depth <= 0.05);
-                    let again = if is_asked { depth(sheet) } else { once };
+                    let again = is_asked.then(|| depth(sheet)).unwrap_or(once);
                     let is_same = are_same_up_to(
                         64.0 * N::EPSILON.as_f64() + 1e-11,
                         [once, again].map(|found| found.map(|(depth, _)| depth)),
