@@ -64,11 +64,12 @@ fn rims<N: Space<3, Isometry = Isometry3<N>>>() {
                 let once = depth(&sheets[0]);
                 met += u32::from(once.is_some());
                 at_rim += u32::from(once.is_some_and(|(_, normal)| normal.y.abs() < 0.99));
-                for (index, sheet) in sheets.iter().enumerate().skip(1) {
-                    // How deep a solid is below a face follows from where that is cut.
-                    let is_asked =
-                        index != OTHER_CUT || once.is_none_or(|(depth, _)| depth <= 0.05);
-                    let again = is_asked.then(|| depth(sheet)).unwrap_or(once);
+                // How deep a solid is below a face follows from where that is cut.
+                let is_deep = once.is_some_and(|(depth, _)| depth > 0.05);
+                let is_asked = |index: usize| !(index == OTHER_CUT && is_deep);
+                let others = sheets.iter().enumerate().skip(1);
+                for (index, sheet) in others.filter(|(index, _)| is_asked(*index)) {
+                    let again = depth(sheet);
                     let is_same = are_same_up_to(
                         64.0 * N::EPSILON.as_f64() + 1e-11,
                         [once, again].map(|found| found.map(|(depth, _)| depth)),
