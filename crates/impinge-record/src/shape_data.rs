@@ -197,15 +197,11 @@ impl<N: Recordable<D>, const D: usize> ShapeData<N, D> {
     }
 }
 
-/// The half-space of a normal whose length is 1 up to rounding; it is not normalized, which could change its bits.
+/// The half-space of a normal, which is not normalized: that could change its bits.
 fn half_space<N: Recordable<D>, const D: usize>(
     normal: &Vector<N, D>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
-    let excess = (normal.norm_squared() - N::ONE).abs();
-    if excess <= N::EPSILON * N::lit(64.0) {
-        return Ok(ShapeHandle::new(Plane::<N, D>::new(Unit::new_unchecked(*normal))));
-    }
-    Err(Problem::BadValue { what: "the normal of a half-space" })
+    Ok(ShapeHandle::new(Plane::<N, D>::try_new(Unit::new_unchecked(*normal))?))
 }
 
 /// The line of its arguments.

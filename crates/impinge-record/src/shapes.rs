@@ -11,7 +11,7 @@ use crate::shape_data::{ShapeData, data_of, joins_alike};
 use crate::space::Recordable;
 
 /// So deep may shapes nest: a rounded shape or compound is one deeper than what it holds.
-pub const MAX_DEPTH: u32 = 16;
+pub const MAX_DEPTH: u32 = impinge::shape::MAX_NESTING;
 
 /// So many parts may a shape have, those of what it holds counted as often as it holds them.
 pub const MAX_PARTS: usize = 1 << 20;

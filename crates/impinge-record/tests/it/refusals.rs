@@ -2,7 +2,7 @@
 
 use impinge::bounding_volume::Aabb;
 use impinge::dim2::math::{Isometry, Point};
-use impinge::dim2::shape::{Geometry, Polyline, Rounded, ShapeHandle, TriMesh};
+use impinge::dim2::shape::{Geometry, Polyline, Rounded, ShapeError, ShapeHandle, TriMesh};
 use impinge::dim2::world::{CollisionGroups, CollisionWorld, GeometricQueryType};
 use impinge::shape::{Ball, Shape};
 use impinge_record::{Problem, RecordError, Recorder, Registry, Replay, validate};
@@ -79,8 +79,8 @@ fn shapes_that_nest_too_deep_are_refused() {
         shape = ShapeHandle::new(rounded);
     }
     add(&mut recorder, shape.clone()).expect("just so deep");
-    let deeper = Rounded::try_from_handle(shape, 0.5).expect("a ball is convex");
-    assert_eq!(add(&mut recorder, ShapeHandle::new(deeper)), Err(RecordError::TooComplex));
+    let deeper = Rounded::try_from_handle(shape, 0.5).expect_err("the library takes no more");
+    assert_eq!(deeper, ShapeError::TooDeep { depth: impinge_record::MAX_DEPTH + 1 });
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub(crate) use manifold::{
     OnFace, between2, build3, contacts2, contacts3, on_face2, on_face3, tangents2, tangents3,
     witness_feature2, witness_feature3, witness_features2, witness_features3,
 };
-pub(crate) use mesh::{CompositeContacts, own_distance};
+pub(crate) use mesh::{CompositeContacts, each_contact_within, own_distance};
 pub(crate) use pair::{Pair, Placed, Placing, canonical};
 pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
 pub(crate) use separation::AtIsometry;

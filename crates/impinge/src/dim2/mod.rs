@@ -229,8 +229,9 @@ pub mod query {
 /// The solids.
 pub mod shape {
     pub use crate::shape::{
-        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, EdgeNeighbor, FeatureId, MeshError,
-        PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind, SupportMap, Surface,
+        Ball, CompositeShape, ConvexPolygon, ConvexPolyhedron, EdgeNeighbor, FeatureId,
+        MAX_NESTING, MeshError, PartPath, PartSearch, ScaleError, Shape, ShapeError, ShapeKind,
+        SupportMap, Surface,
     };
 
     /// Where a curved support point lies, and how it moves.

@@ -230,8 +230,8 @@ pub mod query {
 pub mod shape {
     pub use crate::shape::{
         Ball, CompositeShape, Cone, ConvexHull, ConvexPolyhedron, Cylinder, Diagonal, Diagonals,
-        EdgeNeighbor, FeatureId, MeshError, PartPath, PartSearch, ScaleError, Shape, ShapeError,
-        ShapeKind, SupportMap, Surface, Tetrahedron,
+        EdgeNeighbor, FeatureId, MAX_NESTING, MeshError, PartPath, PartSearch, ScaleError, Shape,
+        ShapeError, ShapeKind, SupportMap, Surface, Tetrahedron,
     };
 
     /// Where a curved support point lies, and how it moves.

@@ -42,6 +42,7 @@ pub use rotation::AbstractRotation;
 pub(crate) use rotation::{IsometryRef, pose_of};
 pub(crate) use simd::Wide;
 pub use space::Space;
+pub(crate) use vector::is_unit;
 pub use vector::{
     centroid, cross, cross2, max, max_component, min, orthonormal_basis, perp, perpendicular_to,
     unit, unit_or,

@@ -37,6 +37,11 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     /// The isometry that a pose describes, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
 
+    /// The squared length of the complex number or quaternion of an isometry: 1 up to rounding, if that is a
+    /// rotation.
+    #[doc(hidden)]
+    fn squared_length_of_rotation(isometry: &Self::Isometry) -> Self;
+
     /// The determinant of a matrix.
     #[doc(hidden)]
     fn determinant(matrix: &Matrix<Self, D>) -> Self;
@@ -80,6 +85,12 @@ impl<N: Real> Space<2> for N {
     }
 
     #[inline]
+    fn squared_length_of_rotation(isometry: &Isometry2<N>) -> N {
+        let (re, im) = (isometry.rotation.re, isometry.rotation.im);
+        re * re + im * im
+    }
+
+    #[inline]
     fn determinant(matrix: &Matrix<N, 2>) -> N {
         matrix.determinant()
     }
@@ -109,6 +120,11 @@ impl<N: Real> Space<3> for N {
         let rotation = Rotation3::from_matrix_unchecked(pose.rotation);
         let rotation = UnitQuaternion::from_rotation_matrix(&rotation);
         Isometry3::from_parts(pose.translation.into(), rotation)
+    }
+
+    #[inline]
+    fn squared_length_of_rotation(isometry: &Isometry3<N>) -> N {
+        isometry.rotation.coords.norm_squared()
     }
 
     #[inline]

@@ -102,6 +102,17 @@ pub fn centroid<N: Real, const D: usize>(points: &[Point<N, D>]) -> Point<N, D> 
     Point::from(if points.is_empty() { sum } else { sum / count })
 }
 
+/// A squared length may differ from 1 by this much for a unit vector or the quaternion of a rotation: what
+/// rounding adds up to over hours is no error.
+const UNIT_SLACK: f64 = 1.0 / 64.0;
+
+/// Whether a squared length is that of a unit vector or of the quaternion of a rotation: the length is within 0.8 %
+/// of 1. False for NaN.
+#[inline]
+pub(crate) fn is_unit<N: Real>(squared_length: N) -> bool {
+    (squared_length - N::ONE).abs() <= N::lit(UNIT_SLACK)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -5,8 +5,8 @@
 
 use core::fmt;
 
-use crate::math::{Real, Vector};
-use crate::shape::ShapeKind;
+use crate::math::{Real, Vector, is_unit};
+use crate::shape::{MAX_NESTING, ShapeKind};
 
 /// Why a constructor refused its numbers. Values are given as `f64`, exactly.
 ///
@@ -33,6 +33,13 @@ pub enum ShapeError {
         what: &'static str,
         /// The number.
         value: f64,
+    },
+    /// A vector that has to be a unit vector is none: its length differs from 1 by more than 0.8 %.
+    NotUnit {
+        /// Which vector, as the constructor names it.
+        what: &'static str,
+        /// Its length.
+        length: f64,
     },
     /// Fewer points than the shape needs.
     TooFewPoints {
@@ -87,6 +94,19 @@ pub enum ShapeError {
         /// The index of the child.
         index: usize,
     },
+    /// The complex number or quaternion of the position of a child is no rotation: its length differs from 1 by
+    /// more than 0.8 %.
+    ChildRotation {
+        /// The index of the child.
+        index: usize,
+        /// The length.
+        length: f64,
+    },
+    /// Compounds and rounded shapes hold each other deeper than [`MAX_NESTING`](crate::shape::MAX_NESTING).
+    TooDeep {
+        /// How deep the shape would be.
+        depth: u32,
+    },
     /// There are more parts than 32 bits can number.
     TooManyParts {
         /// How many they would be.
@@ -120,6 +140,7 @@ impl fmt::Display for ShapeError {
         match self {
             Self::NotFinite { what, value } => write!(f, "{what} is {value}, which is not finite"),
             Self::Negative { what, value } => write!(f, "{what} is {value}, below zero"),
+            Self::NotUnit { what, length } => write!(f, "{what} has the length {length}, not 1"),
             Self::TooFewPoints { given, needed } => {
                 write!(f, "{given} points were given, at least {needed} are needed")
             }
@@ -149,6 +170,12 @@ impl fmt::Display for ShapeError {
             Self::ChildPoseNotFinite { index } => {
                 write!(f, "the position of child {index} is not finite")
             }
+            Self::ChildRotation { index, length } => {
+                write!(f, "the rotation of child {index} has the length {length}, not 1")
+            }
+            Self::TooDeep { depth } => {
+                write!(f, "the shape is nested {depth} deep, at most {MAX_NESTING} are allowed")
+            }
             Self::TooManyParts { needed } => {
                 write!(f, "{needed} parts are more than 32 bits can number")
             }
@@ -166,6 +193,25 @@ impl fmt::Display for ShapeError {
 }
 
 impl std::error::Error for ShapeError {}
+
+/// A unit vector, up to rounding that adds up.
+pub(super) fn unit_vector<N: Real, const D: usize>(
+    what: &'static str,
+    vector: &Vector<N, D>,
+) -> Result<(), ShapeError> {
+    finite(what, vector)?;
+    let squared = vector.norm_squared();
+    if is_unit(squared) {
+        return Ok(());
+    }
+    Err(ShapeError::NotUnit { what, length: squared.as_f64().sqrt() })
+}
+
+/// How deep a shape is that holds shapes of these depths, if that is no deeper than allowed.
+pub(super) fn nesting(inner: impl Iterator<Item = u32>) -> Result<u32, ShapeError> {
+    let depth = inner.max().map_or(1, |inner| inner.saturating_add(1));
+    if depth <= MAX_NESTING { Ok(depth) } else { Err(ShapeError::TooDeep { depth }) }
+}
 
 /// A size: finite and not negative.
 pub(super) fn size<N: Real>(what: &'static str, value: N) -> Result<N, ShapeError> {

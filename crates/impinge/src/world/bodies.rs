@@ -1,7 +1,7 @@
 //! What a world keeps of an object beside the user's data.
 
 use super::changes::ChangeList;
-use super::error::check_pose;
+use super::error::usable_pose;
 use super::{CollisionGroups, WorldError};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::{BroadPhase, ProxyHandle};
@@ -142,7 +142,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         }
     }
 
-    /// Moves the object, unless a number of the position is not finite, and forgets the predicted pose. An
+    /// Moves the object, unless the position is none, and forgets the predicted pose. An
     /// object that is there already does not count as changed.
     pub(crate) fn set_isometry(
         &mut self,
@@ -153,8 +153,7 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
             self.isometry = isometry;
             return Ok(());
         }
-        let pose = N::pose(&isometry);
-        check_pose(&pose, Some(self.handle))?;
+        let pose = usable_pose(&isometry, Some(self.handle))?;
         self.state &= !PREDICTED;
         self.isometry = isometry;
         let aabb = self.aabb_at(&pose);
@@ -162,16 +161,15 @@ impl<N: Space<D>, const D: usize> WorldBody<N, D> {
         Ok(())
     }
 
-    /// Moves the object and predicts the pose after that, unless a number of either is not finite.
+    /// Moves the object and predicts the pose after that, unless either is no position.
     pub(crate) fn set_predicted(
         &mut self,
         list: &mut ChangeList<N, D>,
         isometry: N::Isometry,
         predicted: N::Isometry,
     ) -> Result<(), WorldError> {
-        let pose = N::pose(&isometry);
-        check_pose(&pose, Some(self.handle))?;
-        check_pose(&N::pose(&predicted), Some(self.handle))?;
+        let pose = usable_pose(&isometry, Some(self.handle))?;
+        usable_pose::<N, D>(&predicted, Some(self.handle))?;
         self.state |= PREDICTED;
         self.isometry = isometry;
         list.predict(self.index(), predicted);

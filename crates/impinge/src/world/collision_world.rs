@@ -3,7 +3,7 @@
 //! An operation that fails changes nothing.
 
 use super::entries;
-use super::error::{check_pose, or_panic, usable_query};
+use super::error::{or_panic, usable_pose, usable_query};
 use super::filter::Filters;
 use super::objects::Description;
 use super::removed::RemovedObjects;
@@ -118,8 +118,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// [`ProximityQuery`](crate::narrow_phase::ProximityQuery), which name its numbers.
     ///
     /// # Panics
-    /// If a number of the position is not finite, a number of the query type is negative or not
-    /// finite, or the world is full; [`Self::try_add`] returns these.
+    /// If the position has a number that is not finite or a rotation of another length than 1, a number of the
+    /// query type is negative or not finite, or the world is full; [`Self::try_add`] returns these.
     #[track_caller]
     pub fn add(
         &mut self,
@@ -135,8 +135,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Adds an object; see [`Self::add`].
     ///
     /// # Errors
-    /// If a number of the position is not finite, a number of the query type is negative or not
-    /// finite, or the world is full. The world is unchanged then.
+    /// If the position has a number that is not finite or a rotation of another length than 1, a number of the
+    /// query type is negative or not finite, or the world is full. The world is unchanged then.
     pub fn try_add(
         &mut self,
         position: N::Isometry,
@@ -145,7 +145,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         query_type: impl Into<GeometricQueryType<N>>,
         data: T,
     ) -> Result<CollisionObjectHandle, WorldError> {
-        check_pose(&N::pose(&position), None)?;
+        usable_pose::<N, D>(&position, None)?;
         let query_type = usable_query(query_type.into())?;
         let handle = self.objects.next_handle()?;
         let broad_phase = &mut self.broad_phase;
@@ -208,8 +208,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Moves an object. Queries see it at once, pairs at the next update.
     ///
     /// # Panics
-    /// If the handle is stale or a number of the position is not finite; [`Self::try_set_position`]
-    /// returns these.
+    /// If the handle is stale or the position has a number that is not finite or a rotation of another length
+    /// than 1; [`Self::try_set_position`] returns these.
     #[track_caller]
     pub fn set_position(&mut self, handle: CollisionObjectHandle, position: N::Isometry) {
         or_panic(self.try_set_position(handle, position));
@@ -218,7 +218,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Moves an object; see [`Self::set_position`].
     ///
     /// # Errors
-    /// If the handle is stale or a number of the position is not finite. The world is unchanged then.
+    /// If the handle is stale or the position has a number that is not finite or a rotation of another length
+    /// than 1. The world is unchanged then.
     pub fn try_set_position(
         &mut self,
         handle: CollisionObjectHandle,
@@ -232,8 +233,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// the last one holds.
     ///
     /// # Panics
-    /// If a handle is stale or a number of a position is not finite; [`Self::try_set_positions`]
-    /// returns these.
+    /// If a handle is stale or a position has a number that is not finite or a rotation of another length
+    /// than 1; [`Self::try_set_positions`] returns these.
     #[track_caller]
     pub fn set_positions(&mut self, positions: &[(CollisionObjectHandle, N::Isometry)]) {
         or_panic(self.try_set_positions(positions));
@@ -242,14 +243,15 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Moves many objects; see [`Self::set_positions`].
     ///
     /// # Errors
-    /// If a handle is stale or a number of a position is not finite. The world is unchanged then.
+    /// If a handle is stale or a position has a number that is not finite or a rotation of another length
+    /// than 1. The world is unchanged then.
     pub fn try_set_positions(
         &mut self,
         positions: &[(CollisionObjectHandle, N::Isometry)],
     ) -> Result<(), WorldError> {
         for (handle, position) in positions {
             self.objects.fresh(*handle)?;
-            check_pose(&N::pose(position), Some(*handle))?;
+            usable_pose::<N, D>(position, Some(*handle))?;
         }
         for (handle, position) in positions {
             self.try_set_position(*handle, *position)?;

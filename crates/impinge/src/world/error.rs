@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::math::{Pose, Real};
+use crate::math::{Pose, Real, Space, is_unit};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 
 /// Why a world refused an operation; the world is unchanged then. Values are given as `f64`, exactly.
@@ -32,6 +32,14 @@ pub enum WorldError {
         handle: Option<CollisionObjectHandle>,
         /// The number.
         value: f64,
+    },
+    /// The complex number or quaternion of a position is no rotation: its length differs from 1 by more than
+    /// 0.8 %.
+    Rotation {
+        /// The object to be moved; `None` for one to be added.
+        handle: Option<CollisionObjectHandle>,
+        /// The length.
+        length: f64,
     },
     /// A number of a query type is negative, NaN or infinite.
     QueryType {
@@ -69,6 +77,18 @@ impl fmt::Display for WorldError {
             Self::Position { handle: None, value } => {
                 write!(f, "a number of the position of a new object is {value}")
             }
+            Self::Rotation { handle: Some(handle), length } => {
+                write!(
+                    f,
+                    "the rotation of the position for {handle:?} has the length {length}, not 1"
+                )
+            }
+            Self::Rotation { handle: None, length } => {
+                write!(
+                    f,
+                    "the rotation of the position of a new object has the length {length}, not 1"
+                )
+            }
             Self::QueryType { value } => {
                 write!(
                     f,
@@ -91,13 +111,25 @@ impl fmt::Display for WorldError {
 
 impl std::error::Error for WorldError {}
 
-/// All numbers of a pose are finite.
+/// The pose of an isometry, if all its numbers are finite and its rotation has the length 1.
 #[inline]
-pub(super) fn check_pose<N: Real, const D: usize>(
-    pose: &Pose<N, D>,
+pub(super) fn usable_pose<N: Space<D>, const D: usize>(
+    isometry: &N::Isometry,
     handle: Option<CollisionObjectHandle>,
-) -> Result<(), WorldError> {
-    if pose.is_finite() { Ok(()) } else { Err(bad_position(pose, handle)) }
+) -> Result<Pose<N, D>, WorldError> {
+    let (pose, squared) = (N::pose(isometry), N::squared_length_of_rotation(isometry));
+    if !pose.is_finite() {
+        return Err(bad_position(&pose, handle));
+    }
+    if !is_unit(squared) {
+        return Err(bad_rotation(squared, handle));
+    }
+    Ok(pose)
+}
+
+#[cold]
+fn bad_rotation<N: Real>(squared: N, handle: Option<CollisionObjectHandle>) -> WorldError {
+    WorldError::Rotation { handle, length: squared.as_f64().sqrt() }
 }
 
 #[cold]

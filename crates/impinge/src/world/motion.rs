@@ -99,8 +99,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// ```
     ///
     /// # Panics
-    /// If the handle is stale or a number of a position is not finite;
-    /// [`Self::try_set_position_with_prediction`] returns these.
+    /// If the handle is stale or a position has a number that is not finite or a rotation of another length
+    /// than 1; [`Self::try_set_position_with_prediction`] returns these.
     #[track_caller]
     pub fn set_position_with_prediction(
         &mut self,
@@ -114,7 +114,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Moves an object and predicts where it will be next; see [`Self::set_position_with_prediction`].
     ///
     /// # Errors
-    /// If the handle is stale or a number of a position is not finite. The world is unchanged then.
+    /// If the handle is stale or a position has a number that is not finite or a rotation of another length
+    /// than 1. The world is unchanged then.
     pub fn try_set_position_with_prediction(
         &mut self,
         handle: CollisionObjectHandle,

@@ -121,20 +121,20 @@ impl<N: Real> Stretch<N> {
         stretch
     }
 
-    /// A side of no extent seen along the normal is its first corner, with the name of the side; one that
-    /// leans too much its nearest corner.
+    /// A side without length is its first corner, with the name of the side; one that leans too much, or lies along
+    /// the normal, is its nearest corner.
     #[inline(always)]
     fn settle(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;
-        self.is_side &= is_long;
+        self.is_side &= is_long || max_component(&(from.point - to.point)) > tolerance;
         if !self.is_side {
             return;
         }
         let flat = to.flat - from.flat;
         (self.along, self.length) = (flat.x, flat.norm());
         self.cosine = self.length / (to.point - from.point).norm();
-        if self.cosine < N::lit(MIN_COSINE) {
+        if !is_long || self.cosine < N::lit(MIN_COSINE) {
             let at = |corner: &Corner<N, 2>| corner.point.coords.dot(outward);
             let farthest = if at(to) > at(from) { *to } else { *from };
             (self.id, self.corners, self.is_side) = (farthest.id, [farthest; 2], false);

@@ -2,8 +2,8 @@
 
 use super::chain::update_chain;
 use super::{
-    CompositeContacts, PART_POINTS, contact_in_world, deepest, deepest_in_general, deepest_within,
-    rounding,
+    CompositeContacts, PART_POINTS, contact_in_world, deepest, deepest_within, rounding,
+    within::deepest_in_general,
 };
 use crate::collide::ManifoldRequest;
 use crate::collide::pair::{Ordered, Placed};

@@ -36,6 +36,7 @@ mod patch_groups;
 mod patch_points;
 mod resolve;
 mod scene;
+mod within;
 
 use crate::tables::ByDimension;
 use crate::tables::entries;
@@ -53,13 +54,15 @@ use self::part_contact::{Arena, PartContact, PartStatus, Reference};
 use self::patch::{Merging, Piece, merge};
 pub(crate) use self::patch::{Patch, PatchPoint};
 use self::scene::Scene;
+use self::within::deepest_within;
+pub(crate) use self::within::each_contact_within;
 use super::parts::between::Between;
 use super::parts::bounds::aabb_of;
 use crate::bounding_volume::Ray;
 use crate::collide::packet::PartGap;
 use crate::collide::pair::{Ordered, Placed};
 use crate::collide::separation::{of_ordered, placed};
-use crate::collide::{ManifoldRequest, Pair, PairIds, RawPoint};
+use crate::collide::{ManifoldRequest, Pair, PairIds};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, min};
 use crate::shape::{Geometry, Kind, PartSolid, SupportMap};
@@ -134,13 +137,6 @@ impl<N: Real, const D: usize> CompositeContacts<N, D> {
                 each(normal, &mut point.raw.distance, &point.raw.point1);
             });
         }
-    }
-
-    /// The deepest contact, the first of equals.
-    fn deepest(&self) -> Option<Separation<N, D>> {
-        deepest_of(self.patches.iter().flat_map(|Patch { normal, points }| {
-            points.iter().map(move |point| (normal, &point.raw))
-        }))
     }
 
     /// The same contacts with the second shape first.
@@ -373,8 +369,13 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_way(&between)
     {
         // Points that differ by rounding alone are all there, whatever the limit.
-        let found = deepest_within(&between, max(limit, rounding(&between)));
-        return found.filter(|found| found.distance <= limit).map(in_world);
+        let rounding = rounding(&between);
+        let mut found = deepest_within(&between, max(limit, rounding))?;
+        let is_close = found.distance > N::ZERO && found.distance <= rounding;
+        if is_close && of_ordered(&ordered, N::ZERO).is_some() {
+            found = touching(&found);
+        }
+        return Some(found).filter(|found| found.distance <= limit).map(in_world);
     }
     let nearest = of_ordered(&ordered, limit)?;
     // A half-space has one normal, whatever part it meets: the deepest part has the deepest contact.
@@ -402,7 +403,8 @@ fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool
 /// near as the nearest are looked at, unless that is one that cannot be touched.
 ///
 /// A contact that differs from the distance by rounding alone has that: it exists where the shapes touch, and is
-/// no overlap where they are apart. One of [`has_own_way`] is as it is found without the distance.
+/// no overlap where they are apart. One of [`has_own_way`] of shapes that are apart is as it is found without the
+/// distance.
 fn deepest<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     distance: N,
@@ -415,66 +417,29 @@ fn deepest<N: Space<D>, const D: usize>(
         deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
     let farther = found.distance - near;
     let is_off = farther > N::ZERO || distance > N::ZERO;
-    if is_off && farther.abs() <= rounding && !has_own_way(between) {
+    let touches = distance <= N::ZERO && farther > N::ZERO;
+    if is_off && farther.abs() <= rounding && (touches || !has_own_way(between)) {
         found.distance = near;
         found.point2 = found.point1 + found.normal * near;
     }
     (found.distance <= limit).then_some(found)
 }
 
+/// A contact of shapes that touch, which rounding has left apart.
+fn touching<N: Real, const D: usize>(found: &Separation<N, D>) -> Separation<N, D> {
+    Separation { distance: N::ZERO, point2: found.point1, ..*found }
+}
+
 /// Lengths below this are rounding errors of the pair.
 fn rounding<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> N {
     let size = |kind: Kind<'_, N, D>| {
         let aabb = aabb_of(kind, &Pose::identity());
-        if aabb.is_bounded() { aabb.half_extents().norm() } else { N::ZERO }
+        // What is far from its origin has large numbers, too.
+        let far = || aabb.half_extents().norm() + aabb.center().coords.norm();
+        if aabb.is_bounded() { far() } else { N::ZERO }
     };
     let sizes = size(between.pair.first) + size(between.pair.second);
     N::lit(64.0) * N::EPSILON * (sizes + between.pair.pose12.translation.norm())
-}
-
-/// The deepest contact of what is within reach, by the way that it has of its own if there is one.
-fn deepest_within<N: Space<D>, const D: usize>(
-    between: &Between<'_, N, D>,
-    reach: N,
-) -> Option<Separation<N, D>> {
-    let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
-    if has_own_way(between) {
-        let mut contacts =
-            CompositeContacts { around: PartCache::for_once(), ..Default::default() };
-        if <N::Algorithms>::update_quickly(&mut contacts, between, &request) {
-            return contacts.deepest();
-        }
-    }
-    deepest_in_general(between, &request)
-}
-
-/// [`deepest_within`], of any two shapes.
-fn deepest_in_general<N: Space<D>, const D: usize>(
-    between: &Between<'_, N, D>,
-    request: &ManifoldRequest<N>,
-) -> Option<Separation<N, D>> {
-    let reference = middle_of_first(between);
-    let query = Query { between, around: None, reference: &reference, request };
-    let nearby = gather::nearby(between, false, request.prediction, None);
-    let mut arena = Arena::default();
-    let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
-    let kept = contacts.iter().filter(|contact| contact.status != PartStatus::Left);
-    deepest_of(kept.flat_map(|PartContact { piece, .. }| {
-        arena.points[piece.points.clone()].iter().map(|point| (&piece.normal, point))
-    }))
-}
-
-/// What the deepest of contact points, each with its normal, says of two shapes; the first of equals.
-fn deepest_of<'a, N: Real, const D: usize>(
-    points: impl Iterator<Item = (&'a Vector<N, D>, &'a RawPoint<N, D>)>,
-) -> Option<Separation<N, D>> {
-    let deepest = points.reduce(|a, b| if b.1.distance < a.1.distance { b } else { a });
-    deepest.map(|(&normal, &RawPoint { distance, point1, .. })| Separation {
-        distance,
-        normal,
-        point1,
-        point2: point1 + normal * distance,
-    })
 }
 
 /// How far those parts of one composite are apart that do not hang together; negative where they

@@ -208,6 +208,18 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
         self.seen1.pose.inverse_vector(vector)
     }
 
+    /// What is known in the frame of the first shape, as an answer about [`Self::pair`].
+    pub(crate) fn in_first_part(&self, found: &Separation<N, D>) -> Separation<N, D> {
+        let placed =
+            |point: &Point<N, D>| self.seen1.pose.inverse_point(&Point::from(point - self.origin1));
+        Separation {
+            distance: found.distance,
+            normal: self.seen1.pose.inverse_vector(&found.normal),
+            point1: placed(&found.point1),
+            point2: placed(&found.point2),
+        }
+    }
+
     /// An answer about [`Self::pair`], in the frame of the first shape.
     pub(crate) fn in_first(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let placed = |point| self.origin1 + self.seen1.pose.point(point).coords;

@@ -2,7 +2,7 @@
 
 use super::eroded::Eroded;
 use super::flat_core::FlatCore;
-use super::wrong_kinds;
+use super::{shared_corner, wrong_kinds};
 use crate::collide::Pair;
 use crate::convex::{self, Separation, Simplicial};
 use crate::math::{Pose, Real, Vector, max};
@@ -45,6 +45,7 @@ pub(super) fn separation<N: Simplicial<D>, const D: usize>(
     } else {
         convex::separation(&map1, &map2, &pair.pose12, loosened)
     };
+    let found = found.map(|found| shared_corner::settled(pair, found));
     found.filter(|found| found.distance <= limit)
 }
 
@@ -83,6 +84,7 @@ fn from_start<N: Simplicial<D>, const D: usize>(
     };
     let loosened = loosened(&map1, &map2, &pair.pose12, limit);
     let found = convex::flat_separation(&map1, &map2, &pair.pose12, loosened, start);
+    let found = found.map(|found| shared_corner::settled(pair, found));
     found.filter(|found| found.distance <= limit)
 }
 

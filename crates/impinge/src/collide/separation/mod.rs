@@ -11,6 +11,7 @@
 //!   parts of a surface at once;
 //! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep overlaps, `revolved::coaxial`
 //!   those about one axis;
+//! - `shared_corner` settles the distance of solids that are apart by rounding alone;
 //! - `plane_any` serves half-spaces, `rounded` inflated solids, and `general` the rest, by GJK and EPA, smooth ones `eroded`.
 //!
 //! Every function is given a pair and a limit and answers in the frame of the first solid; `None`
@@ -35,6 +36,7 @@ mod ridges;
 mod rounded;
 mod seen;
 pub(crate) mod segments;
+mod shared_corner;
 mod table2;
 mod table3;
 #[cfg(test)]

@@ -5,37 +5,43 @@ use std::collections::BinaryHeap;
 
 use super::mover::Mover;
 use crate::bounding_volume::{Aabb, BoundingVolume};
+use crate::collide::each_contact_within;
 use crate::collide::parts::between::{Between, PartPair, by_number};
 use crate::collide::parts::bounds::loosened;
 use crate::collide::parts::{Wanted, nearest_between};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
-use crate::query::impact::{Arrival, Path, advance_from};
+use crate::query::impact::{Arrival, Beginning, Path, begin, size};
 use crate::shape::{CompositeShape, FeatureId};
 
-/// The arrival of one part at another, in the frame of the first part, and which parts they are.
+/// The arrival of one part at another, and which parts they are.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartArrival<N: Real, const D: usize> {
+    /// Its separation is in the frame of the first part, or of the first shape if it is a contact of the whole.
     pub(crate) arrival: Arrival<N, D>,
     pub(crate) parts: [u32; 2],
+    pub(crate) is_of_whole: bool,
 }
 
-/// The first arrival of two parts; of several at one time that of the first parts by number. A contact
-/// at the start counts, or does not, for each pair of parts by itself.
+/// The first arrival of two parts; of several at one time that of the first parts by number.
+///
+/// Whether a contact at the start counts is asked of the contacts of the whole. If there is one that does not, they are
+/// asked about each arrival as well: a solid that is below a surface of many parts meets their inner edges.
 ///
 /// Cost: each part of the first shape, or of the second if that has fewer, searches the other on its
-/// way; ways end at the first arrival found so far.
+/// way; ways end at the first arrival found so far. From a start in contact each part that is met costs the contacts of
+/// the whole there.
 pub(crate) fn first_arrival<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     path: &Path<N, D>,
 ) -> Option<PartArrival<N, D>> {
-    let mut search = PartImpactSearch { between, path, first: None };
-    match between.composites() {
-        [None, None] => search.hold([0, 0], N::ZERO),
-        [Some(parts1), None] => search.each_on_way(1, 0, parts1),
-        [None, Some(parts2)] if between.is_half_space_first() => search.of_half_space(parts2),
-        [None, Some(parts2)] => search.each_on_way(0, 0, parts2),
-        [Some(parts1), Some(parts2)] => search.of_many(parts1, parts2),
+    let start = WholeContact::Unknown;
+    let mut search = PartImpactSearch { between, path, first: None, start, is_early: false };
+    search.run();
+    if search.is_early && search.start == WholeContact::Free {
+        // What was met before that was known has not been asked of the whole.
+        search.first = None;
+        search.run();
     }
     search.first
 }
@@ -51,9 +57,44 @@ struct PartImpactSearch<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     path: &'a Path<N, D>,
     first: Option<PartArrival<N, D>>,
+    /// What the contacts of the whole at the start say.
+    start: WholeContact,
+    /// Something was met before that was known.
+    is_early: bool,
 }
 
+/// What the contacts of the whole at a time say.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum WholeContact {
+    /// They have not been asked.
+    Unknown,
+    /// One counts.
+    Hit,
+    /// None counts.
+    Free,
+    /// There is none, though parts are in contact: each two parts count by themselves.
+    Nothing,
+}
+
+/// The depth of a contact of the whole is known up to this many rounding units.
+const ROUNDING: f64 = 64.0;
+
+/// Normals that differ by less, as vectors, are one.
+const SAME: f64 = 1.0 / 1024.0;
+
 impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
+    fn run(&mut self) {
+        match self.between.composites() {
+            [None, None] => self.hold([0, 0], N::ZERO),
+            [Some(parts1), None] => self.each_on_way(1, 0, parts1),
+            [None, Some(parts2)] if self.between.is_half_space_first() => {
+                self.of_half_space(parts2);
+            }
+            [None, Some(parts2)] => self.each_on_way(0, 0, parts2),
+            [Some(parts1), Some(parts2)] => self.of_many(parts1, parts2),
+        }
+    }
+
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let aabb = self.grown(&self.between.whole_in_other(1 - which));
@@ -114,16 +155,61 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     /// The convex algorithm for two parts, which are not at each other before a time. Parts of indistinguishable
     /// shapes are so themselves if their numbers agree.
     fn hold(&mut self, parts: [u32; 2], earliest: N) {
+        if self.start == WholeContact::Hit {
+            return;
+        }
         let placed = self.between.parts(parts);
         let path = Path {
             end: self.first.map_or(self.path.end, |first| first.arrival.along),
             mirrored: self.path.mirrored && parts[0] == parts[1],
             ..seen_by(&placed, self.path)
         };
-        let Some(arrival) = advance_from(&placed.pair(), &path, earliest) else { return };
-        let found = PartArrival { arrival, parts };
-        if self.first.is_none_or(|first| found.is_before(&first)) {
-            self.first = Some(found);
+        let arrival = match begin(&placed.pair(), &path, earliest) {
+            Beginning::Apart(arrival) => arrival,
+            Beginning::InContact { arrival, counts } => {
+                self.begin_in_contact(rounding(&placed));
+                Some(arrival).filter(|_| counts && self.start == WholeContact::Nothing)
+            }
+        };
+        let found = arrival.map(|arrival| PartArrival { arrival, parts, is_of_whole: false });
+        let is_first =
+            |found: &PartArrival<N, D>| self.first.is_none_or(|first| found.is_before(&first));
+        let found = found.filter(is_first).and_then(|found| self.confirmed(found, &placed));
+        self.is_early |= found.is_some() && self.start == WholeContact::Unknown;
+        self.first = found.or(self.first);
+    }
+
+    /// Asks the contacts of the whole whether the start counts; once.
+    fn begin_in_contact(&mut self, tolerance: N) {
+        if self.start == WholeContact::Unknown {
+            let whole = WholeQuestion { between: *self.between, path: self.path, along: N::ZERO };
+            let (start, hit) = whole.ask(tolerance, &mut |_| {});
+            self.start = start;
+            self.first = hit.or(self.first);
+        }
+    }
+
+    /// What two parts say of an arrival after a start in contact that does not count, if the whole says so too: with
+    /// one of the normals that it has there.
+    fn confirmed(
+        &self,
+        found: PartArrival<N, D>,
+        placed: &PartPair<'_, N, D>,
+    ) -> Option<PartArrival<N, D>> {
+        let (Arrival { along, separation, .. }, path) = (&found.arrival, self.path);
+        if self.start != WholeContact::Free || *along <= N::ZERO {
+            return Some(found);
+        }
+        let pair = path.moved(&self.between.pair, *along);
+        let whole = WholeQuestion { between: Between::of_pair(&pair), path, along: *along };
+        let (own, mut is_same) = (placed.in_first(separation).normal, false);
+        let (contact, hit) = whole.ask(rounding(placed), &mut |normal| {
+            is_same |= (normal - own).norm() <= N::lit(SAME);
+        });
+        match contact {
+            WholeContact::Free => None,
+            WholeContact::Hit if !is_same => hit,
+            _ => Some(found),
         }
     }
 
@@ -140,9 +226,62 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     }
 
     fn end(&self) -> N {
+        if self.start == WholeContact::Hit {
+            return -N::ONE;
+        }
         let end = self.first.map_or(self.path.end, |first| first.arrival.along);
         if end >= N::ZERO { loosened(end) } else { -N::ONE }
     }
+}
+
+/// Asks which contacts the whole has at a time, as the two lie then.
+struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
+    between: Between<'a, N, D>,
+    path: &'p Path<N, D>,
+    along: N,
+}
+
+impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
+    /// What the contacts within the target distance, and `tolerance` beyond, say, and the deepest that counts. Calls
+    /// `visit` with the normals of those that count.
+    fn ask(
+        &self,
+        tolerance: N,
+        visit: &mut dyn FnMut(&Vector<N, D>),
+    ) -> (WholeContact, Option<PartArrival<N, D>>) {
+        let (path, mut is_free) = (self.path, false);
+        let mut deepest: Option<PartArrival<N, D>> = None;
+        each_contact_within(&self.between, path.target + tolerance, &mut |found| {
+            let (parts, separation) = (found.parts, found.separation);
+            let tolerance = rounding(&self.between.parts(parts));
+            let gap = separation.distance - path.target;
+            if gap > tolerance {
+                return;
+            }
+            let path = Path { mirrored: path.mirrored && parts[0] == parts[1], ..*path };
+            if !path.counts_at_start(&separation.normal, gap, tolerance) {
+                is_free = true;
+                return;
+            }
+            visit(&separation.normal);
+            let is_deeper =
+                |than: PartArrival<N, D>| separation.distance < than.arrival.separation.distance;
+            if deepest.is_none_or(is_deeper) {
+                let arrival = Arrival::in_contact(self.along, separation, gap, tolerance);
+                deepest = Some(PartArrival { arrival, parts, is_of_whole: true });
+            }
+        });
+        match deepest {
+            Some(_) => (WholeContact::Hit, deepest),
+            None if is_free => (WholeContact::Free, None),
+            None => (WholeContact::Nothing, None),
+        }
+    }
+}
+
+/// The gap of two parts that does not count as apart.
+fn rounding<N: Real, const D: usize>(placed: &PartPair<'_, N, D>) -> N {
+    N::lit(ROUNDING) * N::EPSILON * size(&placed.pair())
 }
 
 /// A path in the frame of the first shape, in that of its part.
@@ -157,9 +296,13 @@ impl<N: Space<D>, const D: usize> PartArrival<N, D> {
         between: &Between<'_, N, D>,
         path: &Path<N, D>,
     ) -> (Separation<N, D>, [FeatureId; 2]) {
-        let placed = between.parts(self.parts);
-        let features = self.arrival.features(&placed.pair(), &seen_by(&placed, path));
-        (placed.in_first(&self.arrival.separation), features)
+        let (placed, found) = (between.parts(self.parts), &self.arrival.separation);
+        let [seen, local] = match self.is_of_whole {
+            true => [*found, placed.in_first_part(found)],
+            false => [placed.in_first(found), *found],
+        };
+        let arrival = Arrival { separation: local, ..self.arrival };
+        (seen, arrival.features(&placed.pair(), &seen_by(&placed, path)))
     }
 }
 

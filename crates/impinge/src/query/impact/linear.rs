@@ -47,6 +47,12 @@ impl<N: Real, const D: usize> Path<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
+    /// The pair that begins so, at a later time.
+    pub(crate) fn moved<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
+        let pose12 = Pose { translation: self.place(start, along), ..start.pose12 };
+        Pair { pose12, ..*start }
+    }
+
     /// The largest distance at a time from which the solids may still come as near as the target.
     fn limit(&self, along: N, tolerance: N) -> N {
         if !self.end.is_finite_number() {
@@ -67,7 +73,7 @@ impl<N: Real, const D: usize> Path<N, D> {
     }
 
     /// Whether a contact at the start counts.
-    fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
+    pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
         self.contact_at_start || is_hit_at_start(gap, self.closing(normal), tolerance, self.noise())
     }
 }
@@ -77,10 +83,17 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
         Self { along, separation, status: ImpactStatus::Reached }
     }
 
+    /// The arrival of solids that are in contact at a time, with this gap, of which up to the tolerance counts as none.
+    pub(crate) fn in_contact(along: N, separation: Separation<N, D>, gap: N, tolerance: N) -> Self {
+        let is_start = along <= N::ZERO;
+        let at_start = ImpactStatus::at_start(gap, tolerance);
+        let status = if is_start { at_start } else { ImpactStatus::Reached };
+        Self { along, separation, status }
+    }
+
     /// What the points of the pair that begins so lie on when it arrives.
     pub(crate) fn features(&self, start: &Pair<'_, N, D>, path: &Path<N, D>) -> [FeatureId; 2] {
-        let pose12 = Pose { translation: path.place(start, self.along), ..start.pose12 };
-        <N::Algorithms>::witness_features(&Pair { pose12, ..*start }, &self.separation)
+        <N::Algorithms>::witness_features(&path.moved(start, self.along), &self.separation)
     }
 }
 
@@ -91,6 +104,14 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
 pub(super) fn is_hit_at_start<N: Real>(gap: N, closing: N, tolerance: N, noise: N) -> bool {
     let deep = gap < -tolerance;
     closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
+}
+
+/// How the path of two solids begins.
+pub(crate) enum Beginning<N: Real, const D: usize> {
+    /// They are in contact at the start. `counts` says whether that is a hit by the normal of the two.
+    InContact { arrival: Arrival<N, D>, counts: bool },
+    /// They are apart, and arrive there, if they do.
+    Apart(Option<Arrival<N, D>>),
 }
 
 /// The first time on a path at which two solids are at the target distance.
@@ -104,34 +125,38 @@ pub(crate) fn advance<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
 ) -> Option<Arrival<N, D>> {
-    advance_from(start, path, N::ZERO)
+    match begin(start, path, N::ZERO) {
+        Beginning::InContact { arrival, counts } => counts.then_some(arrival),
+        Beginning::Apart(arrival) => arrival,
+    }
 }
 
-/// [`advance`] of solids that certainly do not meet before a time.
-pub(crate) fn advance_from<N: Space<D>, const D: usize>(
+/// [`advance`] of solids that certainly do not meet before a time, which does not decide about a contact at the
+/// start.
+pub(crate) fn begin<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
     earliest: N,
-) -> Option<Arrival<N, D>> {
+) -> Beginning<N, D> {
     let tolerance = N::lit(8.0) * N::EPSILON * size(start);
     // What is apart by rounding alone says nothing of a contact at the start.
     let is_apart = earliest * max_component(&path.velocity) > tolerance;
     let from = if is_apart { earliest - earliest * N::lit(8.0) * N::EPSILON } else { N::ZERO };
-    let pose12 = Pose { translation: path.place(start, from), ..start.pose12 };
     let limit = path.limit(from, tolerance);
-    let found = separation(&Pair { pose12, ..*start }, limit).filter(|_| path.end >= N::ZERO)?;
+    let found = separation(&path.moved(start, from), limit).filter(|_| path.end >= N::ZERO);
+    let Some(found) = found else { return Beginning::Apart(None) };
     let gap = found.distance - path.target;
     if !is_apart && gap <= tolerance {
-        let status = ImpactStatus::at_start(gap, tolerance);
+        let arrival = Arrival::in_contact(N::ZERO, found, gap, tolerance);
         let counts = path.counts_at_start(&found.normal, gap, tolerance);
-        return counts.then_some(Arrival { along: from, separation: found, status });
+        return Beginning::InContact { arrival, counts };
     }
     if gap > tolerance
         && let Some(arrival) = meeting_of_balls(start, path, tolerance)
     {
-        return Some(arrival);
+        return Beginning::Apart(Some(arrival));
     }
-    by_steps(start, path, from, found, tolerance)
+    Beginning::Apart(by_steps(start, path, from, found, tolerance))
 }
 
 /// The arrival by steps from where the solids lie at a time.
@@ -191,8 +216,7 @@ fn meeting_of_balls<N: Space<D>, const D: usize>(
     if !is_way {
         return None;
     }
-    let pose12 = Pose { translation: path.place(start, along), ..start.pose12 };
-    let found = separation(&Pair { pose12, ..*start }, N::INFINITY)?;
+    let found = separation(&path.moved(start, along), N::INFINITY)?;
     let is_there = (found.distance - path.target).abs() <= tolerance;
     is_there.then(|| Arrival::reached(along, found))
 }
@@ -243,7 +267,7 @@ fn touching<N: Space<D>, const D: usize>(
 }
 
 /// The length that tolerances are in proportion to: the sizes of the solids and how far they are.
-pub(super) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
+pub(crate) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let reach = |geometry: Geometry<'_, N, D>| {
         geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
     };

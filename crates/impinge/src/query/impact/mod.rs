@@ -17,7 +17,7 @@ mod velocities;
 use crate::tables::entries;
 use linear::advance;
 use linear::is_hit_at_start;
-pub(crate) use linear::{Arrival, Path, advance_from};
+pub(crate) use linear::{Arrival, Beginning, Path, begin, size};
 pub use motion::RigidMotion;
 pub use nonlinear::nonlinear_time_of_impact;
 pub(crate) use nonlinear::{Flight, impact_of_flight};
@@ -272,8 +272,8 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// solids that pass each other that closely may count as touching.
 ///
 /// The impact of composites is the first impact of two of their parts, of several at one time that of the
-/// first by number; each pair of parts has the policy below for itself. So a shape that slides along
-/// some parts still meets others, and a surface is met from both sides.
+/// first by number. So a shape that slides along some parts still meets others, and a surface is met from both
+/// sides.
 ///
 /// # Starts in contact
 ///
@@ -283,6 +283,13 @@ impl<N: Real, const D: usize> Impact<N, D> {
 /// |---|---|---|---|
 /// | overlap, or are nearer than the target distance | impact at zero | impact at zero | `None` |
 /// | just touch, or are at the target distance, up to rounding | impact at zero | `None` | `None` |
+///
+/// Of composites the contacts of the whole count, as [`contact`](super::contact()) and worlds have them: one along
+/// each normal of a surface, none with the edges inside of a floor, and for shapes without a surface that of
+/// each two parts. The impact at zero is the deepest contact that counts. If none counts, parts that are in contact
+/// at the start are not met later, and other parts where the whole has a contact that counts by then. So a box
+/// that has sunk into a floor of many parts can be moved out of it. Parts that overlap without a contact of the
+/// whole, as behind a surface with one side, count by their own normal.
 ///
 /// With [`ImpactOptions::contact_at_start`] every entry of the table is an impact at zero: ncollide and,
 /// by default, parry answer so. [`Impact::status`] says which row an impact at zero is from.
@@ -428,7 +435,11 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
         let found = if self.ordered.has_composite() {
             first_arrival(&Between::of_ordered(&self.ordered), &self.path)?
         } else {
-            PartArrival { arrival: advance(&self.pair, &self.path)?, parts: [0, 0] }
+            PartArrival {
+                arrival: advance(&self.pair, &self.path)?,
+                parts: [0, 0],
+                is_of_whole: false,
+            }
         };
         let toi = found.arrival.along / self.scale;
         toi.is_finite_number().then_some((found, toi))

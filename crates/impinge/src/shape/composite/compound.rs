@@ -1,10 +1,10 @@
 //! Compounds: shapes side by side, as one.
 
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
-use crate::math::{Matrix, Point, Pose, Real, Space, Vector, max, max_component, min};
+use crate::math::{Matrix, Point, Pose, Real, Space, Vector, is_unit, max, max_component, min};
 use crate::partitioning::BoxTree;
 use crate::shape::composite::compound_search::search_box;
-use crate::shape::error::or_panic;
+use crate::shape::error::{nesting, or_panic};
 use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::own_surface::OwnSurface;
@@ -22,6 +22,8 @@ use crate::shape::{
 /// A child knows the seams of its own surface; children know nothing of each other. A search looks at
 /// the tree over the boxes of the children, then searches each composite among those it finds: parts
 /// of a child are found by their boxes in the frame of the child.
+///
+/// Compounds hold each other up to [`MAX_NESTING`](crate::shape::MAX_NESTING) deep.
 ///
 /// Cloning shares the shapes. Making it costs O(n log n) in the number of children.
 ///
@@ -50,6 +52,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     pub(in crate::shape) poses: Vec<Pose<N, D>>,
     /// The number of the first part of each child, and at last that of all parts.
     pub(in crate::shape) firsts: Vec<u32>,
+    /// How deep the shapes are nested.
+    depth: u32,
     /// Around the boxes of the children.
     aabb: Aabb<N, D>,
     /// Over these boxes, grown by what rounding may make of the children.
@@ -76,7 +80,8 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
     /// The compound of some shapes, each with its position.
     ///
     /// # Errors
-    /// If there is no shape, a position is not finite, or the parts are more than 32 bits can number.
+    /// If there is no shape, a position is not finite or has no rotation of length 1, the parts are more than 32
+    /// bits can number, or the children are nested as deep as [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
     pub fn try_new(children: Vec<(N::Isometry, ShapeHandle<N, D>)>) -> Result<Self, ShapeError> {
         if children.is_empty() {
             return Err(ShapeError::NoChildren);
@@ -85,6 +90,14 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         if let Some(index) = poses.iter().position(|pose| !pose.is_finite()) {
             return Err(ShapeError::ChildPoseNotFinite { index });
         }
+        for (index, (position, _)) in children.iter().enumerate() {
+            let squared = N::squared_length_of_rotation(position);
+            if !is_unit(squared) {
+                let length = squared.as_f64().sqrt();
+                return Err(ShapeError::ChildRotation { index, length });
+            }
+        }
+        let depth = nesting(children.iter().map(|(_, shape)| shape.nesting()))?;
         let firsts = first_parts(&children)?;
         let placed = || children.iter().zip(&poses).map(|((_, shape), pose)| (&**shape, pose));
         let boxes = placed().map(|(shape, pose)| boxed(shape, pose));
@@ -93,7 +106,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         let tree = BoxTree::from_boxes(&searched);
         let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
         let sphere = sphere_around(&aabb, &children, &poses);
-        Ok(Self { children, poses, firsts, aabb, tree, sphere, has_surface })
+        Ok(Self { children, poses, firsts, depth, aabb, tree, sphere, has_surface })
     }
 
     /// The shapes and their positions in the frame of the compound.
@@ -361,6 +374,10 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
     /// Around the middle of the box; no larger than the box asks for.
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         self.sphere
+    }
+
+    fn nesting(&self) -> u32 {
+        self.depth
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

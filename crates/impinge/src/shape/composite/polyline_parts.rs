@@ -1,7 +1,7 @@
 //! A polyline as a shape: a union of segments that know their neighbours.
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
-use crate::math::{Point, Pose, Real, Space, Vector, perp, unit};
+use crate::math::{Point, Pose, Real, Space, Vector, max_component, perp, unit};
 use crate::shape::composite::tri_mesh::{aabb_at, sphere_around};
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::surface::seam::{Seam, slack};
@@ -16,15 +16,15 @@ pub(in crate::shape) fn right_of<N: Real>(along: &Vector<N, 2>) -> Vector<N, 2> 
     -perp(along)
 }
 
-/// The unit vector across a line that leads to the side that a vector points to; `None` if what is left of
-/// that is rounding, which says nothing of the side.
+/// The unit vector across a line that leads to the side that a vector of any length points to; `None` if what is
+/// left of that is rounding, which says nothing of the side.
 pub(in crate::shape) fn across<N: Real, const D: usize>(
     along: &Vector<N, D>,
     vector: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
     let without = |v: &Vector<N, D>| v - along * along.dot(v);
     let (own, rest) = unit(&without(vector))?;
-    let straight = unit(&without(&own)).filter(|_| rest > slack());
+    let straight = unit(&without(&own)).filter(|_| rest > slack::<N>() * max_component(vector));
     straight.map(|(own, _)| own)
 }
 

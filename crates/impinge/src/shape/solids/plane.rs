@@ -2,8 +2,9 @@
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Pose, Real, Unit, Vector};
+use crate::shape::error::{or_panic, unit_vector};
 use crate::shape::scale::Scale;
-use crate::shape::{Geometry, Kind, ScaleError, Shape, ShapeHandle};
+use crate::shape::{Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle};
 
 /// The half-space behind a plane through the local origin: solid where `normal · x ≤ 0`.
 ///
@@ -43,9 +44,23 @@ pub type HalfSpace<N, const D: usize> = Plane<N, D>;
 
 impl<N: Real, const D: usize> Plane<N, D> {
     /// The half-space that `normal` points out of.
+    ///
+    /// # Panics
+    /// If a coordinate of the normal is not finite, as of a zero vector that was normalized, or its length differs
+    /// from 1 by more than 0.8 %; [`Self::try_new`] returns these.
     #[must_use]
-    pub const fn new(normal: Unit<Vector<N, D>>) -> Self {
-        Self { normal }
+    #[track_caller]
+    pub fn new(normal: Unit<Vector<N, D>>) -> Self {
+        or_panic(Self::try_new(normal))
+    }
+
+    /// The half-space that `normal` points out of.
+    ///
+    /// # Errors
+    /// If a coordinate of the normal is not finite, or its length differs from 1 by more than 0.8 %.
+    pub fn try_new(normal: Unit<Vector<N, D>>) -> Result<Self, ShapeError> {
+        unit_vector("the normal", &normal)?;
+        Ok(Self { normal })
     }
 
     /// The unit vector out of the solid.

@@ -1,8 +1,10 @@
 //! Any convex solid, inflated by a radius.
 
+use core::iter;
+
 use crate::bounding_volume::{Aabb, BoundingSphere, BoundingVolume};
 use crate::math::{Point, Pose, Real, Vector};
-use crate::shape::error::{or_panic, size};
+use crate::shape::error::{nesting, or_panic, size};
 use crate::shape::scale::Scale;
 use crate::shape::{
     CurvedSupport, Feature, Geometry, Kind, ScaleError, Shape, ShapeError, ShapeHandle, SupportMap,
@@ -30,14 +32,16 @@ use crate::shape::{
 pub struct Rounded<N: Real, const D: usize> {
     shape: ShapeHandle<N, D>,
     radius: N,
+    /// How deep rounded shapes are nested.
+    depth: u32,
 }
 
 impl<N: Real, const D: usize> Rounded<N, D> {
     /// The points within `radius` of a convex shape.
     ///
     /// # Panics
-    /// If the radius is negative or not finite, or if the shape is not a bounded convex solid;
-    /// [`Self::try_new`] returns these.
+    /// If the radius is negative or not finite, the shape is not a bounded convex solid, or rounded shapes are
+    /// nested as deep as [`MAX_NESTING`](crate::shape::MAX_NESTING) already; [`Self::try_new`] returns these.
     #[must_use]
     #[track_caller]
     pub fn new<S: Shape<N, D>>(shape: S, radius: N) -> Self {
@@ -47,7 +51,8 @@ impl<N: Real, const D: usize> Rounded<N, D> {
     /// The points within `radius` of a convex shape.
     ///
     /// # Errors
-    /// If the radius is negative or not finite, or if the shape is a half-space or a composite.
+    /// If the radius is negative or not finite, the shape is a half-space or a composite, or rounded shapes are
+    /// nested as deep as [`MAX_NESTING`](crate::shape::MAX_NESTING) already.
     pub fn try_new<S: Shape<N, D>>(shape: S, radius: N) -> Result<Self, ShapeError> {
         Self::try_from_handle(ShapeHandle::new(shape), radius)
     }
@@ -59,10 +64,11 @@ impl<N: Real, const D: usize> Rounded<N, D> {
     pub fn try_from_handle(shape: ShapeHandle<N, D>, radius: N) -> Result<Self, ShapeError> {
         let radius = size("the radius", radius)?;
         let kind = shape.geometry().kind();
-        match shape.geometry().as_support_map() {
-            Some(_) => Ok(Self { shape, radius }),
-            None => Err(ShapeError::NotRoundable { kind }),
+        if shape.geometry().as_support_map().is_none() {
+            return Err(ShapeError::NotRoundable { kind });
         }
+        let depth = nesting(iter::once(shape.nesting()))?;
+        Ok(Self { shape, radius, depth })
     }
 
     /// The shape in the middle.
@@ -156,6 +162,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Rounded<N, D> {
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
         self.shape.local_bounding_sphere().loosened(self.radius)
+    }
+
+    fn nesting(&self) -> u32 {
+        self.depth
     }
 
     /// With factors of one magnitude.

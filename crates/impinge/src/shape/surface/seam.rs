@@ -57,11 +57,16 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     normal: Vector<N, D>,
     /// The normal of the face, or the direction of the segment, that is asked; zero if it has none.
     own: Vector<N, D>,
+    /// The part of the normal along the face or segment that is asked.
+    lean: Vector<N, D>,
+    /// A piece into which no direction rises along `lean` by more than this lies on the other side.
+    room: N,
     /// The normal and the pieces, that which is asked and all others, lie flat.
     is_flat: bool,
+    /// A piece lies on the side that the normal leans to: the seam is no rim there.
+    is_hemmed: bool,
     /// No direction into a piece rises along the normal.
     is_in_cone: bool,
-    pieces: u32,
     /// How much the highest piece rises, how flat it lies, and whether its front is up. The highest
     /// piece at the seam is the one that a point far along the normal sees; of two in one edge, the
     /// flatter.
@@ -73,32 +78,48 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
 impl<N: Real, const D: usize> Seam<N, D> {
     /// A seam between faces, asked by the one with the normal `own`.
     pub(in crate::shape) fn of_faces(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
-        Self::new(own, normal, is_level(own.dot(normal)))
+        let along = own.dot(normal);
+        Self::new(own, normal, normal - own * along, is_level(along))
+    }
+
+    /// A seam that is an edge: what leans along it more than across it is no normal of a rim.
+    pub(in crate::shape) fn along(mut self, edge: &Vector<N, D>) -> Self {
+        if let Some((along, _)) = unit(edge) {
+            self.room -= along.dot(&self.lean).abs();
+        }
+        self
     }
 
     /// A seam between segments, asked by the one with the direction `own`.
     pub(in crate::shape) fn of_segments(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
-        Self::new(own, normal, is_flat(own.dot(normal)))
+        let along = own.dot(normal);
+        Self::new(own, normal, own * along, is_flat(along))
     }
 
-    fn new(own: Vector<N, D>, normal: &Vector<N, D>, is_flat: bool) -> Self {
+    fn new(own: Vector<N, D>, normal: &Vector<N, D>, lean: Vector<N, D>, is_flat: bool) -> Self {
         Self {
             normal: *normal,
             own,
+            lean,
+            room: slack(),
             is_flat,
+            is_hemmed: false,
             is_in_cone: true,
-            pieces: 0,
             highest: -N::INFINITY,
             flatness: -N::ONE,
             is_front: true,
         }
     }
 
-    /// A face whose steepest direction from the seam rises so much along the normal, and its normal
-    /// on the front; zero if it has no area.
-    pub(in crate::shape) fn add_face(&mut self, rise: N, front: &Vector<N, D>) {
+    /// Adds a face. `rise` returns how much the steepest direction from the seam into the face rises along a
+    /// vector; `front` is the normal on its front, zero if it has no area.
+    pub(in crate::shape) fn add_face(
+        &mut self,
+        rise: impl Fn(&Vector<N, D>) -> N,
+        front: &Vector<N, D>,
+    ) {
         if *front == Vector::<N, D>::zeros() {
-            self.is_in_cone &= rise <= slack();
+            self.is_in_cone &= rise(&self.normal) <= slack();
         } else {
             self.add(rise, front, front.dot(&self.normal));
         }
@@ -107,24 +128,71 @@ impl<N: Real, const D: usize> Seam<N, D> {
     /// A segment by its direction away from the seam, and how much its front faces the normal; zero
     /// if it has no front.
     pub(in crate::shape) fn add_segment(&mut self, away: &Vector<N, D>, front: N) {
-        self.add(away.dot(&self.normal), away, front);
+        self.add(|direction| away.dot(direction), away, front);
     }
 
     /// `line` is compared with what is asked to tell whether the two lie flat.
-    fn add(&mut self, rise: N, line: &Vector<N, D>, front: N) {
-        self.is_in_cone &= rise <= slack();
+    fn add(&mut self, rise: impl Fn(&Vector<N, D>) -> N, line: &Vector<N, D>, front: N) {
+        let (own, flatness) = (rise(&self.normal), front.abs());
+        self.is_in_cone &= own <= slack();
         self.is_flat &= is_level(line.dot(&self.own));
-        self.pieces += 1;
-        if rise > self.highest || (rise == self.highest && front.abs() > self.flatness) {
-            (self.highest, self.flatness) = (rise, front.abs());
+        self.is_hemmed |= self.is_flat && rise(&self.lean) > self.room;
+        let is_same = |a: N, b: N| (a - b).abs() <= slack();
+        if is_same(own, self.highest) && is_same(flatness, self.flatness) {
+            // One piece twice, with its front up in one of them.
+            self.is_front |= front >= N::ZERO;
+        } else if own > self.highest || (own == self.highest && flatness > self.flatness) {
+            (self.highest, self.flatness) = (own, flatness);
             self.is_front = front >= N::ZERO;
         }
     }
 
     /// The normal is one that the whole has at the seam and that is not better given by a face:
-    /// between pieces that lie flat, only the faces' own normals count.
+    /// between pieces that lie flat, only the faces' own normals count. At a rim, where all pieces lie on
+    /// one side, the whole has the normals that lean to the other side, however many pieces there are.
     pub(in crate::shape) const fn admits(&self, is_one_sided: bool) -> bool {
-        let is_flat = self.is_flat && self.pieces > 1;
+        let is_flat = self.is_flat && self.is_hemmed;
         self.is_in_cone && !is_flat && (self.is_front || !is_one_sided)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn v(x: f64, y: f64) -> Vector<f64, 3> {
+        Vector::<f64, 3>::new(x, y, 0.0).normalize()
+    }
+
+    /// Whether the edge of some faces, each by the way into it and its front, has a normal.
+    fn admits(normal: &Vector<f64, 3>, faces: &[(Vector<f64, 3>, Vector<f64, 3>)]) -> bool {
+        let mut seam = Seam::of_faces(faces[0].1, normal).along(&Vector::<f64, 3>::z());
+        for (inward, front) in faces {
+            seam.add_face(|way| inward.dot(way), front);
+        }
+        seam.admits(true)
+    }
+
+    #[test]
+    fn a_rim_is_one_however_often_its_face_is_there() {
+        let (left, outward, inward) = ((v(-1.0, 0.0), v(0.0, 1.0)), v(0.005, 1.0), v(-0.005, 1.0));
+        for faces in [[left].as_slice(), &[left; 2], &[left; 3]] {
+            assert!(admits(&outward, faces) && !admits(&inward, faces), "{} faces", faces.len());
+        }
+        let other_way = [left, (left.0, -left.1)];
+        assert!(admits(&outward, &other_way), "one of the two has its front up");
+        let almost_level = [left, (v(-1.0, -0.004), v(-0.004, 1.0))];
+        assert!(admits(&outward, &almost_level), "on one side");
+    }
+
+    #[test]
+    fn between_faces_that_are_almost_level_only_their_normals_count() {
+        let ridge = [(v(-1.0, -0.003), v(-0.003, 1.0)), (v(1.0, -0.003), v(0.003, 1.0))];
+        assert!(!admits(&v(0.0, 1.0), &ridge), "within half a degree of both");
+        let sharp = [(v(-1.0, -0.3), v(-0.3, 1.0)), (v(1.0, -0.3), v(0.3, 1.0))];
+        assert!(admits(&v(0.0, 1.0), &sharp), "a ridge has it");
+        let level = [(v(-1.0, 0.0), v(0.0, 1.0)), (v(1.0, 0.0), v(0.0, 1.0))];
+        let along = Vector::<f64, 3>::new(0.0, 1.0, 0.004).normalize();
+        assert!(!admits(&along, &level) && !admits(&along, &level[..1]), "along the edge");
     }
 }

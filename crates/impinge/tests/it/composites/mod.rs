@@ -1,5 +1,6 @@
 //! Compounds, meshes, lines and fields.
 
+mod cast_out_of_floors;
 mod closed_meshes;
 mod composite_contacts;
 mod composite_distance;
@@ -9,6 +10,7 @@ mod composite_points;
 mod composite_rays;
 mod composite_worlds;
 mod compounds;
+mod doubled_parts;
 mod height_field_seams;
 mod height_fields;
 mod internal_edges;

@@ -1,12 +1,14 @@
 //! Questions about one shape and two.
 
 mod corpus_coverage;
+mod directions;
 mod extremes;
 mod hull;
 mod impact;
 mod impact_laws;
 mod impact_turning;
 mod mass;
+mod nested;
 mod pair_table;
 mod point_by_hand;
 mod point_shapes;
@@ -20,4 +22,6 @@ mod ray_corpus;
 mod ray_kinds;
 mod ray_shapes;
 mod scale;
+mod scale_of_answers;
 mod scaling;
+mod shared_corners;

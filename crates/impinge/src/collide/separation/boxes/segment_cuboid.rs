@@ -8,7 +8,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::{core, nearest_of_segments};
-use crate::collide::separation::{general, wrong_kinds};
+use crate::collide::separation::{general, shared_corner, wrong_kinds};
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, max_component, min};
 use crate::shape::{Kind, SupportMap};
@@ -31,6 +31,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
         SegmentResult::Beyond => None,
         SegmentResult::Found(parting) => {
             let found = segment.restored(&parting).rounded(radius, N::ZERO);
+            let found = shared_corner::settled(pair, found);
             (found.distance <= limit).then_some(found)
         }
         SegmentResult::Unproved => general::of_flat_cores(pair, limit),

@@ -28,7 +28,7 @@ mod vertices;
 use self::face::ReferenceFace;
 pub(super) use self::polyhedral::{LocalFeatures, Polyhedral, THIN};
 use self::vertices::Vertices;
-use super::general;
+use super::{general, shared_corner};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units};
 use crate::math::lanes::with_lanes;
@@ -50,7 +50,9 @@ pub(super) const PLANE_BLOCKS: usize = 8;
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     match result(Level::new(), pair, limit) {
         SatResult::Beyond => None,
-        SatResult::Found(found) => Some(found).filter(|found| found.distance <= limit),
+        SatResult::Found(found) => {
+            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
+        }
         SatResult::Unproved => general::of_flat_cores(pair, limit),
     }
 }

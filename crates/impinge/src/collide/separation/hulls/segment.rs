@@ -6,8 +6,8 @@
 //! and one that it does not, which with the segment are the faces of the Minkowski difference; where they are
 //! apart the nearest of the edges of faces that some point of the segment lies above.
 
-use super::super::general;
 use super::super::segments::nearest::core;
+use super::super::{general, shared_corner};
 use super::edges::{
     CandidateEdges, EdgeBlock, ReferenceEdge, nearest_points, normal_between, proved,
     squared_distances,
@@ -34,7 +34,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     match result(Level::new(), pair, limit + radius) {
         SatResult::Beyond => None,
         SatResult::Found(found) => {
-            Some(found.rounded(radius, N::ZERO)).filter(|found| found.distance <= limit)
+            let found = shared_corner::settled(pair, found.rounded(radius, N::ZERO));
+            Some(found).filter(|found| found.distance <= limit)
         }
         SatResult::Unproved => general::of_flat_cores(pair, limit),
     }

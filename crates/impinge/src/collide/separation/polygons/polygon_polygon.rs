@@ -17,6 +17,7 @@ use crate::collide::Pair;
 use crate::collide::separation::boxes::rectangle_axes::Rectangles;
 use crate::collide::separation::general;
 use crate::collide::separation::segments::segment_lanes;
+use crate::collide::separation::shared_corner;
 use crate::convex::Separation;
 use crate::math::lanes::{load, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
@@ -62,7 +63,9 @@ pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
 ) -> Option<Separation<N, 2>> {
     match between(Level::new(), pair, limit) {
         OutlineResult::Beyond => None,
-        OutlineResult::Found(found) => Some(found).filter(|found| found.distance <= limit),
+        OutlineResult::Found(found) => {
+            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
+        }
         OutlineResult::Undecided => general::separation(pair, limit),
     }
 }

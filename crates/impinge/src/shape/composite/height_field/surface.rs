@@ -194,11 +194,11 @@ impl<N: Real> HeightField<N, 3> {
             return answer;
         }
         let [start, end] = [own.points[side % 3], own.points[(side + 1) % 3]];
-        let mut seam = Seam::of_faces(own.front, normal);
+        let mut seam = Seam::of_faces(own.front, normal).along(&(end - start));
         for face in [Some(own), other.as_ref()].into_iter().flatten() {
             let inward = face.beyond(ends).and_then(|tip| inward_of(&[start, end, tip]));
             if let Some(inward) = inward {
-                seam.add_face(inward.dot(normal), &face.front);
+                seam.add_face(|way| inward.dot(way), &face.front);
             }
         }
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
@@ -223,7 +223,7 @@ impl<N: Real> HeightField<N, 3> {
         }
         let mut seam = Seam::of_faces(own.front, normal);
         for (points, at) in star {
-            seam.add_face(rise_from(points, *at, normal), &normal_of(points));
+            seam.add_face(|way| rise_from(points, *at, way), &normal_of(points));
         }
         seam.admits(self.is_one_sided)
     }
@@ -242,7 +242,8 @@ impl<N: Real> HeightField<N, 3> {
 /// The corners of the triangles around a point, and which of them it is.
 type Star<N> = SmallVec<[([Point<N, 3>; 3], usize); 8]>;
 
-/// How much the steeper of the two sides of a triangle that leave a corner rises along a unit vector.
+/// How much the steeper of the two sides of a triangle that leave a corner rises along a vector, at most of
+/// length 1.
 fn rise_from<N: Real>(points: &[Point<N, 3>; 3], at: usize, normal: &Vector<N, 3>) -> N {
     let others = (0..3).filter(|other| *other != at).map(|other| points[other]);
     let rises = others.map(|other| unit_or(&(other - points[at]), -normal).dot(normal));

@@ -3,10 +3,12 @@
 //! Triangles without area lie in meshes as fillers: where a corner touches the middle of a longer
 //! side, a thin triangle joins the three. Seams are looked at through them, as if they were not there.
 
+use core::cell::OnceCell;
+
 use smallvec::SmallVec;
 
 use super::TriMesh;
-use crate::math::{Point, Real, Vector, filled, max, max_component, unit, unit_or};
+use crate::math::{Mapped, Point, Real, Vector, filled, max, max_component, min, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 
 /// So many sides of triangles without area are crossed in search of what lies beyond.
@@ -34,30 +36,74 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     /// Calls `visit` with each other triangle with an area at a side, and the direction from the
-    /// side into it; through triangles without area. All sides of one without area are one side.
+    /// side into it; through triangles without area, whose sides lie along each other.
     pub(super) fn each_beyond(
         &self,
         triangle: u32,
         side: usize,
         mut visit: impl FnMut(u32, Vector<N, D>),
     ) {
-        let is_thin = self.inward(triangle, side).is_none();
-        let own = (0..3).filter(|&other| is_thin || other == side);
-        let mut crossed: SmallVec<[_; 4]> = own.map(|side| (triangle, side)).collect();
+        self.each_along(triangle, side, |other, inward, _| visit(other, inward));
+    }
+
+    /// [`Self::each_beyond`] with the stretch of the side along which each of the triangles lies: from where to
+    /// where, measured from the beginning of the side; `None` of all of it.
+    fn each_along(
+        &self,
+        triangle: u32,
+        side: usize,
+        mut visit: impl FnMut(u32, Vector<N, D>, Option<[N; 2]>),
+    ) {
+        let mut crossed: SmallVec<[_; 4]> = SmallVec::new();
+        crossed.push((triangle, side, None));
+        let line = OnceCell::new();
+        let stretch = |other: u32, exit: usize| {
+            let line = line.get_or_init(|| SideLine::of(&self.corners(triangle), side));
+            Some(line.span(&self.ends_of(other, exit))).filter(|span| line.overlaps(span))
+        };
+        if self.inward(triangle, side).is_none() {
+            for other in [1, 2].map(|turn| (side + turn) % 3) {
+                let span = stretch(triangle, other);
+                crossed.extend(span.map(|span| (triangle, other, Some(span))));
+            }
+        }
         let mut at = 0;
-        while let Some(&(from, side)) = crossed.get(at) {
+        while let Some(&(from, side, span)) = crossed.get(at) {
             at += 1;
             self.each_across(from, side, |other, entered| match self.inward(other, entered) {
-                Some(inward) if other != triangle => visit(other, inward),
+                Some(inward) if other != triangle => visit(other, inward, span),
                 Some(_) => (),
                 None => {
-                    let exits = [1, 2].map(|turn| (other, (entered + turn) % 3));
-                    let is_new = |exit: &(u32, usize)| !crossed_before(&crossed, exit);
-                    let new: SmallVec<[_; 2]> = exits.into_iter().filter(is_new).collect();
-                    crossed.extend(new);
+                    for exit in [1, 2].map(|turn| (entered + turn) % 3) {
+                        let is_new = !crossed_before(&crossed, other, exit);
+                        let span = stretch(other, exit).filter(|_| is_new);
+                        crossed.extend(span.map(|span| (other, exit, Some(span))));
+                    }
                 }
             });
         }
+    }
+
+    /// A triangle without area reaches at a side to where no triangle with an area is.
+    pub(super) fn sticks_out(&self, triangle: u32, side: usize) -> bool {
+        if self.inward(triangle, side).is_some() {
+            return false;
+        }
+        let line = SideLine::of(&self.corners(triangle), side);
+        let mut spans: SmallVec<[[N; 2]; 4]> = SmallVec::new();
+        self.each_along(triangle, side, |_, _, span| {
+            spans.push(span.unwrap_or([N::ZERO, line.length]));
+        });
+        let mut covered = N::ZERO;
+        while covered < line.length - line.room {
+            let reaching = spans.iter().filter(|span| span[0] <= covered + line.room);
+            let next = reaching.fold(covered, |next, span| max(next, span[1]));
+            if next <= covered {
+                return true;
+            }
+            covered = next;
+        }
+        false
     }
 
     /// Calls `visit` with each triangle on whose side a joint lies though it is none of its
@@ -74,7 +120,15 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
             let leaving = self.leaving(triangle, joint);
             let is_middle = leaving.len() == 2 && leaving[0].dot(&leaving[1]) < N::ZERO;
             if is_middle {
-                self.each_beyond(triangle, opposite, &mut visit);
+                let corners = self.corners(triangle);
+                let line = SideLine::of(&corners, opposite);
+                let [place, _] = line.span(&[corners[at], corners[at]]);
+                let is_within =
+                    |[from, to]: [N; 2]| from + line.room < place && place < to - line.room;
+                self.each_along(triangle, opposite, |other, inward, span| {
+                    let found = Some(inward).filter(|_| span.is_none_or(is_within));
+                    found.into_iter().for_each(|inward| visit(other, inward));
+                });
             }
         }
     }
@@ -94,6 +148,12 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// The first corner of a triangle that is at a joint.
     pub(super) fn corner_at(&self, triangle: u32, joint: u32) -> usize {
         (0..3).find(|&at| self.joint_at(triangle, at) == joint).unwrap_or(0)
+    }
+
+    /// The ends of a side.
+    fn ends_of(&self, triangle: u32, side: usize) -> [Point<N, D>; 2] {
+        let corners = self.corners(triangle);
+        [corners[side], corners[(side + 1) % 3]]
     }
 
     /// Unit, in the triangle's plane, from a side towards the opposite corner; `None` without area.
@@ -136,9 +196,41 @@ fn is_tall<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> bool {
         && area > N::MIN_POSITIVE / N::EPSILON
 }
 
+/// The line through a side, on which other sides of triangles without area are measured.
+struct SideLine<N: Real, const D: usize> {
+    from: Point<N, D>,
+    /// Unit; zero if the side has no length.
+    along: Vector<N, D>,
+    length: N,
+    /// Lengths up to this are rounding errors.
+    room: N,
+}
+
+impl<N: Real, const D: usize> SideLine<N, D> {
+    fn of(corners: &[Point<N, D>; 3], side: usize) -> Self {
+        let from = corners[side];
+        let way = corners[(side + 1) % 3] - from;
+        let (along, length) = unit(&way).unwrap_or((Vector::<N, D>::zeros(), N::ZERO));
+        Self { from, along, length, room: noise(corners, length) }
+    }
+
+    /// From where to where a segment reaches along the line, from the beginning of the side.
+    fn span(&self, ends: &[Point<N, D>; 2]) -> [N; 2] {
+        let [one, other] = ends.each_ref().mapped(|end| self.along.dot(&(end - self.from)));
+        [min(one, other), max(one, other)]
+    }
+
+    /// A stretch of the line has more in common with the side than a point. Of a side without length every
+    /// stretch counts.
+    fn overlaps(&self, span: &[N; 2]) -> bool {
+        self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.room
+    }
+}
+
 /// Whether a side is in the list, or the list is full.
-fn crossed_before(crossed: &[(u32, usize)], side: &(u32, usize)) -> bool {
-    crossed.len() >= MAX_CROSSED || crossed.contains(side)
+fn crossed_before<S>(crossed: &[(u32, usize, S)], triangle: u32, side: usize) -> bool {
+    let is_same = |crossed: &(u32, usize, S)| (crossed.0, crossed.1) == (triangle, side);
+    crossed.len() >= MAX_CROSSED || crossed.iter().any(is_same)
 }
 
 /// Below this height over its longest side a triangle has no area: the difference of coordinates,

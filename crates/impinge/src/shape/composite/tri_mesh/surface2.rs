@@ -57,7 +57,10 @@ impl<N: Real> TriMesh<N, 2> {
         match self.open_normal(part, side) {
             Some(own) => max_component(&(own - normal)) <= slack(),
             // Without area it is a segment, which has both sides.
-            None => self.inward(part, side).is_none() && self.is_open_along(part, side, normal),
+            None => {
+                self.inward(part, side).is_none()
+                    && (self.is_open_along(part, side, normal) || self.sticks_out(part, side))
+            }
         }
     }
 

@@ -102,7 +102,16 @@ impl<N: Real> TriMesh<N, 3> {
     fn bend_at(&self, part: u32, side: usize) -> Option<Bend<N>> {
         let other = self.topology.single_across(part, side)?;
         let fronts = [part, other].map(|face| self.normals[face as usize]);
-        let find = || BendShape::new([&self.corners(part), &self.corners(other)], &fronts);
+        let find = || {
+            // With fronts on one side, two that run along the side in one direction lie on one side of it:
+            // that is no bend, but perhaps a rim.
+            let ends = self.joint_ends(part, side);
+            let is_opposite = self
+                .side_between(other, ends)
+                .is_some_and(|entered| self.joint_ends(other, entered) != ends);
+            let corners = [&self.corners(part), &self.corners(other)];
+            BendShape::new(corners, &fronts).filter(|_| is_opposite)
+        };
         Some(Bend::of(self.bends.at(part, side, find)?, fronts))
     }
 
@@ -118,20 +127,21 @@ impl<N: Real> TriMesh<N, 3> {
         if let Some(answer) = bend.and_then(|bend| bend.admits(normal, self.is_one_sided)) {
             return answer;
         }
-        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
+        let corners = self.corners(part);
+        let edge = corners[(side + 1) % 3] - corners[side];
+        let mut seam = Seam::of_faces(self.normals[part as usize], normal).along(&edge);
         let mut add = |triangle: u32, inward: Vector<N, 3>| {
-            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
+            seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
         };
         if let Some(inward) = self.inward(part, side) {
             add(part, inward);
         }
         self.each_beyond(part, side, add);
-        let corners = self.corners(part);
-        let edge = corners[(side + 1) % 3] - corners[side];
-        is_across(&edge, normal) && seam.admits(self.is_one_sided)
+        is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.sticks_out(part, side))
     }
 
-    /// How much the steeper of the two sides of a triangle that leave a joint rises along a unit vector.
+    /// How much the steeper of the two sides of a triangle that leave a joint rises along a vector, at most of
+    /// length 1.
     fn rise_from(&self, triangle: u32, joint: u32, normal: &Vector<N, 3>) -> N {
         let (corners, at) = (self.corners(triangle), self.corner_at(triangle, joint));
         let mut highest = -N::ONE;
@@ -181,11 +191,11 @@ impl<N: Real> TriMesh<N, 3> {
     fn corner_admits(&self, part: u32, joint: u32, normal: &Vector<N, 3>) -> bool {
         let mut seam = Seam::of_faces(self.normals[part as usize], normal);
         for &triangle in self.topology.joints.parts(joint) {
-            let rise = self.rise_from(triangle, joint, normal);
-            seam.add_face(rise, &self.normals[triangle as usize]);
+            let front = &self.normals[triangle as usize];
+            seam.add_face(|way| self.rise_from(triangle, joint, way), front);
         }
         self.each_beyond_joint(joint, |triangle, inward| {
-            seam.add_face(inward.dot(normal), &self.normals[triangle as usize]);
+            seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
         });
         seam.admits(self.is_one_sided)
     }
