@@ -155,6 +155,7 @@ impl<const D: usize> Tree<D> {
     pub(crate) fn spare(&mut self) {
         debug_assert_eq!(self.changed, 0, "a settled tree");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
+        (self.loads, self.dirty, self.touched) = (Vec::new(), Vec::new(), Vec::new());
         self.give_back();
     }
 
