@@ -7,9 +7,9 @@ use crate::scene::Loaded;
 use crate::space::{Stage, Task, run_in};
 use crate::summary::touches;
 
-/// What was recorded of a scene.
+/// A recorded scene.
 pub(crate) struct Recorded {
-    /// Of the recording, unpacked.
+    /// How many bytes the recording has, unpacked.
     pub(crate) bytes: usize,
     pub(crate) objects: usize,
     /// After how many steps something touched.

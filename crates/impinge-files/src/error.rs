@@ -40,7 +40,7 @@ pub struct FileError {
     pub column: Option<usize>,
     /// The path in the document, such as `objects[3].shape.ball.radius`; empty for the whole file.
     pub path: String,
-    /// What stands there, in one line and shortened.
+    /// The text that stands there, in one line and shortened.
     pub value: Option<String>,
     /// What is wrong; boxed, so that results stay small.
     pub problem: Box<Problem>,

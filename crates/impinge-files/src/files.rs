@@ -64,7 +64,7 @@ impl Files {
 
     /// The path without symbolic links, if it lies in one of the folders.
     ///
-    /// What is outside is refused before the disk is asked, so that errors do not tell what is there.
+    /// A path that leads outside is refused before the disk is asked, so that errors do not reveal which files exist.
     pub(crate) fn locate(&self, path: &Path) -> Result<PathBuf, Problem> {
         if !self.holds(path) {
             return Err(self.outside(path));

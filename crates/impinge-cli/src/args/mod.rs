@@ -106,7 +106,7 @@ pub(crate) struct Reading {
     pub(crate) limits: LimitArgs,
 }
 
-/// What a scene may take. Small files can ask for much memory.
+/// Limits of the memory that a scene takes: small files can ask for much.
 #[derive(Args, Clone, Copy, Debug)]
 pub(crate) struct LimitArgs {
     /// Read at most so many bytes of files
@@ -130,7 +130,7 @@ pub(crate) struct LimitArgs {
 }
 
 impl LimitArgs {
-    /// Those of reading.
+    /// The limits that readers of files keep.
     pub(crate) const fn of_files(&self) -> Limits {
         Limits {
             bytes: self.max_bytes,

@@ -37,7 +37,7 @@ struct RecordReport {
     subject: Subject,
     output: String,
     steps: u32,
-    /// Of the recording, unpacked.
+    /// How many bytes the recording has, unpacked.
     bytes: usize,
     objects: usize,
     /// After how many steps something touched.

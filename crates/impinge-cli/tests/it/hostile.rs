@@ -35,7 +35,7 @@ fn pairs_are_counted_and_not_kept() {
     assert_eq!(report["pairs"][2]["second"], "b[100,0,0]", "in their order");
     let all = desk.run("check many.json --all");
     assert_eq!(all.out.lines().count(), 2 * 11_175 + 1);
-    // What keeps pairs has a limit; `check` needs none unless all are to be printed.
+    // Verbs that keep pairs have a limit; `check` needs none unless it prints all of them.
     for verb in [
         "check many.json --all",
         "record many.json -o many.implog --steps 1",

@@ -17,7 +17,7 @@ use crate::text::Quoted;
 /// The bytes of all buffers. Buffers with the same bytes share them.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    /// Those that are not part of the document.
+    /// The bytes of buffers that are not part of the document.
     read: Vec<Vec<u8>>,
     /// By buffer: which of `read`; `None` for the binary chunk of the document.
     places: Vec<Option<usize>>,

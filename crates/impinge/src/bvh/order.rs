@@ -23,10 +23,16 @@ impl<const D: usize> Item<D> {
     /// the order within blocks.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
-        let bits = self.center[axis].to_bits();
-        let ordered = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
-        u64::from(ordered) << 32 | u64::from(self.id)
+        key(self.center[axis], self.id)
     }
+}
+
+/// A number that orders as the coordinates do, and where these are equal as the ids do.
+#[inline]
+pub(super) fn key(coordinate: f32, id: u32) -> u64 {
+    let bits = coordinate.to_bits();
+    let ordered = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
+    u64::from(ordered) << 32 | u64::from(id)
 }
 
 /// How many of `items` go left: the largest power of two of blocks that leaves some for the right.

@@ -85,12 +85,11 @@ impl<const D: usize> Tree<D> {
     /// Bentley and Saxe 1980).
     pub(super) fn sort_new(&mut self) {
         let new = self.end - self.schedule.fresh.min(self.end);
-        if self.is_sparing && (new <= LANES || self.renewal.is_some()) && new * 3 <= self.live {
-            // They wait for others, since objects that come one by one have nothing in common, or for the renewal.
-            return;
-        }
         if new * 3 > self.live {
             self.rebuild();
+        } else if self.is_sparing && (new <= LANES || self.renewal.is_some()) {
+            // They wait for others, since objects that come one by one have nothing in common, or for the renewal.
+            return;
         } else if new > LANES {
             let most = if self.is_sparing { SMALL } else { usize::MAX };
             let start = self.schedule.next_run(self.end, most);
@@ -172,9 +171,7 @@ impl<const D: usize> Tree<D> {
         } else if self.schedule.snapshot.is_empty() {
             self.start_if_worn();
         } else if self.schedule.late.len() * LATE > self.live {
-            self.rebuild();
-            self.refit_layers(&[]);
-            self.settle();
+            self.rebuild_at_once();
         } else if self.schedule.parts.is_empty() {
             self.apply_snapshot();
         } else {
@@ -190,14 +187,20 @@ impl<const D: usize> Tree<D> {
             } else {
                 self.renewal = Some(renewal);
             }
-        } else if !self.wants_order() {
-        } else if self.live <= SMALL {
-            self.rebuild();
-            self.refit_layers(&[]);
-            self.settle();
-        } else {
-            self.renewal = Some(Box::new(Renewal::begin(self)));
+        } else if self.wants_order() {
+            if self.live <= SMALL {
+                self.rebuild_at_once();
+            } else {
+                self.renewal = Some(Box::new(Renewal::begin(self)));
+            }
         }
+    }
+
+    /// Sorts everything, and leaves the tree settled as it was.
+    fn rebuild_at_once(&mut self) {
+        self.rebuild();
+        self.refit_layers(&[]);
+        self.settle();
     }
 
     fn start_if_worn(&mut self) {

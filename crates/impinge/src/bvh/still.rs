@@ -5,6 +5,7 @@
 //! between whole blocks of the layer at hand: all blocks but the last stay full, and child and parent
 //! arithmetic. Above a few hundred boxes a sample decides.
 
+use super::order::key;
 use super::tree::small;
 use super::{Bounds, LANES, Lanes, NONE, Tree};
 use crate::math::filled;
@@ -33,9 +34,7 @@ impl<const D: usize> StillItem<D> {
     /// Orders by the middle, ties by id: a total order, so that the result is unique.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
-        let bits = self.middle(axis).to_bits();
-        let ordered = if bits >> 31 == 0 { bits | 1 << 31 } else { !bits };
-        u64::from(ordered) << 32 | u64::from(self.id)
+        key(self.middle(axis), self.id)
     }
 }
 

@@ -3,10 +3,11 @@
 //! A kernel is one source over [`Simd`] and [`Wide`]. All operations are those of IEEE 754, so that each lane has the
 //! bits that a scalar would have. There are two sorts:
 //!
-//! * in some a lane is a pair, a part or a configuration, which never looks at its neighbours. [`in_lanes!`] runs them
-//!   with the vectors of the target, or one lane after the other where there are none: [`Level::runs`];
-//! * in the others the lanes are features of one solid, of which the best is chosen. [`with_lanes!`] runs them with
-//!   all lanes on every target, on [`Arrays`](super::arrays::Arrays) where there are no vectors.
+//! * in some a lane is a pair or a part, which never looks at its neighbours. [`in_lanes!`] runs them with the vectors
+//!   of the target, or one lane after the other where there are none: [`Level::runs`];
+//! * in the others lanes meet: they are features of one solid, of which the best is chosen, or a step reads the rows
+//!   that the one before wrote for all (chains, balls among triangles, checkers). [`with_lanes!`] runs them with all
+//!   lanes on every target, on [`Arrays`](super::arrays::Arrays) where there are no vectors.
 //!
 //! [`in_lanes!`]: super::lanes::in_lanes
 //! [`with_lanes!`]: super::lanes::with_lanes
