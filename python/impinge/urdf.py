@@ -70,6 +70,8 @@ class Robot:
             for body in _bodies(model, numbers[link.name], f"{link.name}/{number}", collision, meshes)
         ]
         self.pairs = self._separate_pairs()
+        # The checker of pairs that were asked about, with these: it keeps hulls of its meshes.
+        self._kept: tuple[NDArray[np.int64], Checker] | None = None
 
     @classmethod
     def load(cls, path: str | Path, meshes: Literal["hull", "surface"] = "hull") -> Robot:
@@ -80,11 +82,11 @@ class Robot:
 
     def frames(self, configurations: ArrayLike) -> Frames:
         """The poses of all links: (n, links, 4, 4) of configurations (n, joints), (links, 4, 4) of one."""
-        return self.checker([]).frames(self._checked(configurations))
+        return self._own().frames(self._checked(configurations))
 
     def poses(self, configurations: ArrayLike) -> Frames:
         """The poses of all bodies: (n, bodies, 4, 4), or (bodies, 4, 4)."""
-        return self.checker([]).poses(self._checked(configurations))
+        return self._own().poses(self._checked(configurations))
 
     def checker(self, pairs: ArrayLike | None = None) -> Checker:
         """A checker of the robot with these pairs of bodies that must not touch, or with `pairs`; without obstacles."""
@@ -109,11 +111,11 @@ class Robot:
 
     def self_collides(self, configurations: ArrayLike) -> NDArray[np.bool_]:
         """Whether two bodies touch, for each configuration (n, joints)."""
-        return ~self.checker().is_free(np.atleast_2d(self._checked(configurations)))
+        return ~self._own().is_free(np.atleast_2d(self._checked(configurations)))
 
     def self_distance(self, configurations: ArrayLike) -> NearestBodies:
         """The nearest two bodies for each configuration (n, joints): zero if they touch; infinite and -1 without pairs."""
-        return self._nearest(self.checker(), configurations, 0)
+        return self._nearest(self._own(), configurations, 0)
 
     def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NDArray[np.bool_]:
         """Whether a body touches one of the shapes that stand at these poses (m, 4, 4)."""
@@ -122,6 +124,13 @@ class Robot:
     def distance(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NearestBodies:
         """The body and the shape that are nearest for each configuration: zero if they touch."""
         return self._nearest(self._among(shapes, obstacles), configurations, len(self.bodies))
+
+    def _own(self) -> Checker:
+        """The checker of the pairs, without obstacles, as long as these are the same."""
+        kept = self._kept
+        if kept is None or not np.array_equal(kept[0], self.pairs):
+            kept = self._kept = np.array(self.pairs), self.checker()
+        return kept[1]
 
     def _among(self, shapes: Sequence[Shape], obstacles: Any) -> Checker:
         """A checker with obstacles, and without pairs of bodies."""

@@ -70,6 +70,27 @@ def test_answers_are_those_of_single_calls(dim, dtype):
     np.testing.assert_array_equal(checker.frames(configurations[3])[1], checker.frames(configurations)[3, 1])
 
 
+def test_meshes_answer_as_single_calls_however_often_they_are_asked():
+    # The corners of a box as a surface that is open above, so that its hull is nearer than it.
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4]]
+    cup, ball = impinge.TriMesh(corners, faces), impinge.Ball(0.2)
+    slides = [Frame(None, None, "prismatic", axis, column) for column, axis in enumerate(np.eye(3))]
+    frames = [slides[0], slides[1]._replace(parent=0), slides[2]._replace(parent=1), Frame()]
+    checker = Checker(frames, 3, [cup, cup, ball], [3, 2, 2], None, [(0, 1), (0, 2)])
+    configurations = np.random.default_rng(3).uniform(-1.2, 1.2, (1000, 3))
+    poses = checker.poses(configurations)
+    distances = np.array([impinge.distance(cup, poses[:, 0], other, poses[:, at]) for at, other in ((1, cup), (2, ball))])
+    hull = impinge.distance(impinge.ConvexHull(corners), poses[:, 0], ball, poses[:, 2])
+    assert ((hull == 0) & (distances[1] > 0)).any(), "in the cup"
+    touching = (distances == 0).any(axis=0)
+    assert 100 < touching.sum() < 900
+    for _ in range(2):
+        np.testing.assert_array_equal(checker.is_free(configurations), ~touching)
+        np.testing.assert_array_equal(checker.nearest(configurations).distance, distances.min(axis=0))
+    np.testing.assert_array_equal([checker.is_free(row)[0] for row in configurations[:100]], ~touching[:100])
+
+
 def test_without_columns_and_bodies():
     checker = Checker([], 0)
     assert checker.is_free(np.zeros((3, 0))).tolist() == [True] * 3

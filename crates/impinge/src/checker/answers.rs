@@ -4,8 +4,9 @@ use crate::math::order::sort_few;
 use core::ops::Range;
 
 use super::chain::{LANES, LaneRow};
-use super::exact::Exact;
+use super::exact::{Exact, Glance};
 use super::filter::{CollisionSearch, NearPair, Other, ScanScratch, SearchMode, scan_at};
+use super::odds::PairOdds;
 use super::{Checker, NO_PAIR, NearestColumns};
 use crate::batch::{BatchError, Control, Progress};
 use crate::math::simd::Level;
@@ -22,6 +23,7 @@ struct EightByEight<'a, N: Space<D>, const D: usize> {
     exact: Exact<'a, N, D>,
     scratch: ScanScratch<D>,
     search: CollisionSearch,
+    odds: PairOdds,
     level: Level,
 }
 
@@ -33,6 +35,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
             exact: Exact::new(checker, configurations),
             scratch: ScanScratch::new(&checker.robot),
             search: CollisionSearch::new(mode),
+            odds: PairOdds::default(),
             level: Level::new(),
         }
     }
@@ -142,11 +145,25 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
     /// The lanes that are not free.
     fn hits(&mut self, clearance: N) -> u8 {
         let mut hits = self.search.hits;
-        for &NearPair { lane, pair, .. } in &self.search.near {
-            if hits >> lane & 1 == 0 {
-                let found = self.exact.distance(pair, lane, clearance);
-                hits |= u8::from(found.is_some()) << lane;
+        let mut put_off = Vec::new();
+        for index in 0..self.search.near.len() {
+            let NearPair { lane, pair, .. } = self.search.near[index];
+            if hits >> lane & 1 == 1 {
+                continue;
             }
+            let is_hit = match self.exact.glance(pair, lane, clearance) {
+                Glance::Known(distance) => distance.is_some(),
+                Glance::Unknown if self.odds.are_poor(pair) => {
+                    put_off.push((lane, pair));
+                    false
+                }
+                Glance::Unknown => self.search_parts(pair, lane, clearance),
+            };
+            hits |= u8::from(is_hit) << lane;
+        }
+        for (lane, pair) in put_off {
+            let is_hit = hits >> lane & 1 == 0 && self.search_parts(pair, lane, clearance);
+            hits |= u8::from(is_hit) << lane;
         }
         let mut blind = self.search.blind;
         while blind != 0 {
@@ -156,6 +173,13 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
             hits |= u8::from(!is_free) << lane;
         }
         hits
+    }
+
+    /// Whether parts of a pair are not farther apart than the clearance.
+    fn search_parts(&mut self, pair: (u32, Other), lane: usize, clearance: N) -> bool {
+        let is_hit = self.exact.searched(pair, lane, clearance).is_some();
+        self.odds.count(pair, is_hit);
+        is_hit
     }
 
     /// The first pair of a lane that is not farther apart than the clearance.
@@ -245,5 +269,68 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
             }
         }
         best
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::checker::{Body, Frame, FrameTree, Joint};
+    use crate::math::{Mapped, Point, Pose, Unit, Vector};
+    use crate::shape::{ShapeHandle, TriMesh};
+
+    /// The surface of a tetrahedron with its right angles at the origin.
+    fn surface(size: f64) -> ShapeHandle<f64, 3> {
+        let corners = [[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]];
+        let corners = corners.mapped(Point::<f64, 3>::from).to_vec();
+        let faces = vec![[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]];
+        ShapeHandle::new(TriMesh::new(corners, faces))
+    }
+
+    /// Surfaces of some sizes and places, of which the last slides along the diagonal.
+    fn slider(surfaces: &[(f64, [f64; 3])], pairs: &[[u32; 2]]) -> Checker<f64, 3> {
+        let diagonal = Unit::new_normalize(Vector::<f64, 3>::repeat(1.0));
+        let frame = |joint| Frame { parent: None, origin: Pose::identity(), joint };
+        let frames = [Joint::fixed(), Joint::prismatic(diagonal, 0)].mapped(frame);
+        let tree = FrameTree::try_new(&frames, 1).expect("two frames");
+        let bodies = surfaces.iter().enumerate().map(|(index, &(size, place))| Body {
+            frame: usize::from(index + 1 == surfaces.len()),
+            shape: surface(size),
+            pose: Pose::from_translation(place.into()),
+        });
+        Checker::try_new(tree, bodies.collect(), pairs).expect("bodies")
+    }
+
+    /// The configurations that are not free, by bits, and how often parts of each pair of bodies were searched.
+    fn searches(checker: &Checker<f64, 3>, rows: &[f64]) -> (u64, Vec<u32>) {
+        let mut sweep = EightByEight::new(checker, rows, SearchMode::Any);
+        let mut all = 0;
+        sweep.each(0..rows.len(), 0.0, |sweep, eight| {
+            all |= u64::from(sweep.hits(0.0)) << eight.start;
+        });
+        let pairs = checker.pairs().iter().map(|&[one, other]| (one, Other::Body(other)));
+        (all, pairs.map(|pair| sweep.odds.searches(pair)).collect())
+    }
+
+    #[test]
+    fn parts_are_searched_where_hulls_touch() {
+        let checker = slider(&[(1.0, [0.0; 3]), (1.0, [0.0; 3])], &[[0, 1]]);
+        // They touch up to the height of the corner above the opposite face, 0.577; balls around them up to 1.7.
+        let rows = [0.6, 0.25, 0.75, 0.5, 1.0, 0.57, 1.25, 0.58, 1.5, 1.65];
+        assert_eq!(searches(&checker, &rows).0, 0b10_1010);
+        assert_eq!(searches(&checker, &rows), (0b10_1010, vec![6]), "of the first six all");
+        assert_eq!(searches(&checker, &rows), (0b10_1010, vec![3]), "the hulls are there");
+    }
+
+    #[test]
+    fn pairs_that_seldom_touch_are_asked_last() {
+        // One within another, whose hulls overlap; and two that touch in all rows but the last.
+        let surfaces = [(8.0, [0.0; 3]), (0.5, [1.0; 3]), (1.0, [20.0; 3]), (1.0, [20.0; 3])];
+        let checker = slider(&surfaces, &[[0, 1], [2, 3]]);
+        let mut rows = [0.3; 17];
+        rows[16] = 1.0;
+        let found = [(); 2].map(|()| searches(&checker, &rows));
+        assert_eq!(found[0].0, 0xffff);
+        assert_eq!(found[1], (0xffff, vec![2, 16]), "at first, and where nothing else touches");
     }
 }

@@ -56,23 +56,59 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         frames.iter().all(|frame| frame.at(rows, lane).is_finite())
     }
 
+    /// What is known of a pair in a configuration without a search of parts: its distance up to a limit, or nothing.
+    pub(super) fn glance(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Glance<N> {
+        let [(one, number1), (other, number2)] = self.solids(pair, lane);
+        let is_convex = |solid: &Placed<'_, N, D>| solid.shape.as_composite().is_none();
+        if is_convex(&one) && is_convex(&other) {
+            return Glance::Known(distance_within(&one, &other, limit));
+        }
+        let hulls = &self.checker.hulls;
+        let is_beyond = hulls.are_beyond([(&one, number1), (&other, number2)], limit);
+        if is_beyond { Glance::Known(None) } else { Glance::Unknown }
+    }
+
     /// The distance of a pair in a configuration; `None` beyond a limit.
     pub(super) fn distance(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
+        match self.glance(pair, lane, limit) {
+            Glance::Known(distance) => distance,
+            Glance::Unknown => self.searched(pair, lane, limit),
+        }
+    }
+
+    /// The same by a search of parts, if it has any.
+    pub(super) fn searched(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
+        let [(one, _), (other, _)] = self.solids(pair, lane);
+        distance_within(&one, &other, limit)
+    }
+
+    /// The solids of a pair, with their numbers if they are bodies.
+    fn solids(
+        &mut self,
+        (first, other): (u32, Other),
+        lane: usize,
+    ) -> [(Placed<'a, N, D>, Option<u32>); 2] {
         let checker = self.checker;
         let rows = self.rows();
         let body = |number: u32| {
-            let number = number as usize;
-            let pose = checker.places[number].at(rows, lane);
-            Placed::of_pose(&pose, checker.bodies[number].shape.geometry())
+            let index = number as usize;
+            let pose = checker.places[index].at(rows, lane);
+            let placed = Placed::of_pose(&pose, checker.bodies[index].shape.geometry());
+            (placed, Some(number))
         };
-        let one = body(pair.0);
-        let other = match pair.1 {
+        let other = match other {
             Other::Body(other) => body(other),
             Other::Obstacle(other) => {
                 let obstacle = &checker.obstacles[other as usize];
-                Placed::of_pose(&obstacle.pose, obstacle.shape.geometry())
+                (Placed::of_pose(&obstacle.pose, obstacle.shape.geometry()), None)
             }
         };
-        distance_within(&one, &other, limit)
+        [body(first), other]
     }
+}
+
+/// What is known of a pair at a glance.
+pub(super) enum Glance<N> {
+    Known(Option<N>),
+    Unknown,
 }

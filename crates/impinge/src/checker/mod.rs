@@ -17,7 +17,9 @@
 //! poses of [`Checker::place_bodies`]; so all answers are theirs, to the bit, on any number of threads.
 //!
 //! Balls are decided in lanes against balls, boxes, capsules, segments, cylinders and half-spaces; other bodies are held
-//! by balls and other obstacles by their boxes, and what these do not tell apart takes a single call for each pair.
+//! by balls and other obstacles by their boxes, and what these do not tell apart takes a single call for each pair. Bodies
+//! of triangles or segments are held by their convex hulls besides: parts are searched only where hulls touch, and where
+//! any pair will do, those pairs last of which most searches found nothing.
 //!
 //! The idea of lanes across configurations is that of W. Thomason, Z. Kingston and L. E. Kavraki, "Motions in
 //! Microseconds via Vectorized Sampling-Based Planning" (2024).
@@ -32,7 +34,9 @@ mod error;
 mod exact;
 mod filter;
 mod frames;
+mod hulls;
 mod joint;
+mod odds;
 mod rows;
 #[cfg(test)]
 mod tests;

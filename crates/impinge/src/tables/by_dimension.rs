@@ -23,7 +23,9 @@ use crate::narrow_phase::{DueContacts, update_lanes2, update_lanes3};
 use crate::query::mass::MassByDimension;
 use crate::query::point::{SurfacePoint, point2, point3};
 use crate::query::ray::{Span, ray2, ray3};
-use crate::shape::{FeatureId, Kind, MeshByDimension, Triangle};
+use crate::shape::{
+    ConvexHull, ConvexPolygon, FeatureId, Kind, MeshByDimension, ShapeHandle, Triangle,
+};
 
 /// The algorithms that differ by dimension; [`Here`] has them, so that scalars keep their own names.
 #[expect(unnameable_types, private_interfaces, reason = "for this crate alone")]
@@ -114,6 +116,9 @@ pub trait ByDimension<N: Real, const D: usize>:
 
     /// The point of the boundary of a solid that is nearest to a point.
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D>;
+
+    /// The convex hull of points; `None` if they have none with a volume.
+    fn hull(points: &[Point<N, D>]) -> Option<ShapeHandle<N, D>>;
 
     /// Adds the drawing of a convex solid to a mesh.
     #[cfg(feature = "debug_render")]
@@ -223,6 +228,10 @@ impl<N: Real> ByDimension<N, 2> for Here {
         point2::surface_point(solid, point)
     }
 
+    fn hull(points: &[Point<N, 2>]) -> Option<ShapeHandle<N, 2>> {
+        ConvexPolygon::try_from_points(points).ok().map(ShapeHandle::new)
+    }
+
     #[cfg(feature = "debug_render")]
     fn sketch(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>) {
         sketch2(solid, sketch);
@@ -330,6 +339,10 @@ impl<N: Real> ByDimension<N, 3> for Here {
 
     fn surface_point(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> SurfacePoint<N, 3> {
         point3::surface_point(solid, point)
+    }
+
+    fn hull(points: &[Point<N, 3>]) -> Option<ShapeHandle<N, 3>> {
+        ConvexHull::try_from_points(points).ok().map(ShapeHandle::new)
     }
 
     #[cfg(feature = "debug_render")]

@@ -28,6 +28,26 @@ pub(in crate::checker) struct NearPair {
     pub(in crate::checker) lower: f32,
 }
 
+impl NearPair {
+    /// Lanes and pairs in their order.
+    #[inline]
+    fn key(&self) -> u128 {
+        let (body, other) = self.pair;
+        let (is_obstacle, number) = match other {
+            Other::Body(number) => (0, number),
+            Other::Obstacle(number) => (1, number),
+        };
+        (self.lane as u128) << 96 | u128::from(body) << 64 | is_obstacle << 32 | u128::from(number)
+    }
+
+    /// Takes in what other balls say of the same pair.
+    #[inline]
+    fn merge(&mut self, other: &Self) {
+        self.is_certain |= other.is_certain;
+        self.lower = min(self.lower, other.lower);
+    }
+}
+
 /// The second of a pair, whose first is a body of a lower number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::checker) enum Other {
@@ -185,7 +205,12 @@ impl CollisionSearch {
             let ball = balls.trailing_zeros() as usize;
             balls &= balls - 1;
             let (is_certain, lower) = (certain >> ball & 1 == 1, lower[ball]);
-            self.near.push(NearPair { lane, pair: pair_of(ball), is_certain, lower });
+            let found = NearPair { lane, pair: pair_of(ball), is_certain, lower };
+            // The balls of one body mostly follow each other.
+            match self.near.last_mut() {
+                Some(last) if last.key() == found.key() => last.merge(&found),
+                _ => self.near.push(found),
+            }
         }
     }
 
@@ -221,13 +246,12 @@ impl CollisionSearch {
             let outer = self.outer;
             self.near.retain(|near| near.lower <= outer[near.lane]);
         }
-        sort_few(&mut self.near, |one, other| {
-            let order = (one.lane, one.pair).cmp(&(other.lane, other.pair));
-            order.then(one.lower.total_cmp(&other.lower)).is_lt()
-        });
+        sort_few(&mut self.near, |one, other| one.key() < other.key());
         self.near.dedup_by(|later, kept| {
-            let is_same = (later.lane, later.pair) == (kept.lane, kept.pair);
-            kept.is_certain |= is_same && later.is_certain;
+            let is_same = later.key() == kept.key();
+            if is_same {
+                kept.merge(later);
+            }
             is_same
         });
     }
