@@ -3,6 +3,7 @@
 use super::{P3, V3, at, ball, cuboid, skin, solid};
 
 use impinge::batch::{Control, OnePose, PairBatch, PointBatch, Shapes, Side};
+use impinge::checker::{Body, Checker, Frame, FrameTree, Joint, Obstacle};
 use impinge::dim2;
 use impinge::math::{Isometry2, Isometry3, Point, Pose, Vector};
 use impinge::narrow_phase::{
@@ -172,4 +173,23 @@ fn batches_say_the_same() {
     let mut held = [false; 2];
     points.contains(&control, &mut held).expect("not cancelled");
     assert_eq!(held, [true, false]);
+}
+
+#[test]
+fn robots_are_not_free_inside() {
+    let joint = Joint::prismatic(V3::x_axis(), 0);
+    let frames = [Frame { parent: None, origin: Pose::identity(), joint }];
+    let tree = FrameTree::try_new(&frames, 1).expect("one joint");
+    let shape = ShapeHandle::new(Ball::new(0.25));
+    let bodies = vec![Body { frame: 0, shape, pose: Pose::identity() }];
+    let mut checker = Checker::try_new(tree, bodies, &[]).expect("one body");
+    for (is_solid, inside) in [(false, true), (true, false)] {
+        let room = skin(cuboid::<f64>([4.0; 3], [0.0; 3]));
+        let room = ShapeHandle::new(if is_solid { room.solid() } else { room });
+        let obstacle = Obstacle { shape: room, pose: Pose::identity() };
+        checker.try_set_obstacles(vec![obstacle], &[]).expect("one obstacle");
+        let mut free = [true; 3];
+        checker.are_free(&[0.0, 4.0, 9.0], 0.0, &Control::new(), &mut free).expect("three");
+        assert_eq!(free, [inside, false, true]);
+    }
 }
