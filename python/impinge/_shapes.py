@@ -300,6 +300,7 @@ def TriMesh(
     unless it is solid: then what is inside of it is in contact, too, and is pushed out of it. ValueError, in 3D, names the edge
     at which a solid is not closed, or a triangle whose front is inside.
 
+    >>> import impinge
     >>> corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]
     >>> pyramid = TriMesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], solid=True)
     >>> impinge.contact(pyramid, None, Ball(0.25), impinge.Poses([1, 1, 0.5])).depth
