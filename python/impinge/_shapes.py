@@ -53,12 +53,14 @@ def _make(
     poses: Any = None,
     one_sided: bool = False,
     keep_internal_edges: bool = False,
+    solid: bool = False,
 ) -> Shape:
     flat = np.ascontiguousarray(values, dtype=np.float64).ravel()
     if not all(isinstance(child, Shape) for child in children):
         row = next(row for row, child in enumerate(children) if not isinstance(child, Shape))
         raise TypeError(f"shapes[{row}] is {type(children[row]).__name__}, where a Shape is needed")
-    return Shape(name, dim, dtype_name(dtype), flat, points, parts, list(children), poses, one_sided, keep_internal_edges)
+    flags = one_sided, keep_internal_edges, solid
+    return Shape(name, dim, dtype_name(dtype), flat, points, parts, list(children), poses, *flags)
 
 
 def _floats(values: ArrayLike, name: str) -> NDArray[np.float64]:
@@ -284,6 +286,7 @@ def TriMesh(
     triangles: ArrayLike,
     *,
     one_sided: bool = False,
+    solid: bool = False,
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
@@ -293,8 +296,15 @@ def TriMesh(
 
     one_sided: nothing touches it from behind. keep_internal_edges: contacts treat each triangle on its own.
 
-    A point is inside of a closed mesh for `contains`, `signed_distance` and `World.containing`; everything else sees a surface.
+    A point is inside of a closed mesh for `contains`, `signed_distance` and `World.containing`; everything else sees a surface,
+    unless it is solid: then what is inside of it is in contact, too, and is pushed out of it. ValueError, in 3D, names the edge
+    at which a solid is not closed, or a triangle whose front is inside.
 
+    >>> import impinge
+    >>> corners = [[0, 0, 0], [4, 0, 0], [0, 4, 0], [0, 0, 4]]
+    >>> pyramid = TriMesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]], solid=True)
+    >>> impinge.contact(pyramid, None, Ball(0.25), impinge.Poses([1, 1, 0.5])).depth
+    0.75
     >>> mesh = TriMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     >>> mesh, mesh.vertices.shape, mesh.faces.tolist()
     (<impinge.TriMesh 3D float64>, (3, 3), [[0, 1, 2]])
@@ -308,6 +318,7 @@ def TriMesh(
         points=rows,
         parts=parts,
         one_sided=one_sided,
+        solid=solid,
         keep_internal_edges=keep_internal_edges,
     )
 
@@ -317,12 +328,14 @@ def Polyline(
     segments: ArrayLike | None = None,
     *,
     one_sided: bool = False,
+    solid: bool = False,
     keep_internal_edges: bool = False,
     dtype: DType = "float64",
 ) -> Shape:
     """A line of segments: vertices (n, D), and the numbers of the ends (m, 2); without, one vertex after the other.
 
-    In 2D a point is inside of a closed line, as of a closed mesh in 3D.
+    In 2D a point is inside of a closed line, as of a closed mesh in 3D; with solid, which asks for a line that is closed and
+    runs counter-clockwise, so is what else lies in it.
 
     >>> Polyline([[0, 0], [1, 0], [1, 1]])
     <impinge.Polyline 2D float64>
@@ -338,6 +351,7 @@ def Polyline(
         points=rows,
         parts=parts,
         one_sided=one_sided,
+        solid=solid,
         keep_internal_edges=keep_internal_edges,
     )
 

@@ -20,6 +20,9 @@ Matrix = NDArray[np.float64]
 # Under this key a mesh of trimesh keeps its geometry, until its vertices or faces change.
 KEY = "impinge_geometry"
 
+# Under this key it keeps it as a body.
+SOLID_KEY = "impinge_solid_geometry"
+
 # By so much a linear map may differ from a rotation that stands for it.
 ROUNDING = 1e-6
 
@@ -76,14 +79,15 @@ class DistanceData:
 
 
 class Geometry:
-    """A mesh as a shape: the solid of a convex one, the surface of others.
+    """A mesh as a shape: the solid of a convex one; the surface of others, or the body that it bounds.
 
-    Flat meshes are convex and have no volume: they are surfaces.
+    Flat meshes are convex and have no volume: they are surfaces. ValueError of a mesh that bounds no body, if that is wanted.
     """
 
-    def __init__(self, vertices: ArrayLike, faces: ArrayLike, is_convex: bool) -> None:
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, is_convex: bool, is_body: bool = False) -> None:
         self.vertices, self.faces = np.array(vertices, dtype=np.float64), np.array(faces)
         self._surface: Shape | None = None
+        self.is_body = is_body
         self.is_solid = is_convex
         try:
             self.shape = ConvexHull(self.vertices) if is_convex else self.surface
@@ -91,28 +95,28 @@ class Geometry:
             self.is_solid, self.shape = False, self.surface
 
     @classmethod
-    def of(cls, mesh: trimesh.Trimesh) -> Geometry:
+    def of(cls, mesh: trimesh.Trimesh, is_body: bool = False) -> Geometry:
         """Of a mesh, which keeps it: it is made once for each state of the mesh."""
-        cache = getattr(mesh, "_cache", None)
-        found = None if cache is None else cache[KEY]
+        cache, key = getattr(mesh, "_cache", None), SOLID_KEY if is_body else KEY
+        found = None if cache is None else cache[key]
         if isinstance(found, cls):
             return found
-        made = cls(mesh.vertices, mesh.faces, bool(mesh.is_convex))
+        made = cls(mesh.vertices, mesh.faces, bool(mesh.is_convex), is_body)
         if cache is not None:
-            cache[KEY] = made
+            cache[key] = made
         return made
 
     @property
     def surface(self) -> Shape:
         """The triangles, which name faces."""
         if self._surface is None:
-            self._surface = TriMesh(self.vertices, self.faces)
+            self._surface = TriMesh(self.vertices, self.faces, solid=self.is_body and not self.is_solid)
         return self._surface
 
     def stretched(self, stretch: Matrix) -> Geometry:
         """The same mesh after a linear map (3, 3). Triangles of one that mirrors are turned over, so that they face outwards."""
         faces = self.faces if np.linalg.det(stretch) > 0 else self.faces[:, ::-1]
-        return Geometry(self.vertices @ stretch.T, faces, self.is_solid)
+        return Geometry(self.vertices @ stretch.T, faces, self.is_solid, self.is_body)
 
 
 class Placed(NamedTuple):

@@ -3,7 +3,7 @@
     from impinge.trimesh import CollisionManager, scene_to_collision
 
 Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as they are in trimesh: what is inside a surface without
-touching it does not collide. Where meshes overlap, distances are negative: minus the depth, of surfaces that of the triangles
+touching it does not collide. With `solid=True` all meshes are solids, and have to be closed. Where meshes overlap, distances are negative: minus the depth, of surfaces that of the triangles
 that are deepest in each other. Of several pairs that overlap one is given.
 
 A manager keeps what it found: a question costs what changed since the last one, not what there is.
@@ -45,6 +45,8 @@ Yes: TypeAlias = Literal[True]
 class CollisionManager:
     """Meshes by name, each with a transform: who touches whom, and how far apart they are.
 
+    solid: a mesh collides with what lies in it, though no faces touch. ValueError for a mesh that is not closed.
+
     >>> import trimesh
     >>> manager = CollisionManager()
     >>> shape = manager.add_object("box", trimesh.creation.box())
@@ -55,15 +57,17 @@ class CollisionManager:
     2.0
     """
 
-    def __init__(self) -> None:
+    def __init__(self, solid: bool = False) -> None:
         self._engine = Manager()
+        self._solid = solid
         # The index of each name in the engine, which knows where they are; name and mesh of each index.
         self._indices: dict[str, int] = {}
         self._meshes: dict[int, tuple[str, Geometry]] = {}
 
     def add_object(self, name: str, mesh: trimesh.Trimesh, transform: ArrayLike | None = None) -> Shape:
-        """Adds a mesh, or replaces the one of this name. ValueError for a transform that is no rotation and translation."""
-        return self._add(Placed(name, Geometry.of(mesh), matrix_of(transform)))
+        """Adds a mesh, or replaces the one of this name. ValueError for a transform that is no rotation and translation, and,
+        if meshes are to be solid, for one that is not closed or has its faces inside out."""
+        return self._add(Placed(name, self._geometry(mesh, name), matrix_of(transform)))
 
     def remove_object(self, name: str) -> None:
         """Removes a mesh."""
@@ -109,7 +113,7 @@ class CollisionManager:
         return_data: bool = False,
     ) -> Any:
         """Whether a mesh touches one of the manager: `bool`, and if wanted the names and the contacts."""
-        external = Placed(EXTERNAL, Geometry.of(mesh), matrix_of(transform))
+        external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         shape = external.geometry.shape
         if not (return_names or return_data):
             return self._engine.meets_any(shape, external.transform)
@@ -196,7 +200,7 @@ class CollisionManager:
         return_data: bool = False,
     ) -> Any:
         """How far a mesh is from the nearest one of the manager."""
-        external = Placed(EXTERNAL, Geometry.of(mesh), matrix_of(transform))
+        external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         found = self._engine.nearest_to(external.geometry.shape, external.transform)
         if found is None:
             return _answer(float("inf"), "", None, return_name, return_data)
@@ -271,6 +275,12 @@ class CollisionManager:
         data = measured(*self._pairs([(one, other)], manager)[0]) if return_data else None
         return _answer(distance if data is None else data.distance, names, data, return_names, return_data)
 
+    def _geometry(self, mesh: trimesh.Trimesh, name: str) -> Geometry:
+        try:
+            return Geometry.of(mesh, self._solid)
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}") from None
+
     def _add(self, placed: Placed) -> Shape:
         try:
             index = self._engine.add(placed.geometry.shape, placed.transform)
@@ -298,11 +308,11 @@ class CollisionManager:
 
     def _beside(self, other: CollisionManager) -> CollisionManager:
         """Another manager, of itself a copy."""
-        return other if other is not self else _manager(self._placed(list(self._meshes)))
+        return other if other is not self else _manager(self._placed(list(self._meshes)), self._solid)
 
 
-def scene_to_collision(scene: trimesh.Scene) -> tuple[CollisionManager, dict[str, Shape]]:
-    """A manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes.
+def scene_to_collision(scene: trimesh.Scene, solid: bool = False) -> tuple[CollisionManager, dict[str, Shape]]:
+    """A manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes; solid as of the manager.
 
     What a node scales, shears or mirrors is applied to the vertices of its shape; `set_transform` then places the shape as
     it is here, by a rotation and a translation. ValueError names a node whose transform is no such map.
@@ -316,14 +326,17 @@ def scene_to_collision(scene: trimesh.Scene) -> tuple[CollisionManager, dict[str
             raise ValueError(f"the node {node!r}: {error}") from None
         key = name, None if stretch is None else stretch.tobytes()
         if key not in known:
-            geometry = Geometry.of(scene.geometry[name])
-            known[key] = geometry if stretch is None else geometry.stretched(stretch)
+            try:
+                geometry = Geometry.of(scene.geometry[name], solid)
+                known[key] = geometry if stretch is None else geometry.stretched(stretch)
+            except ValueError as error:
+                raise ValueError(f"the node {node!r}: {error}") from None
         placed.append(Placed(node, known[key], rigid))
-    return _manager(placed), {one.name: one.geometry.shape for one in placed}
+    return _manager(placed, solid), {one.name: one.geometry.shape for one in placed}
 
 
-def _manager(placed: Iterable[Placed]) -> CollisionManager:
-    manager = CollisionManager()
+def _manager(placed: Iterable[Placed], solid: bool) -> CollisionManager:
+    manager = CollisionManager(solid)
     for one in placed:
         manager._add(one)
     return manager

@@ -59,10 +59,11 @@ struct Description<'a, 'py> {
     poses: &'a Bound<'py, PyAny>,
     one_sided: bool,
     keep_internal_edges: bool,
+    solid: bool,
     kind: Kind,
 }
 
-/// What Python calls [`Shape`] with: see [`Description`] for the last eight.
+/// What Python calls [`Shape`] with: see [`Description`] for the last nine.
 type Arguments<'py> = (
     String,
     u8,
@@ -74,6 +75,7 @@ type Arguments<'py> = (
     Bound<'py, PyAny>,
     bool,
     bool,
+    bool,
 );
 
 #[pymethods]
@@ -82,7 +84,7 @@ impl Shape {
     #[new]
     #[pyo3(signature = (*arguments))]
     fn new(arguments: &Bound<'_, PyTuple>) -> PyResult<Self> {
-        let (name, dim, dtype, numbers, points, parts, children, poses, one_sided, keep) =
+        let (name, dim, dtype, numbers, points, parts, children, poses, one_sided, keep, solid) =
             arguments.extract::<Arguments<'_>>()?;
         let kind = Kind::parse(dim, &dtype)?;
         let description = Description {
@@ -95,6 +97,7 @@ impl Shape {
             poses: &poses,
             one_sided,
             keep_internal_edges: keep,
+            solid,
         };
         run_in(kind, Make(&description))
     }
@@ -299,6 +302,7 @@ impl Description<'_, '_> {
             vertices: self.vertices()?,
             parts: parts.as_slice()?.as_chunks::<ENDS>().0.to_vec(),
             is_one_sided: self.one_sided,
+            is_solid: self.solid,
             keeps_internal_edges: self.keep_internal_edges,
         })
     }

@@ -1,8 +1,8 @@
 //! Closed surfaces and lines as what they bound, in questions about points.
 //!
-//! The library sees a mesh as a surface, in which no point lies, and answers beside that what a closed one encloses
-//! (`TriMesh::signed_distance`). Here a closed mesh in 3D and a closed line in 2D are solids. Other meshes, lines and height
-//! fields are *open*: they bound nothing, and a question about what is inside needs the word of the caller
+//! The library sees a mesh that was not made solid as a surface, in which no point lies, and answers beside that what a
+//! closed one encloses (`TriMesh::signed_distance`). Here a closed mesh in 3D and a closed line in 2D are solids. Other meshes,
+//! lines and height fields are *open*: they bound nothing, and a question about what is inside needs the word of the caller
 //! (`surface=True`) that they are surfaces. A compound is the union of its children.
 
 use impinge::math::{Point, Pose, Real, Space};

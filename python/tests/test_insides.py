@@ -152,3 +152,53 @@ def test_worlds_refuse_open_surfaces_that_are_asked():
     bent[7] *= 2
     world.set_vertices(closed[0], bent)
     assert world.containing([1.25, 1.25, 1.25]).handle.tolist() == [closed[0]]
+
+
+def solid_of(dim, dtype="float64", **options):
+    if dim == 3:
+        return impinge.TriMesh(CORNERS * 4, FACES, dtype=dtype, **options)
+    return impinge.Polyline(np.array(SQUARE) * 4.0, AROUND, dtype=dtype, **options)
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_solid_has_contacts_with_what_is_inside(dim, dtype):
+    body, skin = solid_of(dim, dtype, solid=True), solid_of(dim, dtype)
+    cuboid, ball = impinge.Cuboid([4] * dim, dtype=dtype), impinge.Ball(0.25, dim=dim, dtype=dtype)
+    places = np.zeros((17, dim))
+    places[:, 0] = np.linspace(-8, 8, 17)
+    poses = impinge.Poses(places)
+    expected = impinge.distance(cuboid, None, ball, poses)
+    np.testing.assert_array_equal(impinge.distance(body, None, ball, poses), expected)
+    np.testing.assert_array_equal(impinge.distance(ball, poses, body, None), expected)
+    assert (impinge.distance(skin, None, ball, poses)[8], expected[8]) == (3.75, 0)
+    found = impinge.contact(body, None, ball, poses)
+    assert found.depth[11] == 1.25 and found.normal[11].tolist() == [1] + [0] * (dim - 1)
+    inside = np.abs(places[:, 0]) <= 4
+    assert (impinge.contains(body, None, places) == inside).all()
+    assert impinge.contains(impinge.Compound([body], impinge.Poses([[0.0] * dim])), None, [1.0] * dim)
+
+
+def test_a_solid_that_is_none_is_refused():
+    with pytest.raises(ValueError, match=r"closed, but nothing is beyond the edge from vertex \d to \d of part \d"):
+        impinge.TriMesh(CORNERS, FACES[:-1], solid=True)
+    with pytest.raises(ValueError, match="front inside"):
+        impinge.TriMesh(CORNERS, np.array(FACES)[:, ::-1], solid=True)
+    with pytest.raises(ValueError, match="part 0 ends at vertex 0"):
+        impinge.Polyline(SQUARE, solid=True)
+    # In 2D the triangles of a mesh are filled.
+    filled = impinge.TriMesh(SQUARE, [[0, 1, 2], [0, 2, 3]], solid=True)
+    assert impinge.distance(filled, None, impinge.Ball(0.1, dim=2), impinge.Poses([0.5, 0.25])) == 0
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_solid_in_a_world(dim):
+    world = impinge.World(dim=dim)
+    body = world.add(solid_of(dim, solid=True), None)
+    ball = world.add(impinge.Ball(0.25, dim=dim), impinge.Poses([20.0] + [0.0] * (dim - 1)))
+    world.update()
+    assert world.containing([[0.5] * dim]).handle.tolist() == [body]
+    assert len(world.contacts()) == 0
+    world.set_poses(ball, impinge.Poses([3.0] + [0.0] * (dim - 1)))
+    world.update()
+    assert world.contacts()["depth"].tolist() == [1.25]

@@ -99,3 +99,24 @@ def test_random_meshes_as_trimesh_has_them():
         else:
             # FCL has the depth of one of the meshes that overlap, impinge that of the deepest.
             assert mine <= expected + 1e-6
+
+
+def test_solid_meshes_collide_with_what_is_inside():
+    outer, inner = trimesh.creation.torus(5.0, 2.0), trimesh.creation.icosphere(subdivisions=1, radius=0.25)
+    away = trimesh.transformations.translation_matrix([5, 0, 0])
+    for solid in (False, True):
+        manager = CollisionManager(solid=solid)
+        manager.add_object("torus", outer)
+        assert manager.in_collision_single(inner, away) is solid
+        distance = manager.min_distance_single(inner, away)
+        assert (distance < -1.5) if solid else (distance > 1)
+        manager.add_object("inner", inner, away)
+        assert manager.in_collision_internal() is solid
+        scene = trimesh.Scene({"torus": outer})
+        scene.add_geometry(inner, transform=away)
+        assert scene_to_collision(scene, solid=solid)[0].in_collision_internal() is solid
+    manager = CollisionManager(solid=True)
+    opened = outer.copy()
+    opened.faces = opened.faces[1:]
+    with pytest.raises(ValueError, match="opened: a solid is closed"):
+        manager.add_object("opened", opened)

@@ -103,13 +103,19 @@ fn solid_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Opt
 /// The composites with vertices or children.
 fn composite_sizes<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Option<ShapeText> {
     // A surface with both sides is the rule and goes without saying.
-    let sides = |is_one_sided: bool| if is_one_sided { ", one-sided" } else { "" };
+    let sides = |is_solid: bool, is_one_sided: bool| match (is_solid, is_one_sided) {
+        (true, _) => ", solid",
+        (false, true) => ", one-sided",
+        (false, false) => "",
+    };
     if let Some(line) = shape.as_shape::<Polyline<N, D>>() {
-        let text = format!("{} segments{}", line.num_segments(), sides(line.is_one_sided()));
+        let sides = sides(line.is_solid(), line.is_one_sided());
+        let text = format!("{} segments{sides}", line.num_segments());
         return sizes("polyline", text);
     }
     if let Some(mesh) = shape.as_shape::<TriMesh<N, D>>() {
-        let text = format!("{} triangles{}", mesh.num_triangles(), sides(mesh.is_one_sided()));
+        let sides = sides(mesh.is_solid(), mesh.is_one_sided());
+        let text = format!("{} triangles{sides}", mesh.num_triangles());
         return sizes("mesh", text);
     }
     let compound = shape.as_shape::<Compound<N, D>>()?;

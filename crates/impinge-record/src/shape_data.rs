@@ -35,6 +35,9 @@ pub enum ShapeData<N: Space<D>, const D: usize> {
     HeightField(Field<N, D>),
 }
 
+/// Written for the sides of a body; for those of a skin whether it has one only.
+const SOLID: u8 = 2;
+
 /// The arguments of a mesh of triangles or a line of segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh<N: Space<D>, const D: usize, const ENDS: usize> {
@@ -42,8 +45,10 @@ pub struct Mesh<N: Space<D>, const D: usize, const ENDS: usize> {
     pub vertices: Vec<Point<N, D>>,
     /// The corners of each part.
     pub parts: Vec<[u32; ENDS]>,
-    /// Nothing touches it from behind.
+    /// Nothing touches it from behind, as of a solid.
     pub is_one_sided: bool,
+    /// It is a body, not a skin.
+    pub is_solid: bool,
     /// Contacts treat each part on its own.
     pub keeps_internal_edges: bool,
 }
@@ -116,6 +121,7 @@ fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
             vertices: line.vertices().to_vec(),
             parts: line.segments().to_vec(),
             is_one_sided: line.is_one_sided(),
+            is_solid: line.is_solid(),
             keeps_internal_edges: line.keeps_internal_edges(),
         }));
     }
@@ -124,6 +130,7 @@ fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
         vertices: mesh.vertices().to_vec(),
         parts: mesh.triangles().to_vec(),
         is_one_sided: mesh.is_one_sided(),
+        is_solid: mesh.is_solid(),
         keeps_internal_edges: mesh.keeps_internal_edges(),
     }))
 }
@@ -210,6 +217,7 @@ fn line_of_parts<N: Recordable<D>, const D: usize>(
 ) -> Result<ShapeHandle<N, D>, Problem> {
     let line = Polyline::try_new(mesh.vertices.clone(), mesh.parts.clone())?;
     let line = if mesh.is_one_sided { N::one_sided_line(line) } else { line };
+    let line = if mesh.is_solid { N::solid_line(line)? } else { line };
     let line = if mesh.keeps_internal_edges { line.with_internal_edges_kept() } else { line };
     Ok(ShapeHandle::new(line))
 }
@@ -220,6 +228,7 @@ fn mesh_of_parts<N: Recordable<D>, const D: usize>(
 ) -> Result<ShapeHandle<N, D>, Problem> {
     let mesh = TriMesh::try_new(parts.vertices.clone(), parts.parts.clone())?;
     let mesh = if parts.is_one_sided { N::one_sided_mesh(mesh) } else { mesh };
+    let mesh = if parts.is_solid { N::solid_mesh(mesh)? } else { mesh };
     let mesh = if parts.keeps_internal_edges { mesh.with_internal_edges_kept() } else { mesh };
     Ok(ShapeHandle::new(mesh))
 }
@@ -241,7 +250,7 @@ impl Sink {
         self.numbers(&N::isometry_numbers(isometry));
     }
 
-    /// Vertices, parts and two flags.
+    /// Vertices, parts, the number of sides and a flag.
     fn mesh<N: Recordable<D>, const D: usize, const ENDS: usize>(
         &mut self,
         mesh: &Mesh<N, D, ENDS>,
@@ -249,7 +258,8 @@ impl Sink {
         self.point_list(&mesh.vertices);
         self.count(mesh.parts.len());
         mesh.parts.iter().flatten().for_each(|corner| self.word(*corner));
-        self.flag(mesh.is_one_sided);
+        let sides = if mesh.is_solid { SOLID } else { u8::from(mesh.is_one_sided) };
+        self.byte(sides);
         self.flag(mesh.keeps_internal_edges);
     }
 
@@ -393,8 +403,9 @@ impl Source<'_> {
             }
             Ok(part)
         })?;
-        let (is_one_sided, keeps_internal_edges) = (self.flag()?, self.flag()?);
-        Ok(Mesh { vertices, parts, is_one_sided, keeps_internal_edges })
+        let (sides, keeps_internal_edges) = (self.choice(3, "the sides of a mesh")?, self.flag()?);
+        let (is_one_sided, is_solid) = (sides > 0, sides == SOLID);
+        Ok(Mesh { vertices, parts, is_one_sided, is_solid, keeps_internal_edges })
     }
 
     fn field<N: Recordable<D>, const D: usize>(&mut self) -> Result<Field<N, D>, ReadError> {

@@ -3,8 +3,8 @@
 use impinge::math::na::{Quaternion, Translation2, Translation3, UnitComplex, UnitQuaternion};
 use impinge::math::{Isometry2, Isometry3, Point, Real, Space};
 use impinge::shape::{
-    Cone, ConvexHull, ConvexPolygon, Cylinder, Diagonal, HeightField, Polyline, Shape, ShapeHandle,
-    Tetrahedron, TriMesh,
+    Cone, ConvexHull, ConvexPolygon, Cylinder, Diagonal, HeightField, MeshError, Polyline, Shape,
+    ShapeHandle, Tetrahedron, TriMesh,
 };
 
 use crate::Problem;
@@ -63,6 +63,18 @@ pub trait Recordable<const D: usize>: Space<D> + Scalar {
 
     /// The mesh with one side, in 3D; the mesh itself in 2D.
     fn one_sided_mesh(mesh: TriMesh<Self, D>) -> TriMesh<Self, D>;
+
+    /// The line as a body, in 2D; the line itself in 3D.
+    ///
+    /// # Errors
+    /// If the line bounds nothing or is inside out.
+    fn solid_line(line: Polyline<Self, D>) -> Result<Polyline<Self, D>, MeshError>;
+
+    /// The mesh as a body, in 3D; the mesh itself, which is filled, in 2D.
+    ///
+    /// # Errors
+    /// If the mesh bounds nothing or is inside out.
+    fn solid_mesh(mesh: TriMesh<Self, D>) -> Result<TriMesh<Self, D>, MeshError>;
 }
 
 /// Neither dimension has a shape of this data.
@@ -104,6 +116,14 @@ impl<N: Scalar> Recordable<2> for N {
 
     fn one_sided_mesh(mesh: TriMesh<N, 2>) -> TriMesh<N, 2> {
         mesh
+    }
+
+    fn solid_line(line: Polyline<N, 2>) -> Result<Polyline<N, 2>, MeshError> {
+        line.try_solid()
+    }
+
+    fn solid_mesh(mesh: TriMesh<N, 2>) -> Result<TriMesh<N, 2>, MeshError> {
+        Ok(mesh)
     }
 }
 
@@ -157,6 +177,14 @@ impl<N: Scalar> Recordable<3> for N {
 
     fn one_sided_mesh(mesh: TriMesh<N, 3>) -> TriMesh<N, 3> {
         mesh.one_sided()
+    }
+
+    fn solid_line(line: Polyline<N, 3>) -> Result<Polyline<N, 3>, MeshError> {
+        Ok(line)
+    }
+
+    fn solid_mesh(mesh: TriMesh<N, 3>) -> Result<TriMesh<N, 3>, MeshError> {
+        mesh.try_solid()
     }
 }
 

@@ -37,6 +37,7 @@ macro_rules! chapter {
         #[doc = "[batches]: self::batches"]
         #[doc = "[composites]: self::composites"]
         #[doc = "[composites#shapes-that-touch-themselves]: self::composites#shapes-that-touch-themselves"]
+        #[doc = "[composites#solid-meshes-and-lines]: self::composites#solid-meshes-and-lines"]
         #[doc = "[composites#surfaces-have-no-inner-edges]: self::composites#surfaces-have-no-inner-edges"]
         #[doc = "[composites#two-sides-or-one]: self::composites#two-sides-or-one"]
         #[doc = "[composites#what-closed-surfaces-enclose]: self::composites#what-closed-surfaces-enclose"]

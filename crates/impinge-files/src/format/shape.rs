@@ -247,8 +247,8 @@ pub enum MeshKind {
     Surface,
     /// A surface that nothing touches from behind.
     OneSided,
-    /// The boundary of a volume: one-sided, and an error if the surface is not closed or its triangles do not
-    /// agree about the outside. Where all of them point inwards, they are turned.
+    /// The boundary of a body, to which what is inside belongs: an error if the surface is not closed or its triangles
+    /// do not agree about the outside. Where all of them point inwards, they are turned.
     Solid,
     /// The convex hull of all vertices.
     ConvexHull,

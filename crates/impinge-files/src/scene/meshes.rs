@@ -107,7 +107,7 @@ impl MeshTable {
             MeshKind::OneSided => Ok(ShapeHandle::new(N::one_sided_mesh(triangles.mesh(false)?))),
             MeshKind::Solid => {
                 triangles.check_solid().within("as")?;
-                Ok(ShapeHandle::new(N::one_sided_mesh(triangles.mesh(true)?)))
+                Ok(ShapeHandle::new(N::solid_mesh(triangles.mesh(true)?)?))
             }
             MeshKind::ConvexHull => triangles.hull(&triangles.parts),
             MeshKind::ConvexParts => triangles.hulls(),

@@ -8,3 +8,4 @@ mod packing;
 mod refusals;
 mod roundtrip;
 mod scene;
+mod solids;

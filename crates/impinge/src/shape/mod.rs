@@ -28,6 +28,7 @@ mod tilt;
 
 pub use bounds::{aabb, bounding_sphere};
 pub(crate) use compact::Compact;
+pub use composite::body::EnclosedBody;
 pub use composite::compound::Compound;
 pub(crate) use composite::height_field::FieldEntries;
 pub use composite::height_field::{Diagonal, Diagonals, HeightField};

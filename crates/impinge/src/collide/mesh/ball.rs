@@ -42,7 +42,8 @@ pub(crate) fn update_on_surface<N: Real>(
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
     if !is_settled(&part_contacts) {
         let around = Some(&contacts.around);
-        let query = Query { between, around, reference: &reference, request: &rolling.request };
+        let request = &rolling.request;
+        let query = Query { between, is_self: false, around, reference: &reference, request };
         query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
     }
     contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
@@ -186,6 +187,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             let scene = Scene::new(self.between, Some(around));
             let parts = [0, seen.part];
             let query = Query {
+                is_self: false,
                 between: self.between,
                 around: Some(around),
                 reference: &Some(self.from),

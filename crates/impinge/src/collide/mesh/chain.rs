@@ -46,6 +46,7 @@ pub(crate) fn update_chain<N: Real>(
     let (reference, center) = (Some(chain.from), Some(chain.center));
     let query = Query {
         between,
+        is_self: false,
         around: Some(&contacts.around),
         reference: &reference,
         request: &chain.request,

@@ -7,7 +7,8 @@
 //!    the face of the part count.
 //! 3. [`hidden`] drops contacts from behind a face that is touched from its front, [`resolve`] those that another
 //!    contact explains. Solids that overlap always keep a contact.
-//! 4. [`patch`] merges what is left into flat patches.
+//! 4. [`inside`] adds the contacts of what lies wholly inside a body and so touches no part.
+//! 5. [`patch`] merges what is left into flat patches.
 //!
 //! [`chain`] does all of this for a chain in 2D, [`ball`] for a ball in 3D, with the same bits.
 //!
@@ -27,6 +28,7 @@ mod cull;
 mod cull_lanes;
 mod gather;
 mod hidden;
+mod inside;
 mod normal_filter;
 mod over;
 mod part_cache;
@@ -165,7 +167,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        if !<N::Algorithms>::update_quickly(self, between, request) {
+        // What is inside of a body touches no part: that is asked in one way.
+        if between.has_bodies() || !<N::Algorithms>::update_quickly(self, between, request) {
             self.update_in_general(between, is_self, request);
         }
     }
@@ -181,10 +184,12 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let around = Some(&mut self.around);
         let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
-        let way = Travelled { old: self.reference, clearance: nearby.clearance };
+        // A body knows by itself on which side its inside is.
+        let old = self.reference.filter(|_| !between.has_bodies());
+        let way = Travelled { old, clearance: nearby.clearance };
         let reference = center.map(|center| advanced(between, &way, center));
         let around = Some(&self.around);
-        let query = Query { between, around, reference: &reference, request: &of_parts };
+        let query = Query { between, is_self, around, reference: &reference, request: &of_parts };
         let mut arena = Arena::default();
         let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
         self.conclude(&between.pair, request, [reference, center], &contacts, &arena);
@@ -277,6 +282,8 @@ fn advanced<N: Space<D>, const D: usize>(
 /// What is asked of a pair.
 struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
+    /// The two are one shape.
+    is_self: bool,
     /// What is kept of the parts of the second shape.
     around: Option<&'a PartCache<N, D>>,
     reference: &'a Reference<N, D>,
@@ -316,7 +323,11 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         if !scene.each_gap(nearby, prediction, self.request.prediction, &mut find) {
             (0..nearby.parts.len()).for_each(|index| find(index, None));
         }
+        let inside = self.take_inside(&mut contacts);
         self.settle(&scene, &mut contacts, arena);
+        for piece in &inside {
+            self.add_inside(&scene, piece, &mut contacts, arena);
+        }
         contacts
     }
 
@@ -395,6 +406,9 @@ fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, lim
 /// Contacts mostly have a kernel of their own: of balls and surfaces, and of chains.
 fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
+    if parts.has_bodies() {
+        return false;
+    }
     let is_chain = || parts.num_parts() > 0 && matches!(parts.part(0).solid, PartSolid::Segment(_));
     matches!(between.pair.first, Kind::Ball(_)) || is_chain()
 }

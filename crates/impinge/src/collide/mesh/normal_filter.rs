@@ -8,7 +8,7 @@ const ROUNDING: f64 = 4096.0;
 /// On a face there is no other normal than its own: what differs by less is that one.
 const ON_FACE: f64 = 1.0 / 64.0;
 /// A normal that points this far to the other side of a face is one of the other side.
-const BEHIND: f64 = -0.5;
+pub(super) const BEHIND: f64 = -0.5;
 
 /// To look for a ridge a face's normal is leaned by this part of the way to another: by more than
 /// what counts as flat.

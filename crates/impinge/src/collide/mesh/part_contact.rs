@@ -4,7 +4,7 @@ use crate::tables::ByDimension;
 use core::cell::Cell;
 
 use super::Query;
-use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
+use super::normal_filter::{BEHIND, Case, FilteredNormal, faces, filter_normal};
 use super::patch::{Piece, Points};
 use super::scene::{PlacedPair, Scene};
 use crate::collide::manifold::{Along, build_along, build_between, build_on_face};
@@ -12,7 +12,7 @@ use crate::collide::packet::PartGap;
 use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector, min};
-use crate::shape::{FeatureId, Kind};
+use crate::shape::{FeatureId, Kind, SurfaceAccess};
 
 /// Whether a contact of two parts is one of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,7 +123,7 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
 }
 
 /// Solids side by side: their contacts are those of the whole.
-fn plain<N: Space<D>, const D: usize>(
+pub(super) fn plain<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
@@ -164,8 +164,13 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
         let [surface1, surface2] = scene.surfaces;
+        let touches = |surface: Option<SurfaceAccess<'_, N, D>>, part, center| {
+            let overlaps =
+                || gap.distance <= N::ZERO && surface.is_some_and(|own| own.is_body(part));
+            faces(surface, part, center) || overlaps()
+        };
         let can_touch =
-            faces(surface1, self.parts[0], &other1) && faces(surface2, self.parts[1], &other2);
+            touches(surface1, self.parts[0], &other1) && touches(surface2, self.parts[1], &other2);
         if !can_touch {
             return Some([FilteredNormal::Nothing; 2]);
         }
@@ -192,6 +197,22 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
         let filtered = [filter_normal(surface1, &case1), filter_normal(surface2, &case2)];
         (!is_owing.get()).then_some(filtered)
+    }
+}
+
+impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
+    /// A normal, from the first shape to the second in the frame of the first, pushes what touches a body into it: as
+    /// the face of a surface does that lies in a wall of the body, and has the inside on its back as well.
+    fn leads_into_body(&self, scene: &Scene<'_, N, D>, normal: &Vector<N, D>) -> bool {
+        if !scene.are_bodies(self.parts) {
+            return false;
+        }
+        let outward = [*normal, -self.placed.seen_by_second(normal)];
+        scene.surfaces.iter().zip(self.parts).zip(outward).any(|((surface, part), outward)| {
+            let surface = surface.filter(|surface| surface.is_body(part));
+            let front = surface.and_then(|surface| surface.snapped(part, &outward));
+            front.is_some_and(|front| front.dot(&outward) < N::lit(BEHIND))
+        })
     }
 }
 
@@ -233,6 +254,11 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let mut status = match settled(placed, &filtered, &normal) {
         Settled::Nothing => return None,
         Settled::Refused => PartStatus::Left,
+        Settled::Found(normal) | Settled::Forced(normal, _)
+            if meeting.leads_into_body(scene, &normal) =>
+        {
+            PartStatus::Left
+        }
         Settled::Forced(..) if is_beside(over) => PartStatus::Left,
         Settled::Found(normal) => {
             let touch = Touch { gap, normal: placed.inward(&normal), tolerance };
@@ -242,10 +268,14 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             }
             PartStatus::Own
         }
-        Settled::Forced(normal, status) => {
-            // What touches but for rounding does not reach below the face.
-            let least = if distance > -tolerance { distance } else { -N::INFINITY };
-            let along = Along { normal: placed.inward(&normal), least, tolerance };
+        Settled::Forced(face, status) => {
+            // What touches but for rounding does not reach below the face, unless it does from inside of a body.
+            let is_below = || {
+                distance <= N::ZERO && normal.dot(&face) < N::lit(BEHIND) && scene.are_bodies(parts)
+            };
+            let touches = distance > -tolerance && !is_below();
+            let least = if touches { distance } else { -N::INFINITY };
+            let along = Along { normal: placed.inward(&face), least, tolerance };
             build_along(&pair, &along, request, raw);
             status
         }

@@ -10,7 +10,7 @@ use crate::collide::packet::{GapVisitor, TiledParts};
 use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::{Pair, RawManifold};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
-use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, SurfaceAccess};
+use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
 
 /// Two shapes, one of them a composite at least.
 pub(super) struct Scene<'a, N: Real, const D: usize> {
@@ -130,6 +130,12 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         self.between.composites()[0].is_none()
     }
 
+    /// One of two parts bounds a body.
+    pub(super) fn are_bodies(&self, parts: [u32; 2]) -> bool {
+        let mut both = self.surfaces.iter().zip(parts);
+        both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_body(part)))
+    }
+
     /// A point of the first shape's frame lies in that shape by more than a depth: no plane parts the two
     /// by less than that. False of composites.
     pub(super) fn is_within(&self, point: &Point<N, D>, depth: N) -> bool {
@@ -232,6 +238,30 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let whole = &self.between.pair;
         let bodies =
             [body(whole.first, piece1, &origins[0]), body(whole.second, piece2, &origins[1])];
+        PlacedPair::new(bodies, self.turn(), origins)
+    }
+
+    /// A part of the first shape (0) or the second (1), and in the place of the other shape a half-space, given in the
+    /// other's frame, whose boundary runs through a point of the frame of the first.
+    pub(super) fn above<'p>(
+        &'p self,
+        plane: &'p Plane<N, D>,
+        point: &Point<N, D>,
+        (which, part): (usize, u32),
+    ) -> PlacedPair<'p, N, D> {
+        let whole = &self.between.pair;
+        let origins = [*point, whole.pose12.inverse_point(point)];
+        let origin = &origins[which];
+        let body = match self.between.composites()[which] {
+            Some(composite) => moved(&composite.part(part), origin),
+            None => {
+                let solid = WholeOrPart::Whole([whole.first, whole.second][which]);
+                PlacedPart { pose: Pose::from_translation(-origin.coords), solid }
+            }
+        };
+        let boundary = WholeOrPart::Whole(Kind::Plane(plane));
+        let boundary = PlacedPart { pose: Pose::identity(), solid: boundary };
+        let bodies = if which == 0 { [body, boundary] } else { [boundary, body] };
         PlacedPair::new(bodies, self.turn(), origins)
     }
 

@@ -49,7 +49,7 @@ fn each_in_general<N: Space<D>, const D: usize>(
     visit: &mut Visit<'_, N, D>,
 ) {
     let reference = middle_of_first(between);
-    let query = Query { between, around: None, reference: &reference, request };
+    let query = Query { between, is_self: false, around: None, reference: &reference, request };
     let nearby = gather::nearby(between, false, request.prediction, None);
     let mut arena = Arena::default();
     let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);

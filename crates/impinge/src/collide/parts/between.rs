@@ -64,6 +64,12 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
+    /// Closed surfaces among the parts of one of them are bodies, in which the other may lie.
+    #[inline]
+    pub(crate) fn has_bodies(&self) -> bool {
+        self.composites().iter().flatten().any(|composite| composite.has_bodies())
+    }
+
     /// The first shape is a half-space.
     pub(crate) fn is_half_space_first(&self) -> bool {
         matches!(self.pair.first, Kind::Plane(_))

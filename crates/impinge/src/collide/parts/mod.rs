@@ -3,11 +3,12 @@
 //! The parts of nested composites are numbered in a row, so a composite has one level. An answer about
 //! a part is that of the convex algorithm for it: [`between`] places two parts for it, [`bounds`] makes
 //! boxes that rounding cannot make too small. [`solid_bounds`] tells how near parts can be to a convex solid,
-//! [`slab_lanes`] how near eight are to one part. Which part answers never depends on the order in which
+//! [`inside`] asks what lies inside closed surfaces that bound bodies, [`slab_lanes`] how near eight are to one part. Which part answers never depends on the order in which
 //! a search proposes them: of equal answers the one with the lowest numbers counts.
 
 pub(crate) mod between;
 pub(crate) mod bounds;
+mod inside;
 mod separation;
 mod slab_lanes;
 pub(crate) mod slabs;
@@ -17,6 +18,7 @@ mod sweep;
 mod tests;
 
 pub(crate) use between::{Between, PartPair};
+pub(crate) use inside::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
 pub(crate) use separation::{
     PairVisitor, PartSeparation, Wanted, nearest_between, separation, visit_near_pairs,
 };

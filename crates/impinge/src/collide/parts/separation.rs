@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 
 use super::between::{Between, by_number};
 use super::bounds::{extent, loosened};
+use super::inside::with_inside;
 use super::slabs::{AxisSlabs, corners, range};
 use super::solid_bounds::{SolidBounds, gap_slack};
 use super::sweep::PartSweep;
@@ -90,6 +91,9 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
         nearest.visit(parts);
     }
     visit_near_pairs(between, &mut nearest);
+    if between.has_bodies() {
+        return with_inside(between, limit, wanted, nearest.best);
+    }
     nearest.best
 }
 

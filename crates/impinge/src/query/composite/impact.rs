@@ -8,7 +8,7 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::each_contact_within;
 use crate::collide::parts::between::{Between, PartPair, by_number};
 use crate::collide::parts::bounds::loosened;
-use crate::collide::parts::{Wanted, nearest_between};
+use crate::collide::parts::{Wanted, find_exits, held_pieces, nearest_between};
 use crate::convex::Separation;
 use crate::math::{Real, Space, Vector};
 use crate::query::impact::{Arrival, Beginning, Path, begin, size};
@@ -84,6 +84,7 @@ const SAME: f64 = 1.0 / 1024.0;
 
 impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     fn run(&mut self) {
+        self.begin_inside();
         match self.between.composites() {
             [None, None] => self.hold([0, 0], N::ZERO),
             [Some(parts1), None] => self.each_on_way(1, 0, parts1),
@@ -177,6 +178,17 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let found = found.filter(is_first).and_then(|found| self.confirmed(found, &placed));
         self.is_early |= found.is_some() && self.start == WholeContact::Unknown;
         self.first = found.or(self.first);
+    }
+
+    /// What is inside of a body at the start touches no part, but is in contact.
+    fn begin_inside(&mut self) {
+        if self.start == WholeContact::Unknown && self.between.has_bodies() {
+            let mut inside = held_pieces(self.between);
+            find_exits(self.between, &mut inside);
+            if !inside.is_empty() {
+                self.begin_in_contact(N::ZERO);
+            }
+        }
     }
 
     /// Asks the contacts of the whole whether the start counts; once.

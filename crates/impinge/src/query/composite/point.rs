@@ -92,7 +92,39 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
         let is_settled = touching && reach <= N::ZERO && best.is_some();
         if is_settled { -N::ONE } else { loosened(max(reach, N::ZERO)) }
     });
-    best.filter(|best| !touching || best.distance <= N::ZERO)
+    let best = best.filter(|best| !touching || best.distance <= N::ZERO);
+    if parts.has_bodies() { deepest_within(parts, point, best) } else { best }
+}
+
+/// Where a point lies to a composite with bodies: of what is said of the nearest of all parts, and for each body that
+/// holds the point of the nearest part of its boundary, the deepest.
+fn deepest_within<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    point: &Point<N, D>,
+    best: Option<PartPoint<N, D>>,
+) -> Option<PartPoint<N, D>> {
+    let mut best = best;
+    parts.each_body(&mut |body| {
+        if !body.holds(point) {
+            return;
+        }
+        let (search, range) = (parts.search(), body.parts());
+        let Some(start) = around_point(point, &search.bounds()) else { return };
+        let mut nearest: Option<PartPoint<N, D>> = None;
+        search.nearest(&start, N::INFINITY, &mut |index, _| {
+            if range.contains(&index)
+                && let Some(found) = Near::new(parts.part(index), point).nearest(index, point)
+                && nearest.is_none_or(|nearest| found.is_before(&nearest))
+            {
+                nearest = Some(found);
+            }
+            loosened(max(nearest.map_or(N::INFINITY, |nearest| nearest.distance), N::ZERO))
+        });
+        let inside = nearest.map(|found| PartPoint { distance: -found.distance.abs(), ..found });
+        let is_deeper = |found: &PartPoint<N, D>| best.is_none_or(|best| found.is_before(&best));
+        best = inside.filter(is_deeper).or(best);
+    });
+    best
 }
 
 impl<N: Real, const D: usize> PartPoint<N, D> {

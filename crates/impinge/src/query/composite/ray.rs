@@ -4,9 +4,11 @@
 //! for zero, which counts for both sides (see `triangle3`), and the search is asked with a box around
 //! the ray's origin that holds what rounding makes of times and boxes.
 
+use super::point::nearest_part;
 use crate::bounding_volume::Ray;
 use crate::collide::parts::bounds::{around_point, loosened};
 use crate::math::{Real, Space, max};
+use crate::query::ray::at_start;
 use crate::query::{RayCast, RayIntersection};
 use crate::shape::CompositeShape;
 
@@ -34,7 +36,18 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     if !asks {
         return;
     }
+    let held = if *solid && parts.has_bodies() { start_inside(parts, ray) } else { None };
+    if let Some(hit) = held {
+        let next = visit(hit);
+        latest = if next < latest { next } else { latest };
+        if latest < N::ZERO {
+            return;
+        }
+    }
     parts.parts_along(ray, &start, loosened(latest), &mut |index, part| {
+        if held.is_some_and(|held| held.part == index) {
+            return if latest < N::ZERO { latest } else { loosened(latest) };
+        }
         let local = ray.inverse_transformed_by(&part.pose);
         let hit = part.solid.as_shape().cast_local_ray(&local, *solid);
         if let Some(hit) = hit.filter(|hit| hit.toi <= latest) {
@@ -44,6 +57,17 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
         }
         if latest < N::ZERO { latest } else { loosened(max(latest, N::ZERO)) }
     });
+}
+
+/// The hit of a ray that starts in a body: at once, on the part of the boundary that is nearest.
+fn start_inside<N: Space<D>, const D: usize>(
+    parts: &dyn CompositeShape<N, D>,
+    ray: &Ray<N, D>,
+) -> Option<RayIntersection<N, D>> {
+    let mut is_held = false;
+    parts.each_body(&mut |body| is_held |= body.holds(&ray.origin));
+    let nearest = nearest_part(parts, &ray.origin, false).filter(|_| is_held)?;
+    Some(RayIntersection { part: nearest.part, ..at_start(nearest.feature) })
 }
 
 /// A ray meets a composite by a time.

@@ -35,7 +35,8 @@ impl<N: Real> TriMesh<N, 3> {
     /// in line with makes it wrong. (It assumes that the coordinates are within a factor of 1e90 of each
     /// other.) As for all sets without thickness, a point within rounding of a triangle lies on it.
     ///
-    /// All other queries, also those of [`PointQuery`](crate::query::PointQuery), see the mesh as a surface.
+    /// All other queries, also those of [`PointQuery`](crate::query::PointQuery), see the mesh as a surface, unless it
+    /// is [solid](Self::solid).
     /// A point that is not finite is infinitely far away. Cost: a search of the nearest triangle, and of
     /// those over the point along one axis.
     ///
@@ -57,8 +58,20 @@ impl<N: Real> TriMesh<N, 3> {
 
     /// How often the mesh winds around the point; `None` if the point lies on it.
     fn winding(&self, point: &Point<N, 3>) -> Option<i64> {
+        self.winding_of(point, |_| true)
+    }
+
+    /// [`Self::winding`] of those triangles that count.
+    pub(crate) fn winding_of(
+        &self,
+        point: &Point<N, 3>,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<i64> {
         let (tree, (scale, at)) = (self.tree(), scaled(self.tree(), point));
         winding(tree, point, |part, way| {
+            if !counts(part) {
+                return Some(0);
+            }
             let corners = self.triangle(part).corners().map(|corner| lifted(&corner, scale));
             of_triangle(corners, &at, way)
         })
@@ -101,8 +114,20 @@ impl<N: Real> Polyline<N, 2> {
 
     /// How often the line winds around the point; `None` if the point lies on it.
     fn winding(&self, point: &Point<N, 2>) -> Option<i64> {
+        self.winding_of(point, |_| true)
+    }
+
+    /// [`Self::winding`] of those segments that count.
+    pub(crate) fn winding_of(
+        &self,
+        point: &Point<N, 2>,
+        counts: impl Fn(u32) -> bool,
+    ) -> Option<i64> {
         let (tree, (scale, at)) = (self.tree(), scaled(self.tree(), point));
         winding(tree, point, |part, way| {
+            if !counts(part) {
+                return Some(0);
+            }
             let segment = self.segment(part);
             let ends = [segment.a(), segment.b()].map(|end| lifted(end, scale));
             of_segment(ends, &at, way)
@@ -126,8 +151,8 @@ fn signed<N: Space<D>, const D: usize>(
     let Some(nearest) = entries::nearest_part(parts, point, false) else {
         return N::INFINITY;
     };
-    // What lies on a part is at plain zero.
-    let distance = max(nearest.distance, N::ZERO);
+    // Parts are thin, and inside of a body distances are negative.
+    let distance = nearest.distance.abs();
     match winding() {
         Some(0) => distance,
         Some(_) => N::ZERO - distance,

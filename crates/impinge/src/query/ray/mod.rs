@@ -432,7 +432,7 @@ fn is_before<N: Real, const D: usize>(
 }
 
 /// The hit of a ray that starts in the set.
-fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D> {
+pub(crate) fn at_start<N: Real, const D: usize>(feature: FeatureId) -> RayIntersection<N, D> {
     RayIntersection { toi: N::ZERO, normal: Vector::<N, D>::zeros(), feature, part: 0 }
 }
 

@@ -9,8 +9,8 @@ use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
-    CompositeShape, FeatureId, Geometry, Part, PartPath, PartSearch, PartSolid, ScaleError, Shape,
-    ShapeError, ShapeHandle, Surface, SurfaceAccess,
+    CompositeShape, EnclosedBody, FeatureId, Geometry, Part, PartPath, PartSearch, PartSolid,
+    ScaleError, Shape, ShapeError, ShapeHandle, Surface, SurfaceAccess,
 };
 
 /// The union of shapes, its children, each placed in the compound's frame.
@@ -61,6 +61,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     sphere: BoundingSphere<N, D>,
     /// A child has a surface that knows its seams.
     has_surface: bool,
+    /// A child is a body within a closed surface.
+    has_bodies: bool,
 }
 
 /// Up to this many children the box of a placed compound is made of the boxes of its children.
@@ -105,8 +107,9 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         let searched: Vec<_> = placed().map(|(shape, pose)| search_box(shape, pose)).collect();
         let tree = BoxTree::from_boxes(&searched);
         let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
+        let has_bodies = children.iter().any(|(_, shape)| bodies_of(shape).is_some());
         let sphere = sphere_around(&aabb, &children, &poses);
-        Ok(Self { children, poses, firsts, depth, aabb, tree, sphere, has_surface })
+        Ok(Self { children, poses, firsts, depth, aabb, tree, sphere, has_surface, has_bodies })
     }
 
     /// The shapes and their positions in the frame of the compound.
@@ -256,6 +259,13 @@ fn surface_of<N: Space<D>, const D: usize>(
     shape.geometry().as_composite()?.surface()
 }
 
+/// A shape as a composite with bodies among its parts.
+fn bodies_of<N: Space<D>, const D: usize>(
+    shape: &ShapeHandle<N, D>,
+) -> Option<&dyn CompositeShape<N, D>> {
+    shape.geometry().as_composite().filter(|composite| composite.has_bodies())
+}
+
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
     fn num_parts(&self) -> u32 {
         self.firsts[self.children.len()]
@@ -305,6 +315,29 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         Some(self)
     }
+
+    fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
+        if !self.has_bodies {
+            return;
+        }
+        for ((_, shape), (pose, &first)) in
+            self.children.iter().zip(self.poses.iter().zip(&self.firsts))
+        {
+            if let Some(child) = bodies_of(shape) {
+                child.each_body(&mut |body| visit(&body.of_child(pose, first)));
+            }
+        }
+    }
+
+    fn has_bodies(&self) -> bool {
+        self.has_bodies
+    }
+
+    fn piece_of(&self, part: u32) -> u32 {
+        let (child, own) = self.child_of_part(part);
+        let within = self.composite(child).map_or(own, |composite| composite.piece_of(own));
+        self.firsts[child] + within
+    }
 }
 
 /// A part of a child without a surface stands alone: it admits every normal.
@@ -337,6 +370,11 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for Compound<N, D> {
         let Some((surface, pose, own)) = self.surface_at(part) else { return [true, false] };
         let [first, second] = normals.map(|normal| pose.inverse_vector(normal));
         surface.admits_in_turn(own, feature, [&first, &second])
+    }
+
+    fn is_body(&self, part: u32) -> bool {
+        self.has_bodies
+            && self.surface_at(part).is_some_and(|(surface, _, own)| surface.is_body(own))
     }
 }
 

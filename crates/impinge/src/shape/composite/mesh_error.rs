@@ -51,6 +51,27 @@ pub enum MeshError {
         /// How many it has.
         needed: usize,
     },
+    /// A solid has a border: the edge of a triangle, or the end of a segment, whose other triangles or segments do
+    /// not continue it.
+    NotClosed {
+        /// The index of the part.
+        part: usize,
+        /// The vertices at the ends of the edge; the vertex twice where a line is open.
+        edge: [u32; 2],
+    },
+    /// The parts of a solid at an edge, or at a vertex of a line, do not agree on what is inside: as many have to
+    /// run along it, or start there, as run back or end.
+    NotOriented {
+        /// The index of the part.
+        part: usize,
+        /// The vertices at the ends of the edge; the vertex twice in a line.
+        edge: [u32; 2],
+    },
+    /// The front of a closed surface is on its inside, and no other surface is around it whose cavity it could be.
+    InsideOut {
+        /// The index of its first part.
+        part: usize,
+    },
     /// A scale is zero, infinite or NaN: nothing with a surface would be left.
     BadScale {
         /// The axis: 0 for x.
@@ -78,6 +99,27 @@ impl fmt::Display for MeshError {
             }
             Self::WrongCount { given, needed } => {
                 write!(f, "{given} vertices were given for {needed}")
+            }
+            Self::NotClosed { part, edge: [from, to] } if from == to => {
+                write!(
+                    f,
+                    "a solid is closed, but part {part} ends at vertex {from}, and none goes on"
+                )
+            }
+            Self::NotClosed { part, edge: [from, to] } => write!(
+                f,
+                "a solid is closed, but nothing is beyond the edge from vertex {from} to {to} of part {part}"
+            ),
+            Self::NotOriented { part, edge: [from, to] } if from == to => write!(
+                f,
+                "as many segments of a solid start at a vertex as end there, but not at vertex {from} of part {part}"
+            ),
+            Self::NotOriented { part, edge: [from, to] } => write!(
+                f,
+                "the fronts of a solid agree across edges, but not at the edge from vertex {from} to {to} of part {part}"
+            ),
+            Self::InsideOut { part } => {
+                write!(f, "the surface of part {part} has its front inside: flip its parts")
             }
             Self::BadScale { axis, value } => write!(f, "the scale along axis {axis} is {value}"),
         }

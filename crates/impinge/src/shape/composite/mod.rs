@@ -5,6 +5,7 @@
 //! a composite as a whole: they ask for the parts that may matter ([`PartSearch`]) and treat each as
 //! a solid of its own.
 
+pub(crate) mod body;
 pub(crate) mod compound;
 pub(crate) mod compound_search;
 pub(crate) mod height_field;
@@ -20,7 +21,7 @@ use smallvec::SmallVec;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::partitioning::BoxTree;
-use crate::shape::{FeatureId, Geometry, Segment, Shape, SurfaceAccess, Triangle};
+use crate::shape::{EnclosedBody, FeatureId, Geometry, Segment, Shape, SurfaceAccess, Triangle};
 
 /// The way to a part: the index of the child, of its child, … of the part in the last.
 pub type PartPath = SmallVec<[u32; 4]>;
@@ -117,6 +118,32 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     #[doc(hidden)]
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         None
+    }
+
+    /// Calls `visit` with each closed surface among the parts that is the boundary of a [`EnclosedBody`].
+    #[doc(hidden)]
+    fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
+        let _ = visit;
+    }
+
+    /// [`Self::each_body`] visits any. O(1).
+    #[doc(hidden)]
+    fn has_bodies(&self) -> bool {
+        false
+    }
+
+    /// The composite as a boundary winds around a point; the point may count either way where it lies on a part.
+    #[doc(hidden)]
+    fn winds_around(&self, point: &Point<N, D>) -> bool {
+        let _ = point;
+        false
+    }
+
+    /// The number of the connected piece that a part belongs to. The default takes a surface for one piece, and solids
+    /// side by side for one each.
+    #[doc(hidden)]
+    fn piece_of(&self, part: u32) -> u32 {
+        if self.surface().is_some() { 0 } else { part }
     }
 }
 

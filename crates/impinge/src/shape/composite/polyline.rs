@@ -1,9 +1,12 @@
 //! Polylines: chains and nets of segments.
 
+use std::sync::OnceLock;
+
 use crate::bounding_volume::Aabb;
-use crate::math::{Point, Real, Space, Vector};
+use crate::math::{Point, Real, Space, Vector, max, max_component};
 use crate::partitioning::{BoxTree, BoxTreeError};
 use crate::shape::Segment;
+use crate::shape::composite::body::{check_fronts, pieces};
 use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
@@ -16,9 +19,9 @@ use crate::shape::composite::polyline_parts;
 /// [`Segment`]; all is in the frame of the line. Segments belong together by the positions of their
 /// ends, not by the indices.
 ///
-/// **Sides.** A line has no inside, but for `encloses` and `signed_distance` of one in 2D. In 2D it has two sides, or one if asked by `one_sided`:
-/// then what is solid lies on its left, as for an outline that runs counter-clockwise, and nothing
-/// touches it from there.
+/// **Sides.** A line is a skin and has no inside, but for `encloses` and `signed_distance` of one in 2D, unless `solid`
+/// makes a closed one a body. In 2D it has two sides, or one if asked by `one_sided`: then what is solid lies on its
+/// left, as for an outline that runs counter-clockwise, and nothing touches it from there.
 ///
 /// **Seams.** Contacts see the line as one (see [`Surface`](crate::shape::Surface)): at a joint only those
 /// normals count that the whole line has there, so that nothing catches on the joints of a floor.
@@ -53,7 +56,11 @@ pub struct Polyline<N: Real, const D: usize> {
     /// The normal on the front of a segment from its direction, of a line with one side: known in
     /// the plane only.
     pub(in crate::shape) front: Option<Front<N, D>>,
+    /// It was made one, as long as it [`Self::is_cycle`].
+    is_solid: bool,
     pub(in crate::shape) keeps_internal_edges: bool,
+    /// By segment: the first one of its piece.
+    pieces: OnceLock<Vec<u32>>,
 }
 
 /// From the direction of a segment to the normal on its front.
@@ -123,7 +130,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         let joints = Joints::new(&vertices, &segments);
         let tree = BoxTree::try_from_boxes(&boxes_of(&vertices, &segments)).map_err(refused)?;
         let is_cycle = is_cycle(vertices.len(), &segments, &joints);
-        let (is_moved, front, keeps_internal_edges) = (false, None, false);
+        let (is_moved, front, is_solid, keeps_internal_edges) = (false, None, false, false);
         Ok(Self {
             vertices,
             segments,
@@ -132,7 +139,9 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
             is_cycle,
             is_moved,
             front,
+            is_solid,
             keeps_internal_edges,
+            pieces: OnceLock::new(),
         })
     }
 
@@ -148,7 +157,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         let is_mirrored = scale.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1;
         let turned = |&[a, b]: &[u32; 2]| if is_mirrored { [b, a] } else { [a, b] };
         let made = Self::try_new(vertices, self.segments.iter().map(turned).collect())?;
-        Ok(Self { front: self.front, keeps_internal_edges: self.keeps_internal_edges, ..made })
+        let Self { front, is_solid, keeps_internal_edges, .. } = *self;
+        Ok(Self { front, is_solid, keeps_internal_edges, ..made })
     }
 
     /// Moves the vertices; see [`Self::try_set_vertices`].
@@ -173,6 +183,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         self.tree.try_refit(&boxes_of(vertices, &self.segments)).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
         self.is_moved = true;
+        self.pieces = OnceLock::new();
         let is_whole = self.joints.are_together(vertices);
         self.is_cycle = is_whole && is_cycle(vertices.len(), &self.segments, &self.joints);
         Ok(())
@@ -236,6 +247,22 @@ impl<N: Real, const D: usize> Polyline<N, D> {
         self.front.is_some()
     }
 
+    /// The line is a body, not a skin: `solid` made it one, and no vertices have been moved apart since. Always false
+    /// in 3D.
+    #[must_use]
+    pub const fn is_solid(&self) -> bool {
+        self.is_solid && self.is_cycle
+    }
+
+    /// By segment, the first one of its piece: segments that share ends are of one piece.
+    pub(in crate::shape) fn pieces(&self) -> &[u32] {
+        self.pieces.get_or_init(|| {
+            let are_together = !self.is_moved || self.joints.are_together(&self.vertices);
+            let number = |vertex| if are_together { self.joints.of(vertex) } else { vertex };
+            pieces(&self.segments, self.vertices.len(), number)
+        })
+    }
+
     /// Contacts treat each segment on its own; see [`Self::with_internal_edges_kept`].
     #[must_use]
     pub const fn keeps_internal_edges(&self) -> bool {
@@ -271,6 +298,90 @@ impl<N: Real> Polyline<N, 2> {
     pub const fn one_sided(mut self) -> Self {
         self.front = Some(polyline_parts::right_of);
         self
+    }
+
+    /// Makes the line a body instead of a skin; see [`Self::try_solid`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_solid`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn solid(self) -> Self {
+        or_panic(self.try_solid())
+    }
+
+    /// Makes the line a body instead of a skin: all that it [encloses](Self::encloses) belongs to the shape.
+    ///
+    /// What that means for each query is said of meshes in 3D: `TriMesh::try_solid`. The body lies on the left of its
+    /// segments; outlines that run clockwise are holes in others.
+    ///
+    /// # Errors
+    /// If the line is no [outline](Self::is_outline): the error names the first vertex at which it is open or its
+    /// segments disagree. If an outline runs clockwise and lies in no other one: the error names a segment of it.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Point, Vector};
+    /// use impinge::dim2::query::{contact, distance};
+    /// use impinge::dim2::shape::{Ball, MeshError, Polyline};
+    ///
+    /// let corners = [[0.0_f64, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]].map(Point::from);
+    /// let block = Polyline::closed(corners.to_vec()).solid();
+    /// let (here, ball, there) = (Isometry::identity(), Ball::new(0.25), Isometry::translation(3.0, 2.0));
+    /// assert_eq!(distance(&here, &block, &there, &ball), 0.0);
+    /// let way_out = contact(&here, &block, &there, &ball, 0.0).expect("it is inside");
+    /// assert_eq!((way_out.depth, *way_out.normal), (1.25, Vector::x()));
+    ///
+    /// let open = Polyline::open(corners.to_vec()).try_solid();
+    /// assert_eq!(open.err(), Some(MeshError::NotClosed { part: 0, edge: [0, 0] }));
+    /// ```
+    pub fn try_solid(mut self) -> Result<Self, MeshError> {
+        if !self.is_cycle {
+            return Err(self.opening());
+        }
+        let (pieces, scale) = (self.pieces(), self.scale());
+        let cone = |part: u32| {
+            let apex = self.ends(pieces[part as usize])[0];
+            let [a, b] = self.ends(part).map(|end| (end - apex).map(|x| x.as_f64() / scale));
+            a.perp(&b)
+        };
+        let is_cavity = |part: u32| {
+            let winding =
+                self.winding_of(&self.ends(part)[0], |other| pieces[other as usize] != part);
+            winding.is_none_or(|winding| winding > 0)
+        };
+        check_fronts(pieces, cone, is_cavity)?;
+        self.is_solid = true;
+        Ok(self.one_sided())
+    }
+
+    /// A power of two of the size of the line.
+    fn scale(&self) -> f64 {
+        let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
+        let largest = |corner: &Point<N, 2>| max_component(&corner.coords);
+        let size = corners.map_or(N::ONE, |[low, high]| max(largest(&low), largest(&high)));
+        size.power_of_two_below().as_f64()
+    }
+
+    /// The first vertex at which not as many segments end as start.
+    fn opening(&self) -> MeshError {
+        let joints = Joints::new(&self.vertices, &self.segments);
+        for (part, vertex) in
+            (0..).zip(&self.segments).flat_map(|(part, ends)| ends.map(|end| (part, end)))
+        {
+            let (joint, mut counts) = (joints.of(vertex), [0_usize; 2]);
+            for &other in joints.parts(joint) {
+                let ends = self.segments[other as usize].map(|end| joints.of(end) == joint);
+                (counts[0], counts[1]) =
+                    (counts[0] + usize::from(ends[0]), counts[1] + usize::from(ends[1]));
+            }
+            match counts {
+                [starts, ends] if starts == ends => {}
+                [1, 0] | [0, 1] => return MeshError::NotClosed { part, edge: [vertex; 2] },
+                _ => return MeshError::NotOriented { part, edge: [vertex; 2] },
+            }
+        }
+        // Vertices that were moved together close nothing: segments belong together as they did at first.
+        MeshError::NotClosed { part: 0, edge: [self.segments[0][0]; 2] }
     }
 }
 

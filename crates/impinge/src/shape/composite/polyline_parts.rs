@@ -2,13 +2,13 @@
 
 use crate::bounding_volume::{Aabb, BoundingSphere};
 use crate::math::{Point, Pose, Real, Space, Vector, max_component, perp, unit};
-use crate::shape::composite::tri_mesh::{aabb_at, sphere_around};
+use crate::shape::composite::tri_mesh::{MeshByDimension, aabb_at, sphere_around};
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::surface::seam::{Seam, slack};
 use crate::shape::surface::sidedness::Joining;
 use crate::shape::{
-    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline, ScaleError,
-    Shape, ShapeHandle, Sidedness, Surface, SurfaceAccess,
+    CompositeShape, EnclosedBody, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline,
+    ScaleError, Shape, ShapeHandle, Sidedness, Surface, SurfaceAccess,
 };
 
 /// The normal on the right of a direction.
@@ -56,6 +56,24 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         Some(self)
     }
+
+    fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
+        if self.is_solid() {
+            visit(&EnclosedBody::within(self));
+        }
+    }
+
+    fn has_bodies(&self) -> bool {
+        self.is_solid()
+    }
+
+    fn winds_around(&self, point: &Point<N, D>) -> bool {
+        <N::Algorithms>::line_winds_around(self, point)
+    }
+
+    fn piece_of(&self, part: u32) -> u32 {
+        self.pieces()[part as usize]
+    }
 }
 
 /// The own normals of a segment are all that are perpendicular to it: two in 2D, a circle
@@ -87,6 +105,10 @@ impl<N: Real, const D: usize> Surface<N, D> for Polyline<N, D> {
 }
 
 impl<N: Real, const D: usize> OwnSurface<N, D> for Polyline<N, D> {
+    fn is_body(&self, _: u32) -> bool {
+        self.is_solid()
+    }
+
     fn sidedness(&self) -> Option<Sidedness> {
         let (is_left, follows_front) = (false, false);
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided(), self.keeps_internal_edges);

@@ -30,6 +30,12 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         None
     }
 
+    /// The part bounds a body: a solid that overlaps it touches its front wherever the middle of the solid is.
+    fn is_body(&self, part: u32) -> bool {
+        let _ = part;
+        false
+    }
+
     /// In 3D, parts hang together where they have corners at one position, and there alone; and a normal
     /// along which a direction into a part at the seam rises is none there.
     fn has_plain_seams(&self) -> bool {
@@ -93,6 +99,11 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
     #[inline]
     pub(crate) fn faces(&self, part: u32, center: &Point<N, D>) -> bool {
         self.surface.faces(part, center)
+    }
+
+    /// See [`OwnSurface::is_body`].
+    pub(crate) fn is_body(&self, part: u32) -> bool {
+        self.own.is_some_and(|own| own.is_body(part))
     }
 
     /// See [`OwnSurface::prefetch`].

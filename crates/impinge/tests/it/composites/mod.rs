@@ -16,4 +16,5 @@ mod height_fields;
 mod internal_edges;
 mod internal_edges_of_lines;
 mod meshes;
+mod solid_meshes;
 mod thin_triangles;

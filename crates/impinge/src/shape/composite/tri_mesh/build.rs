@@ -1,5 +1,7 @@
 //! Making meshes, and making other ones of them.
 
+use std::sync::OnceLock;
+
 use super::MeshByDimension;
 use super::bends::Bends;
 use super::topology::Topology;
@@ -58,7 +60,9 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
             normals,
             tree,
             is_one_sided: false,
+            is_solid: false,
             keeps_internal_edges: false,
+            pieces: OnceLock::new(),
         })
     }
 
@@ -83,12 +87,12 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     }
 
     /// The same mesh with the other side of each triangle in front: the second and third corner
-    /// exchange places, and so do the first and last side.
+    /// exchange places, and so do the first and last side. What is solid is so no longer.
     #[must_use]
     pub fn flipped(self) -> Self {
         let triangles = self.triangles.iter().map(|&[a, b, c]| [a, c, b]).collect();
         let vertices = self.vertices.clone();
-        self.with(vertices, triangles)
+        Self { is_solid: false, ..self.with(vertices, triangles) }
     }
 
     /// The mesh scaled along the axes of its frame, about its origin. Where that mirrors it, the
@@ -110,8 +114,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// A mesh of vertices and triangles that are known to be good, with the options of this one.
     fn with(&self, vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
         let made = Self::new(vertices, triangles);
-        let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
-        Self { is_one_sided, keeps_internal_edges, ..made }
+        let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = *self;
+        Self { is_one_sided, is_solid, keeps_internal_edges, ..made }
     }
 
     /// Moves the vertices; see [`Self::try_set_vertices`].
@@ -146,6 +150,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         let corners = |index: u32| corners_of(vertices, &self.triangles[index as usize]);
         self.tree.add_slabs(&self.normals, corners);
         self.bends.clear();
+        self.pieces = OnceLock::new();
         self.topology.is_moved = true;
         self.packed = <N::Algorithms>::mesh_packed(&self.tree, vertices, &self.triangles);
         self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);

@@ -5,7 +5,7 @@ use super::{TriMesh, surface3};
 use crate::bvh::Triangles;
 use crate::math::{Point, Real, Vector};
 use crate::partitioning::BoxTree;
-use crate::shape::{FeatureId, Part};
+use crate::shape::{FeatureId, Part, Polyline};
 use crate::tables::Here;
 
 /// The algorithms of meshes that differ by dimension.
@@ -33,6 +33,12 @@ pub trait MeshByDimension<N: Real, const D: usize> {
     /// See [`Surface::snapped`](crate::shape::Surface::snapped).
     fn mesh_snapped(mesh: &TriMesh<N, D>, part: u32, normal: &Vector<N, D>)
     -> Option<Vector<N, D>>;
+
+    /// See [`CompositeShape::winds_around`](crate::shape::CompositeShape::winds_around).
+    fn mesh_winds_around(mesh: &TriMesh<N, D>, point: &Point<N, D>) -> bool;
+
+    /// The same of a line.
+    fn line_winds_around(line: &Polyline<N, D>, point: &Point<N, D>) -> bool;
 
     /// The triangles for rays, in the order of the tree; none where boxes are enough.
     fn mesh_packed(
@@ -82,6 +88,14 @@ impl<N: Real> MeshByDimension<N, 2> for Here {
         mesh.snapped_in_plane(part, normal)
     }
 
+    fn mesh_winds_around(_: &TriMesh<N, 2>, _: &Point<N, 2>) -> bool {
+        false
+    }
+
+    fn line_winds_around(line: &Polyline<N, 2>, point: &Point<N, 2>) -> bool {
+        line.winding_of(point, |_| true) != Some(0)
+    }
+
     fn mesh_packed(_: &BoxTree<N, 2>, _: &[Point<N, 2>], _: &[[u32; 3]]) -> Vec<Triangles> {
         Vec::new()
     }
@@ -125,6 +139,14 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
         normal: &Vector<N, 3>,
     ) -> Option<Vector<N, 3>> {
         mesh.snapped_in_space(part, normal)
+    }
+
+    fn mesh_winds_around(mesh: &TriMesh<N, 3>, point: &Point<N, 3>) -> bool {
+        mesh.winding_of(point, |_| true) != Some(0)
+    }
+
+    fn line_winds_around(_: &Polyline<N, 3>, _: &Point<N, 3>) -> bool {
+        false
     }
 
     fn mesh_packed(

@@ -2,6 +2,7 @@
 
 use core::hint::black_box;
 
+use super::MeshByDimension;
 use super::rays::RayBounds;
 use super::{TriMesh, entries};
 use crate::bounding_volume::{Aabb, BoundingSphere, Ray};
@@ -10,8 +11,8 @@ use crate::partitioning::BoxTree;
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
-    CompositeShape, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, ScaleError, Shape,
-    ShapeHandle, Surface, SurfaceAccess,
+    CompositeShape, EnclosedBody, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid,
+    ScaleError, Shape, ShapeHandle, Surface, SurfaceAccess,
 };
 
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
@@ -53,6 +54,24 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         Some(self)
     }
+
+    fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
+        if self.is_solid() {
+            visit(&EnclosedBody::within(self));
+        }
+    }
+
+    fn has_bodies(&self) -> bool {
+        self.is_solid()
+    }
+
+    fn winds_around(&self, point: &Point<N, D>) -> bool {
+        <N::Algorithms>::mesh_winds_around(self, point)
+    }
+
+    fn piece_of(&self, part: u32) -> u32 {
+        self.pieces()[part as usize]
+    }
 }
 
 impl<N: Space<D>, const D: usize> Surface<N, D> for TriMesh<N, D> {
@@ -90,6 +109,10 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
         black_box((normal(part), self.bends.kept_of(part), self.triangles[part as usize]));
         // Where there is no triangle across a side there is none of such a number.
         black_box(beyond.map(normal));
+    }
+
+    fn is_body(&self, _: u32) -> bool {
+        self.is_solid()
     }
 
     fn has_plain_seams(&self) -> bool {

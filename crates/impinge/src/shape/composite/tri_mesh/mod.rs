@@ -7,6 +7,7 @@ mod by_dimension;
 mod composite;
 mod entries;
 mod rays;
+mod solid;
 mod surface2;
 mod surface3;
 mod topology;
@@ -17,6 +18,8 @@ pub(in crate::shape) use composite::{aabb_at, sphere_around};
 pub(crate) use entries::MeshEntries;
 pub(in crate::shape) use surface3::normal_of;
 pub use topology::EdgeNeighbor;
+
+use std::sync::OnceLock;
 
 use self::bends::Bends;
 use self::topology::Topology;
@@ -34,9 +37,9 @@ use crate::shape::Triangle;
 ///
 /// **Sides.** In 3D the front of a triangle is the side that sees its corners counter-clockwise.
 /// A mesh has two sides, or one if asked by `one_sided`: then nothing touches it from behind, and what
-/// is inside a closed mesh is not pushed deeper. Without that a mesh has no inside in the queries that all
-/// shapes have; what a closed one encloses say `encloses` and `signed_distance`. In 2D
-/// triangles are filled, and their winding means nothing.
+/// is inside a closed mesh is not pushed deeper. It is a skin, and has no inside in the queries that all
+/// shapes have, unless `solid` makes a closed one a body; what a closed skin encloses say `encloses` and
+/// `signed_distance`. In 2D triangles are filled, and their winding means nothing.
 ///
 /// **Seams.** Contacts see the mesh as one surface (see [`Surface`](crate::shape::Surface)): at an edge or
 /// corner only those normals count that the whole has there, so that nothing catches on the edges of
@@ -76,7 +79,11 @@ pub struct TriMesh<N: Real, const D: usize> {
     /// The triangles are a cycle, and corners that belong together lie together.
     is_cycle: bool,
     is_one_sided: bool,
+    /// It was made one, as long as it [`Self::is_cycle`].
+    is_solid: bool,
     keeps_internal_edges: bool,
+    /// By triangle: the first one of its piece.
+    pieces: OnceLock<Vec<u32>>,
 }
 
 impl<N: Real, const D: usize> TriMesh<N, D> {

@@ -1,0 +1,52 @@
+//! The contacts of what lies wholly inside a body: they lead out through the nearest part of its boundary.
+
+use super::part_contact::{Arena, plain};
+use super::scene::Scene;
+use super::{PartContacts, Query};
+use crate::collide::parts::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
+use crate::math::{Space, Unit};
+use crate::shape::Plane;
+
+impl<N: Space<D>, const D: usize> Query<'_, N, D> {
+    /// The pieces that are inside of bodies. Contacts that their parts have with the boundary, which is near, are
+    /// taken away: from inside it is no surface that they come close to.
+    ///
+    /// A piece whose parts overlap some of the boundary is not inside: these contacts lead out.
+    pub(super) fn take_inside(&self, contacts: &mut PartContacts<N, D>) -> InsidePieces<N, D> {
+        if self.is_self || !self.between.has_bodies() {
+            return InsidePieces::new();
+        }
+        let mut pieces = held_pieces(self.between);
+        let is_of = |piece: &InsidePiece<N, D>, parts| piece.has(self.between, parts);
+        pieces.retain(|piece| {
+            let crosses = |contact: &super::PartContact<N, D>| {
+                contact.distance <= N::ZERO && is_of(piece, contact.parts())
+            };
+            !contacts.iter().any(crosses)
+        });
+        find_exits(self.between, &mut pieces);
+        contacts.retain(|contact| !pieces.iter().any(|piece| is_of(piece, contact.parts())));
+        pieces
+    }
+
+    /// Adds the contacts of a piece that is inside: those that its parts have with the half-space below the plane
+    /// that the way out leads through.
+    pub(super) fn add_inside(
+        &self,
+        scene: &Scene<'_, N, D>,
+        piece: &InsidePiece<N, D>,
+        contacts: &mut PartContacts<N, D>,
+        arena: &mut Arena<N, D>,
+    ) {
+        let Some(Exit { point, outward, parts }) = piece.exit() else { return };
+        let inner = piece.inner;
+        let outward =
+            if inner == 0 { self.between.pair.pose12.inverse_vector(&outward) } else { outward };
+        let Ok(plane) = Plane::try_new(Unit::new_unchecked(outward)) else { return };
+        piece.each_part(self.between, |part| {
+            let (placed, mut named) = (scene.above(&plane, &point, (inner, part)), parts);
+            named[inner] = part;
+            contacts.extend(plain(&placed, named, self.request, arena));
+        });
+    }
+}

@@ -1,0 +1,301 @@
+//! Pieces of one shape that lie wholly inside a body of the other.
+//!
+//! A body is given by a closed surface, which is a skin to the searches of parts. A connected piece that touches no
+//! part of it is inside as a whole or outside as a whole, so that one point decides. Out of the body leads the way to
+//! the nearest part of the boundary: the piece is as deep as it reaches below the plane through the nearest point
+//! there, perpendicular to that way.
+
+use core::ops::Range;
+
+use smallvec::SmallVec;
+
+use super::between::Between;
+use super::bounds::loosened;
+use super::separation::{PairVisitor, PartSeparation, Wanted, visit_near_pairs};
+use crate::collide::separation::separation as of_convex;
+use crate::convex::Separation;
+use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};
+use crate::shape::{EnclosedBody, Geometry, Kind};
+
+/// A connected piece of one shape, one of whose points lies in a body of the other.
+#[derive(Clone, Debug)]
+pub(crate) struct InsidePiece<N: Real, const D: usize> {
+    /// The piece is one of the first shape (0) or of the second (1).
+    pub(crate) inner: usize,
+    /// Its number, as its parts have it; 0 of a convex solid.
+    piece: u32,
+    /// The parts of the other shape that bound the body.
+    boundary: Range<u32>,
+    /// The part of the piece and that of the boundary that are nearest, of those through which a way leads out.
+    nearest: Option<PartSeparation<N, D>>,
+    /// Of those through which it leads deeper into the body: the way where there is no other.
+    blocked: Option<PartSeparation<N, D>>,
+}
+
+/// Where a way may lead out, the body is asked about a point beyond the boundary: farther by this part of the way, and
+/// by rounding.
+const BEYOND: f64 = 1.0 / 64.0;
+/// Lengths up to so many rounding units of coordinates are rounding errors.
+const ROUNDING: f64 = 64.0;
+
+pub(crate) type InsidePieces<N, const D: usize> = SmallVec<[InsidePiece<N, D>; 1]>;
+
+/// The plane through the nearest point of the boundary, perpendicular to the way out; in the frame of the first shape.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Exit<N: Real, const D: usize> {
+    pub(crate) point: Point<N, D>,
+    /// Unit, out of the body.
+    pub(crate) outward: Vector<N, D>,
+    /// The parts that are nearest.
+    pub(crate) parts: [u32; 2],
+}
+
+/// The pieces of the two shapes of which a point lies in a body of the other: they are inside of it, or cross its
+/// boundary.
+///
+/// Cost: a winding number for each piece whose parts are within the box of the other shape.
+pub(crate) fn held_pieces<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+) -> InsidePieces<N, D> {
+    let mut pieces = InsidePieces::new();
+    for inner in [0, 1] {
+        let outer = between.composites()[1 - inner].filter(|outer| outer.has_bodies());
+        let Some(outer) = outer else { continue };
+        let points = points_of_pieces(between, inner);
+        outer.each_body(&mut |body| add_held(body, inner, &points, &mut pieces));
+    }
+    pieces
+}
+
+/// Finds the ways out of the bodies, and leaves the pieces that have one: those that are inside as a whole.
+///
+/// Cost: one search of the nearest parts for all; it takes time in proportion to the square of their number where that is
+/// large.
+pub(crate) fn find_exits<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    pieces: &mut InsidePieces<N, D>,
+) {
+    if !pieces.is_empty() {
+        visit_near_pairs(between, &mut NearestBoundary { between, pieces });
+        pieces.retain(|piece| piece.exit().is_some());
+    }
+}
+
+/// Appends the pieces of which a point lies in a body.
+fn add_held<N: Space<D>, const D: usize>(
+    body: &EnclosedBody<'_, N, D>,
+    inner: usize,
+    points: &[(u32, Point<N, D>)],
+    pieces: &mut InsidePieces<N, D>,
+) {
+    for (piece, _) in points.iter().filter(|(_, point)| body.holds(point)) {
+        let boundary = body.parts();
+        pieces.push(InsidePiece { inner, piece: *piece, boundary, nearest: None, blocked: None });
+    }
+}
+
+/// A point of each piece of a shape that may be inside the other, in the frame of the other. Half-spaces have none.
+fn points_of_pieces<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    inner: usize,
+) -> SmallVec<[(u32, Point<N, D>); 1]> {
+    let (kind, pose) = between.seen_by_other(inner);
+    let mut points = SmallVec::new();
+    let mut last = None;
+    for (piece, part) in parts_near_other(between, inner) {
+        if last == Some(piece) {
+            continue;
+        }
+        last = Some(piece);
+        each_solid(kind, part, |kind, own| {
+            if let Some(map) = Geometry(kind).as_support_map() {
+                points.push((piece, pose.point(&own.point(&map.center()))));
+            }
+        });
+    }
+    points
+}
+
+/// The parts of a shape whose boxes meet that of the other one, each after the number of its piece; in order. A piece
+/// that is inside the other shape has all its parts among them.
+fn parts_near_other<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    inner: usize,
+) -> SmallVec<[(u32, u32); 1]> {
+    let mut parts = SmallVec::new();
+    let Some(composite) = between.composites()[inner] else {
+        parts.push((0, 0));
+        return parts;
+    };
+    composite.search().overlapping(&between.whole_in_other(1 - inner), &mut |part| {
+        parts.push((composite.piece_of(part), part));
+    });
+    parts.sort_unstable();
+    parts
+}
+
+/// Calls with a part of a shape and its pose in the frame of the shape; a convex solid is its own part.
+fn each_solid<N: Space<D>, const D: usize>(
+    shape: Kind<'_, N, D>,
+    part: u32,
+    visit: impl FnOnce(Kind<'_, N, D>, &Pose<N, D>),
+) {
+    match Geometry(shape).as_composite().map(|composite| composite.part(part)) {
+        Some(part) => visit(part.solid.geometry().0, &part.pose),
+        None => visit(shape, &Pose::identity()),
+    }
+}
+
+/// Finds the nearest parts of each piece and its boundary.
+struct NearestBoundary<'p, 'a, N: Real, const D: usize> {
+    between: &'p Between<'a, N, D>,
+    pieces: &'p mut InsidePieces<N, D>,
+}
+
+impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, N, D> {
+    fn limit(&self) -> N {
+        self.pieces.iter().fold(-N::INFINITY, |most, piece| max(most, piece.distance()))
+    }
+
+    /// What crosses the boundary is not inside: how deep does not matter.
+    fn bound(&self) -> N {
+        let limit = self.limit();
+        if limit <= N::ZERO { -N::ONE } else { loosened(limit) }
+    }
+
+    fn visit(&mut self, parts: [u32; 2]) {
+        let mut placed = None;
+        for piece in self.pieces.iter_mut() {
+            if !piece.has(self.between, parts) {
+                continue;
+            }
+            let placed = placed.get_or_insert_with(|| self.between.parts(parts));
+            let Some(local) = of_convex(&placed.pair(), piece.distance()) else { continue };
+            let found = PartSeparation { separation: placed.in_first(&local), local, parts };
+            let is_nearer = piece.nearest.is_none_or(|nearest| found.is_before(&nearest));
+            if is_nearer && piece.leads_out(self.between, &found) {
+                piece.nearest = Some(found);
+            } else if piece.blocked.is_none_or(|blocked| found.is_before(&blocked)) {
+                piece.blocked = Some(found);
+            }
+        }
+    }
+}
+
+impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
+    /// One of two parts belongs to the piece, and the other to the boundary of the body.
+    pub(crate) fn has(&self, between: &Between<'_, N, D>, parts: [u32; 2]) -> bool {
+        self.boundary.contains(&parts[1 - self.inner]) && self.is_own(between, parts[self.inner])
+    }
+
+    fn is_own(&self, between: &Between<'_, N, D>, part: u32) -> bool {
+        let composite = between.composites()[self.inner];
+        composite.is_none_or(|composite| composite.piece_of(part) == self.piece)
+    }
+
+    /// Calls with each part of the piece.
+    pub(crate) fn each_part(&self, between: &Between<'_, N, D>, mut visit: impl FnMut(u32)) {
+        let near = parts_near_other(between, self.inner);
+        near.iter().filter(|(piece, _)| *piece == self.piece).for_each(|(_, part)| visit(*part));
+    }
+
+    /// How near the boundary is, as far as that is known.
+    fn distance(&self) -> N {
+        self.nearest.map_or(N::INFINITY, |nearest| nearest.separation.distance)
+    }
+
+    /// Behind the nearest point of the boundary the body ends: it does not where bodies of one surface overlap.
+    fn leads_out(&self, between: &Between<'_, N, D>, found: &PartSeparation<N, D>) -> bool {
+        let Some(Exit { point, outward, .. }) = self.exit_at(found) else { return true };
+        let outer = 1 - self.inner;
+        let Some(composite) = between.composites()[outer] else { return true };
+        let (point, outward) = match outer {
+            0 => (point, outward),
+            _ => (between.pose21.point(&point), between.pose21.vector(&outward)),
+        };
+        let way = max(found.separation.distance, N::ZERO) * N::lit(BEYOND) + rounding([&point; 2]);
+        let beyond = point + outward * way;
+        let mut is_held = false;
+        composite.each_body(&mut |body| {
+            is_held |= body.parts() == self.boundary && body.holds(&beyond);
+        });
+        !is_held
+    }
+
+    /// The way out of the body; `None` of a piece that clearly crosses the boundary, where parts in contact know more.
+    pub(crate) fn exit(&self) -> Option<Exit<N, D>> {
+        self.exit_at(&self.nearest.or(self.blocked)?)
+    }
+
+    /// The way out of the body through some part of its boundary.
+    fn exit_at(&self, found: &PartSeparation<N, D>) -> Option<Exit<N, D>> {
+        let PartSeparation { separation, parts, .. } = *found;
+        let Separation { normal, point1, point2, distance } = separation;
+        let (point, outward) = if self.inner == 0 { (point2, normal) } else { (point1, -normal) };
+        // Parts that overlap by rounding alone may be apart to who else asks.
+        (distance > -rounding([&point1, &point2])).then_some(Exit { point, outward, parts })
+    }
+
+    /// How deep the piece is, as a separation; `None` where there is no [`Self::exit`].
+    fn separation(&self, between: &Between<'_, N, D>) -> Option<PartSeparation<N, D>> {
+        let Exit { point, outward, parts } = self.exit()?;
+        let pose12 = &between.pair.pose12;
+        let seen =
+            |way: Vector<N, D>| if self.inner == 0 { way } else { pose12.inverse_vector(&way) };
+        let origin = if self.inner == 0 { point } else { pose12.inverse_point(&point) };
+        let (kind, _) = between.seen_by_other(self.inner);
+        let inward = seen(-outward);
+        let (mut depth, mut lowest, mut deepest) = (-N::INFINITY, Vector::<N, D>::zeros(), 0);
+        self.each_part(between, |part| {
+            each_solid(kind, part, |kind, pose| {
+                let Some(map) = Geometry(kind).as_support_map() else { return };
+                let core = map.core_support(&pose.inverse_vector(&inward));
+                let arm = pose.point(&core) - origin + inward * map.rounding();
+                let own = arm.dot(&inward);
+                if own > depth {
+                    (depth, lowest, deepest) = (own, arm, part);
+                }
+            });
+        });
+        let low = if self.inner == 0 { lowest } else { pose12.vector(&lowest) };
+        let low = point + low;
+        let high = low + outward * depth;
+        let (normal, points) =
+            if self.inner == 0 { (-outward, [low, high]) } else { (outward, [high, low]) };
+        let [point1, point2] = points;
+        let separation = Separation { distance: -depth, normal, point1, point2 };
+        let mut named = parts;
+        named[self.inner] = deepest;
+        let local = between.parts(named).in_first_part(&separation);
+        depth.is_finite_number().then_some(PartSeparation { separation, local, parts: named })
+    }
+}
+
+/// What rounding makes of lengths between two points.
+fn rounding<N: Real, const D: usize>(points: [&Point<N, D>; 2]) -> N {
+    let size = max(max_component(&points[0].coords), max_component(&points[1].coords));
+    N::lit(ROUNDING) * N::EPSILON * size
+}
+
+/// The answer to what is [`Wanted`] of two shapes, among whose parts are bodies: `best` is that of the parts alone.
+pub(super) fn with_inside<N: Space<D>, const D: usize>(
+    between: &Between<'_, N, D>,
+    limit: N,
+    wanted: Wanted,
+    best: Option<PartSeparation<N, D>>,
+) -> Option<PartSeparation<N, D>> {
+    let touches = best.is_some_and(|best| best.separation.distance <= N::ZERO);
+    if touches && wanted == Wanted::Touching {
+        return best;
+    }
+    let (mut best, mut pieces) = (best, held_pieces(between));
+    pieces.retain(|piece| !(touches && best.is_some_and(|best| piece.has(between, best.parts))));
+    find_exits(between, &mut pieces);
+    for found in pieces.iter().filter_map(|piece| piece.separation(between)) {
+        let is_within = found.separation.distance <= limit;
+        if is_within && best.is_none_or(|best| found.is_before(&best)) {
+            best = Some(found);
+        }
+    }
+    best
+}

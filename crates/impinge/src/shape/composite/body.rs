@@ -1,0 +1,124 @@
+//! Closed surfaces that are the boundary of a body, and the connected pieces of surfaces.
+//!
+//! To the searches of parts a closed surface is a skin. What lies wholly inside touches no part, so that the queries
+//! ask, beside the nearest parts, whether a body holds a point of each piece of the other shape.
+
+use core::ops::Range;
+
+use super::mesh_error::MeshError;
+use crate::math::{Mapped, Point, Pose, Real, Space};
+use crate::shape::CompositeShape;
+
+/// A body: all points that a closed surface of a composite winds around.
+///
+/// Public only as the argument of a hidden method.
+#[expect(missing_debug_implementations, reason = "users cannot reach it")]
+pub struct EnclosedBody<'a, N: Real, const D: usize> {
+    /// Its boundary, in a frame of its own.
+    boundary: &'a dyn CompositeShape<N, D>,
+    /// That frame in the frame of the composite.
+    pose: Pose<N, D>,
+    /// The number of the first part of the boundary among those of the composite.
+    first: u32,
+}
+
+impl<'a, N: Space<D>, const D: usize> EnclosedBody<'a, N, D> {
+    /// A composite that is the boundary of a body as a whole.
+    pub(in crate::shape) fn within(boundary: &'a dyn CompositeShape<N, D>) -> Self {
+        Self { boundary, pose: Pose::identity(), first: 0 }
+    }
+
+    /// The body as one of a compound: of a child at a pose, whose first part has this number.
+    pub(in crate::shape) fn of_child(&self, pose: &Pose<N, D>, first: u32) -> Self {
+        Self { pose: pose.compose(&self.pose), first: first + self.first, ..*self }
+    }
+
+    /// The parts of the boundary.
+    pub(crate) fn parts(&self) -> Range<u32> {
+        self.first..self.first + self.boundary.num_parts()
+    }
+
+    /// The boundary winds around a point of the composite's frame.
+    pub(crate) fn holds(&self, point: &Point<N, D>) -> bool {
+        self.boundary.winds_around(&self.pose.inverse_point(point))
+    }
+}
+
+/// By part, the first part of its piece: parts that share a vertex, by some number of it, are of one piece.
+pub(super) fn pieces<const K: usize>(
+    parts: &[[u32; K]],
+    vertices: usize,
+    number: impl Fn(u32) -> u32,
+) -> Vec<u32> {
+    // A forest over the vertices (Galler and Fischer, "An improved equivalence algorithm", 1964), roots lowest.
+    let mut above: Vec<u32> = (0..).take(vertices).collect();
+    for part in parts {
+        let roots = part.mapped(|vertex| root(&mut above, number(vertex)));
+        let lowest = roots.iter().fold(roots[0], |low, &own| low.min(own));
+        roots.iter().for_each(|&own| above[own as usize] = lowest);
+    }
+    let mut first = vec![u32::MAX; vertices];
+    let mut pieces = Vec::with_capacity(parts.len());
+    for (part, corners) in (0..).zip(parts) {
+        let first = &mut first[root(&mut above, number(corners[0])) as usize];
+        *first = part.min(*first);
+        pieces.push(*first);
+    }
+    pieces
+}
+
+/// The root above a vertex; the way there is halved.
+fn root(above: &mut [u32], mut at: u32) -> u32 {
+    while above[at as usize] != at {
+        above[at as usize] = above[above[at as usize] as usize];
+        at = above[at as usize];
+    }
+    at
+}
+
+/// What the pieces of a closed surface enclose, each with a sign: negative where its front is inside. A piece that is
+/// negative beyond rounding has to be the wall of a cavity.
+///
+/// `cone` is the signed content of a part seen from a fixed point, `is_cavity` whether the other pieces wind around
+/// one.
+pub(super) fn check_fronts(
+    pieces: &[u32],
+    cone: impl Fn(u32) -> f64,
+    is_cavity: impl Fn(u32) -> bool,
+) -> Result<(), MeshError> {
+    let mut contents = vec![[0.0; 2]; pieces.len()];
+    for (part, &piece) in (0..).zip(pieces) {
+        let (own, [sum, total]) = (cone(part), &mut contents[piece as usize]);
+        (*sum, *total) = (*sum + own, *total + own.abs());
+    }
+    for (part, [sum, total]) in (0..).zip(contents) {
+        if sum < -(NONE * total) && !is_cavity(part) {
+            return Err(MeshError::InsideOut { part: part as usize });
+        }
+    }
+    Ok(())
+}
+
+/// A content below so much of what it is the sum of is none.
+const NONE: f64 = 1024.0 * f64::EPSILON;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_that_share_vertices_are_one_piece() {
+        let parts = [[0, 1], [4, 5], [2, 3], [1, 2], [6, 6], [5, 4]];
+        assert_eq!(pieces(&parts, 7, |vertex| vertex), [0, 1, 0, 0, 4, 1]);
+        assert_eq!(pieces(&parts, 7, |vertex| vertex / 2), [0, 1, 0, 0, 4, 1], "3 is 2, 5 is 4");
+    }
+
+    #[test]
+    fn a_piece_that_is_inside_out_has_to_be_a_cavity() {
+        let cone = |part: u32| [1.0, 2.0, -0.5, -0.25][part as usize];
+        assert_eq!(check_fronts(&[0, 0, 2, 2], cone, |part| part == 2), Ok(()));
+        let refused = check_fronts(&[0, 0, 2, 2], cone, |_| false);
+        assert_eq!(refused, Err(MeshError::InsideOut { part: 2 }));
+        assert_eq!(check_fronts(&[0, 0], |part| f64::from(part) - 0.5, |_| false), Ok(()), "flat");
+    }
+}

@@ -1,0 +1,141 @@
+//! Meshes in 3D as the boundary of a body.
+
+use super::TriMesh;
+use crate::math::{Mapped, Point, Real, max, max_component};
+use crate::shape::composite::body::{check_fronts, pieces};
+use crate::shape::composite::joints::Joints;
+use crate::shape::composite::mesh_error::{MeshError, or_panic};
+
+impl<N: Real, const D: usize> TriMesh<N, D> {
+    /// The mesh is a body, not a skin: `solid` made it one, and no vertices have been moved apart since. Always false
+    /// in 2D, where triangles are filled.
+    #[must_use]
+    pub const fn is_solid(&self) -> bool {
+        self.is_solid && self.is_cycle
+    }
+
+    /// By triangle, the first one of its piece: triangles that share corners are of one piece.
+    pub(super) fn pieces(&self) -> &[u32] {
+        self.pieces.get_or_init(|| {
+            let joints = &self.topology.joints;
+            let are_together = !self.topology.is_moved || joints.are_together(&self.vertices);
+            let number = |vertex| if are_together { joints.of(vertex) } else { vertex };
+            pieces(&self.triangles, self.vertices.len(), number)
+        })
+    }
+}
+
+impl<N: Real> TriMesh<N, 3> {
+    /// Makes the mesh a body instead of a skin; see [`Self::try_solid`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_solid`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn solid(self) -> Self {
+        or_panic(self.try_solid())
+    }
+
+    /// Makes the mesh a body instead of a skin: all that it [encloses](Self::encloses) belongs to the shape.
+    ///
+    /// What lies wholly inside touches the body: its distance is zero, an impact is at time zero, and its contact leads
+    /// out through the nearest part of the surface, as deep as all of it lies below the plane through the nearest point
+    /// there. Points inside are held by it, and rays that start inside hit it at once if asked for a solid. Contacts
+    /// are those of a mesh with [one side](Self::one_sided), outside, but a solid that overlaps the surface is touched
+    /// from wherever its middle is. Inner surfaces whose fronts are turned to each other are cavities: what lies in
+    /// them is outside.
+    ///
+    /// Later [`Self::set_vertices`] are not checked: while vertices that were at one position lie apart the mesh is a
+    /// skin with one side. [`Self::flipped`] makes it a skin for good.
+    ///
+    /// Cost: O(n), and O(log n) for each wall of a cavity.
+    ///
+    /// # Errors
+    /// If the mesh does not [bound a volume](Self::is_volume): the error names the first edge at which it is open or
+    /// its fronts disagree. If a closed piece has its front inside and lies in no other piece: the error names a
+    /// triangle of it. A piece without volume has no inside.
+    ///
+    /// ```
+    /// use impinge::dim3::math::{Isometry, Vector};
+    /// use impinge::dim3::procedural;
+    /// use impinge::dim3::query::{contact, distance};
+    /// use impinge::dim3::shape::{Ball, Cuboid, MeshError, TriMesh};
+    ///
+    /// let surface = procedural::cuboid(&Cuboid::new(Vector::new(2.0_f64, 3.0, 4.0)));
+    /// let skin = TriMesh::new(surface.vertices, surface.triangles);
+    /// let (here, ball, there) = (Isometry::identity(), Ball::new(0.25), Isometry::translation(1.0, 0.0, 0.0));
+    /// assert_eq!(distance(&here, &skin, &there, &ball), 0.75, "a ball in a room");
+    ///
+    /// let block = skin.clone().solid();
+    /// assert_eq!(distance(&here, &block, &there, &ball), 0.0, "a ball in a block");
+    /// let way_out = contact(&here, &block, &there, &ball, 0.0).expect("it is inside");
+    /// assert_eq!((way_out.depth, *way_out.normal), (1.25, Vector::x()));
+    ///
+    /// let open = TriMesh::new(skin.vertices().to_vec(), skin.triangles()[1..].to_vec());
+    /// assert!(matches!(open.try_solid(), Err(MeshError::NotClosed { .. })));
+    /// assert!(matches!(skin.flipped().try_solid(), Err(MeshError::InsideOut { part: 0 })));
+    /// ```
+    pub fn try_solid(mut self) -> Result<Self, MeshError> {
+        if !self.is_cycle {
+            return Err(self.opening());
+        }
+        let (pieces, scale) = (self.pieces(), self.scale());
+        let cone = |part: u32| {
+            let apex = self.corners(pieces[part as usize])[0];
+            let arms =
+                self.corners(part).mapped(|corner| (corner - apex).map(|x| x.as_f64() / scale));
+            arms[0].dot(&arms[1].cross(&arms[2]))
+        };
+        let is_cavity = |part: u32| {
+            let corner = self.corners(part)[0];
+            let winding = self.winding_of(&corner, |other| pieces[other as usize] != part);
+            winding.is_none_or(|winding| winding > 0)
+        };
+        check_fronts(pieces, cone, is_cavity)?;
+        (self.is_solid, self.is_one_sided) = (true, true);
+        Ok(self)
+    }
+
+    /// A power of two of the size of the mesh.
+    fn scale(&self) -> f64 {
+        let corners = self.tree.bounds().map(|bounds| [*bounds.mins(), *bounds.maxs()]);
+        let largest = |corner: &Point<N, 3>| max_component(&corner.coords);
+        let size = corners.map_or(N::ONE, |[low, high]| max(largest(&low), largest(&high)));
+        size.power_of_two_below().as_f64()
+    }
+
+    /// The first edge that is not run along as often in one direction as in the other.
+    fn opening(&self) -> MeshError {
+        let joints = Joints::new(&self.vertices, &self.triangles);
+        let ends = |part: u32, side: usize| {
+            let corners = self.triangles[part as usize];
+            [corners[side], corners[(side + 1) % 3]]
+        };
+        // How often an edge is run along in the direction that is asked, and in the other.
+        let counts = |[from, to]: [u32; 2]| {
+            let mut counts = [0; 2];
+            for &part in joints.parts(from) {
+                for side in 0..3 {
+                    let own = ends(part, side).mapped(|end| joints.of(end));
+                    counts[0] += usize::from(own == [from, to]);
+                    counts[1] += usize::from(own == [to, from]);
+                }
+            }
+            counts
+        };
+        for (part, side) in self.each_side() {
+            let (index, edge) = (part as usize, ends(part, side));
+            let [from, to] = edge.mapped(|end| joints.of(end));
+            match counts([from, to]) {
+                _ if from == to => {}
+                [1, 0] => return MeshError::NotClosed { part: index, edge },
+                [one, other] if one != other => {
+                    return MeshError::NotOriented { part: index, edge };
+                }
+                _ => {}
+            }
+        }
+        // Vertices that were moved together close nothing: triangles belong together as they did at first.
+        MeshError::NotClosed { part: 0, edge: ends(0, 0) }
+    }
+}
