@@ -1,6 +1,6 @@
 //! One update of a world, and the exchange of its phases.
 
-use super::{CollisionObject, CollisionWorld, NarrowPhase, WorldBroadPhase};
+use super::{CollisionObject, CollisionWorld, WorldBroadPhase, WorldsNarrowPhase};
 use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactEvent, Events, Interaction, ProximityEvent,
@@ -237,7 +237,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     ///
     /// It takes over at the next update, which reports what changed, as any other does; contacts get
     /// new names.
-    pub fn set_narrow_phase(&mut self, narrow_phase: Box<dyn NarrowPhase<N, D, T>>) {
+    pub fn set_narrow_phase(&mut self, narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>) {
         self.next_narrow_phase = Some(narrow_phase);
     }
 
@@ -246,6 +246,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// pairs are not among them; a new one starts from nothing, and what it finds is compared with
     /// what was before.
     fn update_with_other_phases(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
+        self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
             let before = self.renew_proxies();
             self.write_changes();
