@@ -45,12 +45,15 @@ pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     pub(super) table: ObjectTable<N, D>,
     pub(super) journal: Journal<ObjectNote<N, D, T>, Vec<BodyEntry<N, D>>>,
     /// How objects are cloned, once there are marks: not all data are.
-    pub(super) cloned: Option<fn(&CollisionObject<N, D, T>) -> CollisionObject<N, D, T>>,
+    pub(super) cloned: Option<CloneObject<N, D, T>>,
 }
 
 clone_fields!([N: Space<D>, const D: usize, T: Clone] CollisionObjects<N, D, T> {
     first, slots, records, free, changes, table, journal, cloned,
 });
+
+/// How an object is cloned.
+type CloneObject<N, const D: usize, T> = fn(&CollisionObject<N, D, T>) -> CollisionObject<N, D, T>;
 
 /// What an index of a handle stands for.
 #[derive(Clone, Copy, Debug)]

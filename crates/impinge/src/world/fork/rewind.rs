@@ -1,7 +1,17 @@
 //! Going back: marks in the history of a world.
 //!
-//! Each part of the world notes what it had before it changes something, as long as there are marks; what is small is kept
-//! whole with the mark.
+//! While there are marks, whoever changes state notes first what was there ([`Journal`](crate::journal::Journal)); what is
+//! small is kept whole with the mark.
+//!
+//! | state | who notes | how it comes back |
+//! |---|---|---|
+//! | objects, with data, skins and predictions | `fresh`, `fresh_to_move`, `get_mut`, `insert`, `remove` and `flush` of `CollisionObjects` | record by record |
+//! | rows of objects with pairs | `set`, `set_position`, `lend`, `release` and `set_skin` of `ObjectTable` | they are written again |
+//! | boxes, proxies and their pairs | `apply_waiting` and `remove` of `PairFinder`; `PairTable`; `DBVTBroadPhase` | boxes are set in the trees, whose order decides about time alone |
+//! | contacts and proximities | `Group`; before an update `PairLanes::note` and `note_due` | to the places that they had, since `contact_views` reads in that order |
+//!
+//! The order of partners in a `PairTable` does not come back: no answer may depend on it. `Run::play_again` of the tests plays
+//! every golden scene with steps taken back; `world_model/forks.rs` has random operations.
 
 use std::collections::VecDeque;
 
