@@ -21,6 +21,15 @@ pub(super) type UsualBroadPhase<N, const D: usize> =
 
 /// A broad phase that a world can have: every one that is `Clone`, `Send` and `Sync`. There is nothing to
 /// implement.
+///
+/// ```
+/// use impinge::dim2::broad_phase::DBVTBroadPhase;
+/// use impinge::dim2::world::CollisionWorld;
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// world.set_broad_phase(Box::new(DBVTBroadPhase::new(0.1)));
+/// world.update();
+/// ```
 pub trait WorldsBroadPhase<N: Space<D>, const D: usize>:
     BroadPhase<N, Aabb<N, D>, CollisionObjectHandle> + Send + Sync
 {
@@ -54,6 +63,15 @@ where
 }
 
 /// A narrow phase that a world can have: every one that is `Clone`. There is nothing to implement.
+///
+/// ```
+/// use impinge::dim2::narrow_phase::DefaultNarrowPhase;
+/// use impinge::dim2::world::CollisionWorld;
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// world.set_narrow_phase(Box::new(DefaultNarrowPhase::new()));
+/// world.update();
+/// ```
 pub trait WorldsNarrowPhase<N: Space<D>, const D: usize, T>: NarrowPhase<N, D, T> {
     /// A copy, which goes on as this one does.
     fn boxed_clone(&self) -> Box<dyn WorldsNarrowPhase<N, D, T>>;
@@ -107,7 +125,8 @@ impl<N: Space<D>, const D: usize, T> Clone for Box<dyn WorldsNarrowPhase<N, D, T
 /// clone makes its own when they are first read.
 ///
 /// Costs a copy of the memory of the world; `clone_from` reuses that of the target, and takes none from the allocator if
-/// the target has had as much. A world of 10 000 boxes with 28 000 pairs has about 15 MB.
+/// the target has had as much. 10 000 boxes that touch nothing take
+/// 2.5 MB, in a dense pile of 118 000 pairs 54 MB (3D, `f32`).
 ///
 /// ```
 /// use impinge::dim2::math::Isometry;

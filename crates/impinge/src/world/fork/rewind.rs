@@ -29,6 +29,17 @@ const USUAL_MARKS: usize = 8;
 /// A moment in the history of a world, to which it can go back: see [`CollisionWorld::mark`].
 ///
 /// A world refuses the marks of others, those of its clones and of the world that it is a clone of included.
+///
+/// ```
+/// use impinge::dim2::world::{CollisionWorld, WorldError};
+///
+/// let mut world = CollisionWorld::<f32, ()>::new(0.02);
+/// let mark = world.mark();
+/// assert_eq!(world.try_rewind(mark), Ok(()));
+/// assert_eq!(world.clone().try_rewind(mark), Err(WorldError::MarkGone(mark)));
+/// world.keep_marks(0);
+/// assert_eq!(world.try_rewind(mark), Err(WorldError::MarkGone(mark)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct WorldMark {
     history: Generation,
@@ -78,11 +89,13 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// in a game over a network.
     ///
     /// The eight latest marks are kept, or as many as [`Self::keep_marks`] says; the oldest ends when there are
-    /// more. All marks end when another broad or narrow phase takes over, and a clone has none. While there are marks,
-    /// the world notes what it had before each change: an object once between two marks, a pair once. A mark itself
-    /// costs one or two microseconds, a clone of the events, and of phases of one's own if the world has any. With a hundredth
-    /// of 10 000 objects moving, marks at each update cost a tenth of the update where contacts
-    /// are computed, and the notes of eight marks a few megabytes.
+    /// more. All marks end when another broad or narrow phase takes over, and a clone has none.
+    ///
+    /// While there are marks, the world notes what it had before each change: each object once between two marks, each pair
+    /// once. A mark itself costs 1 to 20 µs, a clone of the events and, if the world has phases of one's own, of these. With 100
+    /// of 10 000 objects moving and a mark before each update, updates that compute the contacts of a dense pile take
+    /// up to 8 % longer, those that find nothing to compute half as long again (9 µs and 13 µs), and the notes of eight
+    /// marks take 0.4 to 8 MB.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -140,8 +153,8 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// the same handles to objects that are added, so handles that were given since the mark
     /// name other objects now or none. Whatever queries, pairs and contacts answer is as it was, in the same order.
     ///
-    /// The mark stays, so that the world can go back to it again; later ones end. Costs as much as what changed since: about
-    /// as long as the updates since took to compute, or less. The manifolds of [`Self::contact_manifolds`] that changed
+    /// The mark stays, so that the world can go back to it again; later ones end. Costs as much as what changed since: eight
+    /// updates are undone in the time of two to four. The manifolds of [`Self::contact_manifolds`] that changed
     /// are made anew when they are read.
     ///
     /// # Panics

@@ -1,5 +1,7 @@
 //! The scenes whose hashes are golden, and how they are played.
 
+#![allow(dead_code, reason = "each test uses a part")]
+
 use std::collections::VecDeque;
 use std::hash::Hasher;
 

@@ -72,6 +72,7 @@ fn operate<N: Grid<D>, const D: usize>(world: &mut World<N, D>, seed: u64) {
         return;
     }
     let handle = *random.pick(&handles);
+    let name = *random.pick(&["one", "another"]);
     match kind {
         0..14 => world.remove(&[handle]),
         14..40 => world.set_position(handle, position::<N, D>(random)),
@@ -86,9 +87,9 @@ fn operate<N: Grid<D>, const D: usize>(world: &mut World<N, D>, seed: u64) {
         }
         57..59 => *world.collision_object_mut(handle).expect("alive").data_mut() = random.bits(),
         59..61 => {
-            N::register(world, *random.pick(&["one", "another"]), 2 + random.below(4));
+            N::register(world, name, 2 + random.below(4));
         }
-        61..63 => world.unregister_broad_phase_pair_filter(*random.pick(&["one", "another"])),
+        61..63 => world.unregister_broad_phase_pair_filter(name),
         63 => world.refilter_pairs_of(handle),
         64 => world.keep_events(),
         65..72 => {
