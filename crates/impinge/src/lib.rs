@@ -83,6 +83,7 @@ pub mod dim3;
 pub(crate) mod generation;
 #[cfg(doc)]
 pub mod guide;
+pub(crate) mod journal;
 pub mod math;
 pub(crate) mod memory;
 pub mod narrow_phase;

@@ -5,6 +5,23 @@
 //! long they were, and once in [`PERIOD`] updates gives back what was not needed since. Short lists keep
 //! what they have; all outcomes depend on lengths alone.
 
+/// Implements `Clone` field by field, so that `clone_from` writes into the lists that are there. A field that is
+/// missing does not compile.
+macro_rules! clone_fields {
+    ([$($generics:tt)*] $type:ty { $($field:ident),* $(,)? }) => {
+        impl<$($generics)*> Clone for $type {
+            fn clone(&self) -> Self {
+                Self { $($field: self.$field.clone()),* }
+            }
+
+            fn clone_from(&mut self, source: &Self) {
+                $(self.$field.clone_from(&source.$field);)*
+            }
+        }
+    };
+}
+pub(crate) use clone_fields;
+
 /// Updates between two looks at the lists.
 const PERIOD: u32 = 64;
 /// The entries for which a list may keep memory.

@@ -32,14 +32,16 @@ impl<const D: usize> Run<D> {
     fn in_every_way<N: Play<D>>(&self) -> Outcome {
         let outcome = self.play::<N>(None);
         assert_eq!(self.play::<N>(None), outcome, "a second run");
+        assert_eq!(self.play_again::<N>(), outcome, "with steps taken back");
         for lanes in Lanes::available() {
             assert_eq!(self.play::<N>(Some(lanes)), outcome, "with {lanes:?}");
         }
         #[cfg(feature = "parallel")]
         for threads in [1, 2, 4] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let here = pool.expect("a pool").install(|| self.play::<N>(None));
-            assert_eq!(here, outcome, "on {threads} threads");
+            let both = || (self.play::<N>(None), self.play_again::<N>());
+            let here = pool.expect("a pool").install(both);
+            assert_eq!(here, (outcome, outcome), "on {threads} threads");
         }
         outcome
     }

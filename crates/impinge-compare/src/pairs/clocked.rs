@@ -15,6 +15,7 @@ use impinge::world::{
 use crate::measure::timed;
 
 /// The default narrow phase, and how long its last update took.
+#[derive(Clone)]
 pub struct Clocked<const D: usize>
 where
     f32: Space<D>,

@@ -7,11 +7,13 @@ use core::fmt::{self, Debug};
 use super::error::or_panic;
 use super::handle::Handles;
 use super::proposal::{Proposal, Proxies};
+use super::rewind::ProxyNote;
 use super::{BroadPhase, BroadPhaseError, PairFinder, ProxyHandle, VisitProposals};
 use crate::bounding_volume::{Aabb, BoundingVolume, Ray};
 use crate::bvh::{Bounds, GROUP, Lanes};
+use crate::journal::Journal;
 use crate::math::{Point, Real, Space, Vector};
-use crate::memory::Recent;
+use crate::memory::{Recent, clone_fields};
 use crate::pairs::unpack;
 use crate::partitioning::Sweep;
 
@@ -73,14 +75,18 @@ impl<N: Space<D>, const D: usize> TreeVolume<N> for Aabb<N, D> {
 /// assert_eq!((broad_phase.num_interferences(), &events[..]), (1, &[("a", "b", true)][..]));
 /// # assert!(a < b);
 /// ```
-#[derive(Clone)]
 pub struct DBVTBroadPhase<N: Real, BV: TreeVolume<N>, T> {
-    handles: Handles,
+    pub(super) handles: Handles,
     /// By index of the handle; `None` where there is no object.
-    proxies: Proxies<T>,
-    finder: BV::Finder,
+    pub(super) proxies: Proxies<T>,
+    pub(super) finder: BV::Finder,
     recent: Recent,
+    pub(super) journal: Journal<ProxyNote<T>>,
 }
+
+clone_fields!([N: Real, BV: TreeVolume<N>, T: Clone] DBVTBroadPhase<N, BV, T> {
+    handles, proxies, finder, recent, journal,
+});
 
 impl<N: Space<D>, const D: usize, T> Debug for DBVTBroadPhase<N, Aabb<N, D>, T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -111,7 +117,7 @@ impl<N: Real, BV: TreeVolume<N>, T> DBVTBroadPhase<N, BV, T> {
     pub fn try_new(margin: N) -> Result<Self, BroadPhaseError> {
         let finder = BV::try_finder(margin)?;
         let (handles, proxies, recent) = (Handles::new(), Vec::new(), Recent::default());
-        Ok(Self { handles, proxies, finder, recent })
+        Ok(Self { handles, proxies, finder, recent, journal: Journal::default() })
     }
 }
 
@@ -215,6 +221,7 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
             self.proxies.resize_with(handle.uid() + 1, || None);
         }
         self.proxies[handle.uid()] = Some(data);
+        self.journal.note(ProxyNote::Created(handle));
         self.finder.insert(id_of(handle), bv);
         Ok(handle)
     }
@@ -233,7 +240,8 @@ impl<N: Space<D>, const D: usize, T> BroadPhase<N, Aabb<N, D>, T>
         for (&handle, &id) in handles.iter().zip(&ids) {
             self.finder.remove(id);
             self.handles.remove(handle);
-            self.proxies[handle.uid()] = None;
+            let data = self.proxies[handle.uid()].take();
+            self.journal.note(ProxyNote::Removed(handle, data));
         }
         Ok(())
     }

@@ -5,11 +5,13 @@ use core::fmt;
 use super::BroadPhaseError;
 use super::events::PairEvents;
 use super::rest::RestPass;
+use super::rewind::{BoxNote, FinderHead};
 use super::sieve::{KeptBounds, Sieve};
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::bvh::{Bounds, Changes, Joiner, Lanes, NONE, Tree};
+use crate::journal::Journal;
 use crate::math::Real;
-use crate::memory::{Look, Recent};
+use crate::memory::{Look, Recent, clone_fields};
 use crate::pairs::PairTable;
 
 /// Where an object is kept.
@@ -46,7 +48,6 @@ pub(super) struct Waiting<N: Real, const D: usize> {
 ///
 /// All arrays are by id. Objects that have not changed for a while move to a second tree, which
 /// is then joined only with what changed.
-#[derive(Clone)]
 pub struct PairFinder<N: Real, const D: usize> {
     margin: N,
     /// As given, at the last update.
@@ -59,16 +60,16 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) marks: Vec<u8>,
     /// The update that last changed the loosened box.
     pub(super) last_change: Vec<u32>,
-    waiting: Vec<Waiting<N, D>>,
+    pub(super) waiting: Vec<Waiting<N, D>>,
     /// Memory for places in `waiting`.
     leavers: Vec<u32>,
     /// Where an object stands in `waiting`, or [`NONE`].
-    waiting_at: Vec<u32>,
+    pub(super) waiting_at: Vec<u32>,
     /// The objects marked as changed, each once.
     pub(super) changes: Vec<u32>,
     /// Objects whose pairs the filter is to be asked about again.
-    again: Vec<u32>,
-    is_all_again: bool,
+    pub(super) again: Vec<u32>,
+    pub(super) is_all_again: bool,
     pub(super) moving: Tree<D>,
     pub(super) still: Tree<D>,
     pub(super) unbounded: Vec<u32>,
@@ -86,7 +87,14 @@ pub struct PairFinder<N: Real, const D: usize> {
     pub(super) clock: u32,
     pub(super) rest_pass: RestPass,
     pub(super) recent: Recent,
+    pub(super) journal: Journal<BoxNote<N, D>, FinderHead<N, D>>,
 }
+
+clone_fields!([N: Real, const D: usize] PairFinder<N, D> {
+    margin, exact, loose, previous, homes, marks, last_change, waiting, leavers, waiting_at, changes, again,
+    is_all_again, moving, still, unbounded, pairs, joiner, searched, resting, found, pair_events, lanes, clock,
+    rest_pass, recent, journal,
+});
 
 impl<N: Real, const D: usize> fmt::Debug for PairFinder<N, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -139,6 +147,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
             clock: 0,
             rest_pass: RestPass::NONE,
             recent: Recent::default(),
+            journal: Journal::default(),
         })
     }
 
@@ -220,6 +229,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
 
     /// Takes an object out at once, and its pairs with it.
     pub fn remove(&mut self, id: u32) {
+        self.note(id);
         while let Some(pair) = self.pairs.any_pair_of(id) {
             self.pairs.remove_at(pair);
         }
@@ -236,7 +246,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     }
 
     /// Takes the object out of its tree or list.
-    fn leave_home(&mut self, id: u32) {
+    pub(super) fn leave_home(&mut self, id: u32) {
         match core::mem::replace(&mut self.homes[id as usize], Home::Nowhere) {
             Home::Nowhere => {}
             Home::Moving => self.moving.remove(id),
@@ -249,6 +259,9 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
     pub(super) fn apply_waiting(&mut self) {
         let mut waiting = core::mem::take(&mut self.waiting);
         let mut leavers = core::mem::take(&mut self.leavers);
+        if self.journal.is_on() {
+            waiting.iter().filter(|waiting| waiting.id != NONE).for_each(|one| self.note(one.id));
+        }
         self.list_leavers(&waiting, &mut leavers);
         for &at in &leavers {
             let Waiting { id, aabb } = &waiting[at as usize];

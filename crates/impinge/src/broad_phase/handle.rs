@@ -1,7 +1,7 @@
 //! Names of objects that stay distinguishable after the object is gone.
 
 use crate::generation::Generation;
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 
 /// The name of an object in a broad phase.
 ///
@@ -54,7 +54,7 @@ impl ProxyHandle {
 }
 
 /// Gives handles out and knows which are alive.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Handles {
     /// That of the first object at an index.
     first: Generation,
@@ -65,6 +65,8 @@ pub(super) struct Handles {
     /// Indices without an object; the last one freed is used first.
     free: Vec<u32>,
 }
+
+clone_fields!([] Handles { first, generations, is_present, free });
 
 impl Handles {
     pub(super) fn new() -> Self {
@@ -96,6 +98,26 @@ impl Handles {
     pub(super) fn is_alive(&self, handle: ProxyHandle) -> bool {
         self.generations.get(handle.uid()) == Some(&handle.generation)
             && self.is_present[handle.uid()]
+    }
+
+    /// Undoes the last [`Self::create`].
+    pub(super) fn uncreate(&mut self, handle: ProxyHandle) {
+        self.is_present[handle.uid()] = false;
+        if handle.generation == self.first {
+            self.generations.pop();
+            self.is_present.pop();
+        } else {
+            self.free.push(handle.index);
+        }
+    }
+
+    /// Undoes the last [`Self::remove`].
+    pub(super) fn unremove(&mut self, handle: ProxyHandle) {
+        self.is_present[handle.uid()] = true;
+        self.generations[handle.uid()] = handle.generation;
+        if handle.generation.next().is_some() {
+            self.free.pop();
+        }
     }
 
     /// Ends the handle. An index whose generations are used up is retired.

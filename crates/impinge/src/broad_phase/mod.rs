@@ -21,6 +21,7 @@ mod handle;
 mod interface;
 mod proposal;
 mod rest;
+mod rewind;
 mod search;
 mod sieve;
 

@@ -6,7 +6,7 @@ use super::renewal::Renewal;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
 use crate::math::{Point, Real, filled};
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 
 /// No id, or no slot.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -17,7 +17,7 @@ const KEPT_LEAVES: usize = 256;
 ///
 /// A join looks for what was near as well as for what is: for it stand beside all that the bounds of
 /// the boxes now and before. Where nothing changed, the two are the same.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Layer<const D: usize> {
     pub(super) blocks: Vec<Block<D>>,
     pub(super) bounds: Vec<Bounds<D>>,
@@ -27,6 +27,8 @@ pub(super) struct Layer<const D: usize> {
     pub(super) reaches: Vec<Block<D>>,
     pub(super) changed: Vec<u16>,
 }
+
+clone_fields!([const D: usize] Layer<D> { blocks, bounds, reach, reaches, changed });
 
 impl<const D: usize> Layer<D> {
     pub(super) const fn new() -> Self {
@@ -64,7 +66,7 @@ impl<const D: usize> Layer<D> {
 /// A packed tree over boxes with ids; see the module's page for the layout.
 ///
 /// Ids are dense small numbers of the caller's. Boxes must be finite and not inverted.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
     /// Layer 0 first; at least one layer, the last one with at most one block.
@@ -105,6 +107,11 @@ pub(crate) struct Tree<const D: usize> {
     /// Of a sparing tree.
     pub(super) renewal: Option<Box<Renewal<D>>>,
 }
+
+clone_fields!([const D: usize] Tree<D> {
+    lanes, layers, before, is_sparing, slabs, remembers, ids, slots, end, live, touched, is_touched, escaped,
+    loads, dirty, changed, is_restructured, is_stale, schedule, renewal,
+});
 
 impl<const D: usize> Default for Tree<D> {
     fn default() -> Self {

@@ -67,7 +67,7 @@ impl<N: Real, const D: usize> Default for RawPoint<N, D> {
 
 /// A set of points with one normal, in the frame of the first solid. The points stand behind what readers need: who
 /// reads few of them reads one piece of memory.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 #[repr(C)]
 pub(crate) struct RawManifold<N: Real, const D: usize> {
     /// Unit, from the first solid to the second.
@@ -79,6 +79,19 @@ pub(crate) struct RawManifold<N: Real, const D: usize> {
     /// The second solid in the frame of the first when the points were found, by which they are found again on the
     /// second. `None` where that is not kept: of boxes, balls and segments, whose vertices are known by their ids.
     pub(crate) pose12: Option<Pose<N, D>>,
+}
+
+impl<N: Real, const D: usize> Clone for RawManifold<N, D> {
+    fn clone(&self) -> Self {
+        let Self { normal, ids, pose12, .. } = *self;
+        Self { normal, ids, points: SmallVec::from_slice(&self.points), pose12 }
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        (self.normal, self.ids, self.pose12) = (source.normal, source.ids, source.pose12);
+        self.points.clear();
+        self.points.extend_from_slice(&source.points);
+    }
 }
 
 /// The numbers given to the contacts of one pair, each once.

@@ -164,7 +164,7 @@ pub mod world {
     pub use crate::narrow_phase::{
         CollisionObjectHandle, ContactQuery, GeometricQueryType, ProximityQuery,
     };
-    pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError};
+    pub use crate::world::{CollisionGroups, GroupError, NarrowPhase, WorldError, WorldMark};
 
     /// A world in 2D.
     pub type CollisionWorld<N, T> = crate::world::CollisionWorld<N, 2, T>;

@@ -1,7 +1,7 @@
 //! The narrow phase of a world: which pairs there are and which algorithm serves each.
 
 use core::fmt;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::detector::DefaultProximityDispatcher;
 use super::entry::{
@@ -11,13 +11,15 @@ use super::generator::DefaultContactDispatcher;
 use super::group::PairKey;
 use super::lanes::{Carried, Lane, Location, PairLanes, contact_lane, kind_pair};
 use super::reuse::{ReuseError, usable_tolerance};
+use super::rewind::NarrowHead;
 use super::state::ContactState;
 use super::traits::{ContactDispatcher, ContactPrediction, ProximityDispatcher};
 use super::update::PairChanges;
 use super::{ContactEvent, Events, IdAllocator, ObjectTable, PairQuery, ProximityEvent};
 use crate::collide::ManifoldRequest;
+use crate::journal::Journal;
 use crate::math::{Mapped, Space};
-use crate::memory::Recent;
+use crate::memory::{Recent, clone_fields};
 use crate::pairs::PairTable;
 use crate::shape::Shape;
 
@@ -37,8 +39,9 @@ use crate::shape::Shape;
 /// world.update();
 /// ```
 pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
-    pub(super) contact_dispatcher: Box<dyn ContactDispatcher<N, D>>,
-    pub(super) proximity_dispatcher: Box<dyn ProximityDispatcher<N, D>>,
+    /// The dispatchers are shared with clones.
+    pub(super) contact_dispatcher: Arc<dyn ContactDispatcher<N, D>>,
+    pub(super) proximity_dispatcher: Arc<dyn ProximityDispatcher<N, D>>,
     /// All pairs, by handle index.
     pub(super) pairs: PairTable,
     /// Where the state of each pair lies; in step with `pairs`.
@@ -58,7 +61,13 @@ pub struct DefaultNarrowPhase<N: Space<D>, const D: usize> {
     recent: Recent,
     /// Those of the pairs that touch; made when first needed after a change of either.
     pub(super) touching: OnceLock<Vec<u32>>,
+    pub(super) journal: Journal<(), NarrowHead>,
 }
+
+clone_fields!([N: Space<D>, const D: usize] DefaultNarrowPhase<N, D> {
+    contact_dispatcher, proximity_dispatcher, pairs, locations, lanes, tolerance, ids, due, changes, picked,
+    order, recent, touching, journal,
+});
 
 impl<N: Space<D>, const D: usize> Default for DefaultNarrowPhase<N, D> {
     fn default() -> Self {
@@ -91,8 +100,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         proximity: Box<dyn ProximityDispatcher<N, D>>,
     ) -> Self {
         Self {
-            contact_dispatcher: contacts,
-            proximity_dispatcher: proximity,
+            contact_dispatcher: contacts.into(),
+            proximity_dispatcher: proximity.into(),
             pairs: PairTable::new(),
             locations: Vec::new(),
             lanes: PairLanes::default(),
@@ -104,6 +113,7 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
             recent: Recent::default(),
             order: OnceLock::new(),
             touching: OnceLock::new(),
+            journal: Journal::default(),
         }
     }
 
@@ -152,8 +162,8 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
     pub fn try_reusing(self, tolerance: N) -> Result<Self, ReuseError> {
         let tolerance = usable_tolerance(tolerance)?;
         let Self { contact_dispatcher, proximity_dispatcher, .. } = self;
-        let empty = Self::with_dispatchers(contact_dispatcher, proximity_dispatcher);
-        Ok(Self { lanes: PairLanes::with_references(), tolerance, ..empty })
+        let lanes = PairLanes::with_references();
+        Ok(Self { contact_dispatcher, proximity_dispatcher, lanes, tolerance, ..Self::new() })
     }
 
     /// Brings all pairs up to date, and now and then gives memory back.
@@ -216,7 +226,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         object: u32,
         events: &mut Events,
     ) {
-        let partners: Vec<(u32, usize)> = self.pairs.partners(object).collect();
+        let mut partners: Vec<(u32, usize)> = self.pairs.partners(object).collect();
+        // A rewind brings pairs back, but not the order in which the table has them.
+        partners.sort_unstable();
         for (_, index) in partners {
             let key = PairKey::from(self.pairs.pairs()[index]);
             if !self.adjust(table, key, index) {
@@ -400,7 +412,7 @@ fn shapes<N: Space<D>, const D: usize>(
 }
 
 /// Where pairs without an algorithm are.
-const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
+pub(super) const NOWHERE: Location = Location { lane: Lane::Nothing, place: 0 };
 
 /// Puts what happened to a pair into events.
 pub(super) fn push_change<N: Space<D>, const D: usize>(

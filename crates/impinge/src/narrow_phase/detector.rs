@@ -65,6 +65,10 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
     fn proximity(&self) -> Proximity {
         self.proximity
     }
+
+    fn boxed_clone(&self) -> ProximityAlgorithm<N, D> {
+        Box::new(*self)
+    }
 }
 
 /// Chooses the library's own algorithm for every two solids.

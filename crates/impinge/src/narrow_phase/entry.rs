@@ -13,6 +13,7 @@ use super::traits::{
 use super::{IdAllocator, ObjectTable};
 use crate::collide::ManifoldRequest;
 use crate::math::{Real, Space};
+use crate::memory::clone_fields;
 use crate::query::Proximity;
 
 /// What an update, or the end, of a pair means to the outside.
@@ -65,6 +66,8 @@ pub(crate) struct ContactEntry<N: Real, S> {
     pub(crate) state: S,
     pub(crate) request: ManifoldRequest<N>,
 }
+
+clone_fields!([N: Real, S: Clone] ContactEntry<N, S> { number, state, request });
 
 /// The manifolds of a pair as users see them: made when first read after an update.
 #[derive(Debug)]
@@ -140,7 +143,7 @@ impl<N: Real, S> ContactEntry<N, S> {
 }
 
 /// Proximity by the library's own algorithm.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct ProximityEntry<N: Real> {
     pub(crate) margin: N,
     pub(crate) status: Status,
@@ -157,6 +160,7 @@ impl<N: Real> ProximityEntry<N> {
 }
 
 /// Contacts by an algorithm of the user's.
+#[derive(Clone)]
 pub(crate) struct CustomContactEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ContactAlgorithm<N, D>,
     pub(crate) prediction: ContactPrediction<N>,
@@ -191,6 +195,7 @@ impl<N: Space<D>, const D: usize> fmt::Debug for CustomContactEntry<N, D> {
 }
 
 /// Proximity by an algorithm of the user's.
+#[derive(Clone)]
 pub(crate) struct CustomProximityEntry<N: Space<D>, const D: usize> {
     pub(crate) algorithm: ProximityAlgorithm<N, D>,
     pub(crate) margin: N,

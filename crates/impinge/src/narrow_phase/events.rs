@@ -5,7 +5,7 @@
 use core::fmt;
 
 use super::CollisionObjectHandle;
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 use crate::query::Proximity;
 
 /// A pair came to have contact points, or lost its last.
@@ -92,13 +92,15 @@ pub struct ProximityEvent {
 /// let events = Events::default();
 /// assert!(events.contacts().is_empty() && events.proximities().is_empty());
 /// ```
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub struct Events {
     contacts: Vec<ContactEvent>,
     proximities: Vec<ProximityEvent>,
     /// How many events at the front of each list are in order: kept ones, and those that were queued.
     sorted: (usize, usize),
 }
+
+clone_fields!([] Events { contacts, proximities, sorted });
 
 impl fmt::Debug for Events {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

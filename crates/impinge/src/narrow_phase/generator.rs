@@ -150,6 +150,10 @@ impl<N: Space<D>, const D: usize> ContactManifoldGenerator<N, D> for PairManifol
     fn contacts<'a>(&'a self, out: &mut Vec<&'a ContactManifold<N, D>>) {
         out.extend(&self.manifolds);
     }
+
+    fn boxed_clone(&self) -> ContactAlgorithm<N, D> {
+        Box::new(self.clone())
+    }
 }
 
 /// Chooses the library's own algorithm for every two solids.

@@ -6,6 +6,8 @@
 use std::sync::OnceLock;
 
 use super::ObjectTable;
+use super::rewind::{GroupNote, Parts};
+use crate::journal::Journal;
 use crate::math::Space;
 use crate::memory::Look;
 
@@ -33,17 +35,45 @@ pub(super) struct Chosen([u64; CHUNK / WORD]);
 /// Where pairs may keep contacts while they hardly move ([`Reuse`](super::reuse::Reuse)), a reference
 /// belongs to each state too.
 #[derive(Debug)]
-pub(crate) struct Group<S, V = (), R = ()> {
-    keys: Vec<PairKey>,
+pub(crate) struct Group<S: Parts, V = (), R = ()> {
+    pub(super) keys: Vec<PairKey>,
     /// By pair: to be updated even if both objects stand still.
-    due: Vec<bool>,
+    pub(super) due: Vec<bool>,
     /// By pair, a bit each, the others zero: it has contact points.
-    touching: Vec<u64>,
-    states: Vec<S>,
+    pub(super) touching: Vec<u64>,
+    pub(super) states: Vec<S>,
     /// One for each state, or none at all.
-    views: OnceLock<Vec<V>>,
+    pub(super) views: OnceLock<Vec<V>>,
     /// One for each state, if there are any.
-    references: Option<Vec<R>>,
+    pub(super) references: Option<Vec<R>>,
+    pub(super) journal: Journal<GroupNote<S, R>>,
+    /// The references of the pairs that [`GroupNote::Written`] notes.
+    pub(super) reference_journal: Journal<R>,
+    /// By pair, if there are marks: the period in which it was noted or came. One begins with each mark.
+    pub(super) noted: Vec<u8>,
+    pub(super) period: u8,
+}
+
+/// Without the views, which whoever reads them first has made anew, and without marks.
+impl<S: Parts, V, R: Clone> Clone for Group<S, V, R> {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    fn clone_from(&mut self, source: &Self) {
+        let Self { keys, due, touching, states, views, references, .. } = self;
+        keys.clone_from(&source.keys);
+        due.clone_from(&source.due);
+        touching.clone_from(&source.touching);
+        states.clone_from(&source.states);
+        views.take();
+        references.clone_from(&source.references);
+        self.journal = Journal::default();
+        self.reference_journal = Journal::default();
+        self.noted.clear();
+    }
 }
 
 /// The pairs of a group to work on, side by side.
@@ -67,11 +97,22 @@ pub(crate) struct Taken<S> {
     pub(crate) moved: Option<PairKey>,
 }
 
-impl<S, V, R> Default for Group<S, V, R> {
+impl<S: Parts, V, R> Default for Group<S, V, R> {
     fn default() -> Self {
         let (keys, due, touching) = (Vec::new(), Vec::new(), Vec::new());
         let (views, references) = (OnceLock::new(), None);
-        Self { keys, due, touching, states: Vec::new(), views, references }
+        Self {
+            keys,
+            due,
+            touching,
+            states: Vec::new(),
+            views,
+            references,
+            journal: Journal::default(),
+            reference_journal: Journal::default(),
+            noted: Vec::new(),
+            period: 0,
+        }
     }
 }
 
@@ -82,14 +123,14 @@ const fn flag(place: usize) -> (usize, u64) {
 
 /// Says whether a pair touches, and answers whether that is new.
 #[inline]
-fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -> bool {
+pub(super) fn set_touching(words: &mut [u64], place: usize, is_touching: bool) -> bool {
     let (word, bit) = flag(place);
     let is_new = (words[word] & bit != 0) != is_touching;
     words[word] ^= if is_new { bit } else { 0 };
     is_new
 }
 
-impl<S, V: Default, R: Default> Group<S, V, R> {
+impl<S: Parts, V: Default, R: Clone + Default> Group<S, V, R> {
     /// A group without pairs that has references.
     pub(crate) fn with_references() -> Self {
         Self { references: Some(Vec::new()), ..Self::default() }
@@ -98,6 +139,10 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
     /// Adds a pair, which is due, and answers its place.
     pub(crate) fn push(&mut self, key: PairKey, state: S, is_touching: bool) -> u32 {
         let place = self.keys.len();
+        if self.journal.is_on() {
+            self.journal.note(GroupNote::Pushed);
+            self.noted.push(self.period);
+        }
         self.keys.push(key);
         self.due.push(true);
         self.touching.resize(self.keys.len().div_ceil(WORD), 0);
@@ -114,6 +159,7 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
 
     /// Takes a pair out; the last one gets its place.
     pub(crate) fn swap_remove(&mut self, place: u32) -> Taken<S> {
+        self.note_removed(place);
         let (is_touching, place) = (self.is_touching(place), place as usize);
         let last = self.keys.len() - 1;
         let (word, bit) = flag(last);
@@ -136,6 +182,7 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
     /// Gives the place of a pair to another, which is due and does not touch, and answers whether the first
     /// one did.
     pub(crate) fn replace(&mut self, place: u32, key: PairKey, state: S) -> bool {
+        self.note_whole(place);
         let at = place as usize;
         let was_touching = set_touching(&mut self.touching, at, false);
         (self.keys[at], self.due[at], self.states[at]) = (key, true, state);
@@ -167,6 +214,7 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
     /// Asks for a pair to be updated even if both objects stand still; what it could be held against is
     /// forgotten.
     pub(crate) fn make_due(&mut self, place: u32) {
+        self.note_whole(place);
         self.due[place as usize] = true;
         if let Some(references) = &mut self.references {
             references[place as usize] = R::default();
@@ -180,6 +228,7 @@ impl<S, V: Default, R: Default> Group<S, V, R> {
 
     /// The state of the pair at a place, to change.
     pub(crate) fn state_mut(&mut self, place: u32) -> &mut S {
+        self.note_whole(place);
         &mut self.states[place as usize]
     }
 

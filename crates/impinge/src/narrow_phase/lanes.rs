@@ -8,7 +8,7 @@ use super::group::{Group, PairKey, Taken};
 use super::reuse::Reference;
 use super::state::{CompositeState, ContactState, has_composite};
 use crate::math::{Real, Space};
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 use crate::query::{ContactManifold, Proximity};
 use crate::shape::{Shape, ShapeKind};
 
@@ -94,6 +94,10 @@ pub(crate) struct PairLanes<N: Space<D>, const D: usize> {
     pub(crate) custom_contacts: Group<CustomContactEntry<N, D>>,
     pub(crate) custom_proximity: Group<CustomProximityEntry<N, D>>,
 }
+
+clone_fields!([N: Space<D>, const D: usize] PairLanes<N, D> {
+    contacts, composites, proximity, custom_contacts, custom_proximity,
+});
 
 impl<N: Space<D>, const D: usize> Default for PairLanes<N, D> {
     fn default() -> Self {

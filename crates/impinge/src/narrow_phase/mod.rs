@@ -21,6 +21,7 @@ mod objects;
 mod pair_batch;
 mod query_type;
 mod reuse;
+mod rewind;
 mod state;
 mod stateless;
 mod substep;

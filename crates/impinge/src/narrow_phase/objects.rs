@@ -7,8 +7,9 @@ use super::group::PairKey;
 use super::substep::PairSolids;
 use super::{CollisionObjectHandle, GeometricQueryType};
 use crate::collide::far::ReachBounds;
+use crate::journal::Journal;
 use crate::math::{Mapped, Pose, Real, Space};
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 use crate::query::PlacedSolids;
 use crate::shape::{Geometry, ShapeHandle};
 
@@ -45,7 +46,6 @@ const NONE: u32 = u32::MAX;
 /// world.update();
 /// # assert!(world.contains(a));
 /// ```
-#[derive(Clone)]
 pub struct ObjectTable<N: Space<D>, const D: usize> {
     /// By handle index: where the row stands, or [`NONE`].
     rows: Vec<u32>,
@@ -71,6 +71,20 @@ pub struct ObjectTable<N: Space<D>, const D: usize> {
     pub(super) substeps: Vec<PairSolids<N, D>>,
     /// By handle index, as long as the last object with a skin needs.
     pub(super) skins: Vec<N>,
+    journal: Journal<RowNote<N, D>, Vec<PairSolids<N, D>>>,
+}
+
+clone_fields!([N: Space<D>, const D: usize] ObjectTable<N, D> {
+    rows, handles, solids, bounds, queries, isometries, is_written, free, changed, lent, substeps, skins, journal,
+});
+
+/// What was known of an object before it changed.
+#[derive(Clone, Debug)]
+enum RowNote<N: Space<D>, const D: usize> {
+    /// It was here when it moved.
+    Moved(u32, N::Isometry),
+    /// It had this row, if any, and this skin.
+    Whole(u32, Option<ObjectRow<N, D>>, N),
 }
 
 impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
@@ -81,12 +95,14 @@ impl<N: Space<D>, const D: usize> fmt::Debug for ObjectTable<N, D> {
 }
 
 /// What every query of a pair reads of an object: of `f32` in 3D one cache line.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 #[repr(align(64))]
 pub(super) struct ObjectSolid<N: Real, const D: usize> {
     pub(super) pose: Pose<N, D>,
     pub(super) shape: ShapeHandle<N, D>,
 }
+
+clone_fields!([N: Real, const D: usize] ObjectSolid<N, D> { pose, shape });
 
 /// One row of the table.
 #[derive(Clone, Debug)]
@@ -105,7 +121,7 @@ impl<N: Space<D>, const D: usize> PlacedSolids<N, D> for ObjectTable<N, D> {
 
 impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// A table without rows.
-    pub(crate) const fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             rows: Vec::new(),
             handles: Vec::new(),
@@ -119,6 +135,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
             lent: 0,
             substeps: Vec::new(),
             skins: Vec::new(),
+            journal: Journal::default(),
         }
     }
 
@@ -146,6 +163,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         if self.rows.len() <= index as usize {
             self.rows.resize(index as usize + 1, NONE);
         }
+        self.note(index);
         self.lent += 1;
         match self.free.pop() {
             Some(place) => {
@@ -159,6 +177,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// Takes the object's row back, if it has one.
     pub(crate) fn release(&mut self, index: u32) {
         if self.has_row(index) {
+            self.note(index);
             let row = core::mem::replace(&mut self.rows[index as usize], NONE);
             self.is_written[row as usize] = false;
             self.free.push(row);
@@ -168,6 +187,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     /// Writes an object's row, if it has one.
     pub(crate) fn set(&mut self, index: u32, row: impl FnOnce() -> ObjectRow<N, D>) {
         if self.has_row(index) {
+            self.note(index);
             let (place, row) = (self.row(index), row());
             self.handles[place] = row.handle;
             self.bounds[place] = ReachBounds::of(row.shape.as_ref());
@@ -195,6 +215,9 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         if !self.has_row(index) {
             return;
         }
+        if self.journal.is_first(index as usize) {
+            self.journal.note(RowNote::Moved(index, *self.isometry(index)));
+        }
         let row = self.row(index);
         let turns = self.bounds[row].turns();
         self.solids[row].pose = if turns { N::pose(isometry) } else { N::unturned(isometry) };
@@ -218,6 +241,7 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
 
     /// Says how far from its surface the contacts of an object are measured.
     pub(crate) fn set_skin(&mut self, index: u32, skin: N) {
+        self.note(index);
         let (index, len) = (index as usize, self.skins.len());
         if skin > N::ZERO {
             self.skins.resize(len.max(index + 1), N::ZERO);
@@ -311,6 +335,50 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
         look.fit(&mut self.is_written);
         look.trim(&mut self.changed);
         look.fit(&mut self.skins);
+    }
+
+    /// Adds a mark; see [`Journal`].
+    pub(crate) fn mark(&mut self, number: u64) {
+        self.journal.mark(number, self.substeps.clone());
+    }
+
+    /// Forgets the marks with smaller numbers.
+    pub(crate) fn forget_before(&mut self, number: u64) {
+        self.journal.forget_before(number);
+    }
+
+    /// Goes back to a mark.
+    pub(crate) fn rewind(&mut self, number: u64) {
+        let mut journal = core::mem::take(&mut self.journal);
+        while let Some(note) = journal.undo(number) {
+            match note {
+                RowNote::Moved(index, isometry) => self.set_position(index, &isometry),
+                RowNote::Whole(index, row, skin) => {
+                    match row {
+                        None => self.release(index),
+                        Some(row) if self.has_row(index) => self.set(index, || row),
+                        Some(row) => self.lend(index, || row),
+                    }
+                    self.set_skin(index, skin);
+                }
+            }
+        }
+        self.substeps.clone_from(journal.head().expect("the mark is kept"));
+        self.journal = journal;
+    }
+
+    /// Notes an object that is about to change.
+    fn note(&mut self, index: u32) {
+        if self.journal.is_first_whole(index as usize) {
+            let row = self.has_row(index).then(|| ObjectRow {
+                handle: self.handle(index),
+                isometry: *self.isometry(index),
+                shape: self.shape(index).clone(),
+                query: self.query(index),
+            });
+            let skin = self.skin(index);
+            self.journal.note(RowNote::Whole(index, row, skin));
+        }
     }
 
     /// What is wrong with the rows, if anything.

@@ -13,6 +13,7 @@ use crate::collide::{
     own_distance,
 };
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
+use crate::memory::clone_fields;
 use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 use crate::tables::ByDimension;
@@ -134,7 +135,7 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
 }
 
 /// What an algorithm keeps of a pair, in the frame of the solid that comes first in canonical order.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct InOrder<C> {
     /// The canonical order at the last update was the reverse of the pair's own.
@@ -142,14 +143,18 @@ pub(crate) struct InOrder<C> {
     contacts: C,
 }
 
+clone_fields!([C: Clone] InOrder<C> { swapped, contacts });
+
 /// The contacts of two convex solids. What readers look at stands in front.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 #[repr(C)]
 pub(crate) struct ContactState<N: Real, const D: usize> {
     kept: InOrder<RawManifold<N, D>>,
     /// Copies of the solids in the pair's own order, if both are such that a copy is worth it.
     solids: Option<[Solid<N, D>; 2]>,
 }
+
+clone_fields!([N: Real, const D: usize] ContactState<N, D> { kept, solids });
 
 /// The contacts of a pair of which one solid at least is a composite.
 pub(crate) type CompositeState<N, const D: usize> = InOrder<CompositeContacts<N, D>>;
@@ -236,6 +241,16 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 }
 
 impl<N: Real, const D: usize> ContactState<N, D> {
+    /// The manifold, and whether it is in the frame of the second solid.
+    pub(super) const fn kept(&self) -> (&RawManifold<N, D>, bool) {
+        (&self.kept.contacts, self.kept.swapped)
+    }
+
+    /// The manifold is this one, in the frame of the second solid if that is said.
+    pub(super) fn keep(&mut self, contacts: RawManifold<N, D>, swapped: bool) {
+        self.kept = InOrder { swapped, contacts };
+    }
+
     /// There are no contacts.
     pub(super) fn clear(&mut self) {
         self.kept.contacts.points.clear();

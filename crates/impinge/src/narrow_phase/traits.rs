@@ -97,6 +97,9 @@ pub trait ContactManifoldGenerator<N: Space<D>, const D: usize>: Send + Sync {
 
     /// Pushes the manifolds that hold a contact.
     fn contacts<'a>(&'a self, out: &mut Vec<&'a ContactManifold<N, D>>);
+
+    /// A copy, which goes on as this one does: `Box::new(self.clone())`. For worlds that are cloned.
+    fn boxed_clone(&self) -> ContactAlgorithm<N, D>;
 }
 
 /// Chooses a contact algorithm for two solids.
@@ -167,6 +170,9 @@ pub trait ProximityDetector<N: Space<D>, const D: usize>: Send + Sync {
 
     /// The proximity at the last update.
     fn proximity(&self) -> Proximity;
+
+    /// A copy, which goes on as this one does: `Box::new(self.clone())`. For worlds that are cloned.
+    fn boxed_clone(&self) -> ProximityAlgorithm<N, D>;
 }
 
 /// Chooses a proximity algorithm for two solids.
@@ -204,3 +210,15 @@ pub trait ProximityDispatcher<N: Space<D>, const D: usize>: Send + Sync {
 pub type ContactAlgorithm<N, const D: usize> = Box<dyn ContactManifoldGenerator<N, D>>;
 /// A proximity algorithm in a box.
 pub type ProximityAlgorithm<N, const D: usize> = Box<dyn ProximityDetector<N, D>>;
+
+impl<N: Space<D>, const D: usize> Clone for ContactAlgorithm<N, D> {
+    fn clone(&self) -> Self {
+        (**self).boxed_clone()
+    }
+}
+
+impl<N: Space<D>, const D: usize> Clone for ProximityAlgorithm<N, D> {
+    fn clone(&self) -> Self {
+        (**self).boxed_clone()
+    }
+}

@@ -11,6 +11,7 @@ use super::entry::{Change, ContactEntry, ContactView, ProximityEntry, posed};
 use super::group::{CHUNK, Group, PairKey, Rows};
 use super::lanes::{Lane, Location};
 use super::reuse::{Reference, Reuse};
+use super::rewind::Parts;
 use super::state::KeptContacts;
 use super::{DefaultNarrowPhase, Events, ObjectTable};
 use crate::collide::Solid;
@@ -83,6 +84,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
 
     /// Goes through all pairs, lane by lane.
     fn update_all(&mut self, table: &ObjectTable<N, D>, changes: &mut PairChanges) {
+        if self.journal.is_on() {
+            self.lanes.note_due(table);
+        }
         let reuse = Reuse { table, tolerance: self.tolerance };
         // Of the hundreds of groups most are empty.
         for group in self.lanes.contacts.iter_mut().filter(|group| !group.is_empty()) {
@@ -186,6 +190,9 @@ impl<N: Space<D>, const D: usize> DefaultNarrowPhase<N, D> {
         picked: &[Location],
         changes: &mut PairChanges,
     ) {
+        if self.journal.is_on() {
+            self.lanes.note(picked);
+        }
         let reuse = Reuse { table, tolerance: self.tolerance };
         match picked[0].lane {
             Lane::Contacts(group) => {
@@ -351,7 +358,11 @@ fn update_status<N: Space<D>, const D: usize>(
 
 /// Updates the pairs of a group chunk by chunk, on several threads where the feature says so; what
 /// changed comes in the order of the group either way.
-fn update_group<S: Send + Sync, V: Default + Send + Sync, R: Default + Send + Sync>(
+fn update_group<
+    S: Parts + Send + Sync,
+    V: Default + Send + Sync,
+    R: Clone + Default + Send + Sync,
+>(
     group: &mut Group<S, V, R>,
     changes: &mut PairChanges,
     update: impl Fn(Rows<'_, S, V, R>, &mut PairChanges) + Sync,

@@ -2,7 +2,7 @@
 //! many.
 
 use super::places::Places;
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 
 /// Links in one line.
 const PER_LINE: usize = 8;
@@ -78,7 +78,7 @@ struct Line {
 }
 
 /// The links of all objects.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Lines {
     /// By object: which of the heads is its own, or [`NO_HEAD`].
     owned: Vec<u32>,
@@ -92,6 +92,8 @@ pub(super) struct Lines {
     /// The places of the links of heavy objects.
     places: Places,
 }
+
+clone_fields!([] Lines { owned, heads, idle, pool, free, places });
 
 /// Where among the first `count` links that to the partner stands. All are looked at: where a search
 /// ends, no processor foresees.

@@ -4,6 +4,8 @@
 //! § 6.4, with his removal that leaves no graves). Nothing ever walks over the entries, so their
 //! order shows nowhere.
 
+use crate::memory::clone_fields;
+
 /// The place of an entry without a key.
 const FREE: u32 = u32::MAX;
 /// The least number of entries, once there is one.
@@ -17,12 +19,14 @@ struct PlaceEntry {
 }
 
 /// From links, named by their two ends, to places.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Places {
     /// A power of two of entries, at most half of them in use; or none.
     entries: Vec<PlaceEntry>,
     used: usize,
 }
+
+clone_fields!([] Places { entries, used });
 
 impl Places {
     /// The place of the link, if it is in the table.

@@ -1,16 +1,27 @@
 //! The table of pairs.
 
 use super::lines::{Lines, Link, small};
-use crate::memory::Look;
+use crate::journal::Journal;
+use crate::memory::{Look, clone_fields};
 
 /// A set of unordered pairs; see the module's page for its layout.
 ///
 /// A number may be paired with any number, itself included. Finding, adding and removing a pair cost
 /// constant time.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(crate) struct PairTable {
     pairs: Vec<(u32, u32)>,
     lines: Lines,
+    journal: Journal<PairNote>,
+}
+
+clone_fields!([] PairTable { pairs, lines, journal });
+
+/// A change of the set.
+#[derive(Clone, Copy, Debug)]
+enum PairNote {
+    Inserted(u32, u32),
+    Removed(u32, u32),
 }
 
 /// The outcome of [`PairTable::insert`].
@@ -104,6 +115,7 @@ impl PairTable {
         let index = self.pairs.len();
         self.pairs.push((a, b));
         self.link(index, a, b);
+        self.journal.note(PairNote::Inserted(a, b));
         index
     }
 
@@ -113,6 +125,8 @@ impl PairTable {
         let index = self.unlink(old.0, old.1)?;
         debug_assert!(self.index_of(new.0, new.1).is_none(), "the pair {new:?} is in the table");
         self.link(index, new.0, new.1);
+        self.journal.note(PairNote::Removed(old.0, old.1));
+        self.journal.note(PairNote::Inserted(new.0, new.1));
         Some(index)
     }
 
@@ -132,6 +146,7 @@ impl PairTable {
     /// Takes the pair out, if it is there.
     pub(crate) fn remove(&mut self, a: u32, b: u32) -> Option<Removed> {
         let index = self.unlink(a, b)?;
+        self.journal.note(PairNote::Removed(a, b));
         Some(self.close_gap(index))
     }
 
@@ -142,6 +157,7 @@ impl PairTable {
     pub(crate) fn remove_at(&mut self, index: usize) -> Removed {
         let (a, b) = self.pairs[index];
         self.unlink(a, b);
+        self.journal.note(PairNote::Removed(a, b));
         self.close_gap(index)
     }
 
@@ -181,6 +197,32 @@ impl PairTable {
             self.count(low).wrapping_add(self.count(high))
         };
         core::hint::black_box(keys.iter().fold(0, |sum, &key| count(key).wrapping_add(sum)));
+    }
+
+    /// Adds a mark; see [`Journal`].
+    pub(crate) fn mark(&mut self, number: u64) {
+        self.journal.mark(number, ());
+    }
+
+    /// Forgets the marks with smaller numbers.
+    pub(crate) fn forget_before(&mut self, number: u64) {
+        self.journal.forget_before(number);
+    }
+
+    /// Goes back to the pairs of a mark, in any order. Calls with each pair that is taken out, or with `None` for each that
+    /// is put back, last in the dense array.
+    pub(crate) fn rewind(&mut self, number: u64, mut undone: impl FnMut(Option<Removed>)) {
+        let mut journal = core::mem::take(&mut self.journal);
+        while let Some(note) = journal.undo(number) {
+            match note {
+                PairNote::Inserted(a, b) => undone(self.remove(a, b)),
+                PairNote::Removed(a, b) => {
+                    self.insert_new(a, b);
+                    undone(None);
+                }
+            }
+        }
+        self.journal = journal;
     }
 
     /// Gives back memory that a table that has stopped to grow does not need.

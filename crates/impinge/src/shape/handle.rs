@@ -17,8 +17,21 @@ use crate::shape::{ScaleError, Shape};
 /// assert!(handle.as_shape::<Cuboid<f32>>().is_none());
 /// assert_eq!(handle.local_aabb().maxs().x, 1.0, "all that a shape can do");
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct ShapeHandle<N: Real, const D: usize>(Arc<dyn Shape<N, D>>);
+
+impl<N: Real, const D: usize> Clone for ShapeHandle<N, D> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+
+    /// Touches no count if both share the shape already.
+    fn clone_from(&mut self, source: &Self) {
+        if !self.is_same(source) {
+            *self = source.clone();
+        }
+    }
+}
 
 impl<N: Real, const D: usize> ShapeHandle<N, D> {
     /// Takes a shape into shared ownership.

@@ -2,17 +2,17 @@
 
 use super::changes::ChangeList;
 use super::error::usable_pose;
-use super::{CollisionGroups, WorldError};
+use super::{CollisionGroups, WorldError, WorldsBroadPhase};
 use crate::bounding_volume::{Aabb, BoundingVolume};
-use crate::broad_phase::{BroadPhase, ProxyHandle};
+use crate::broad_phase::ProxyHandle;
 use crate::math::outward::slack_of;
 use crate::math::{Pose, Real, Space, max};
+use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, PackedQuery};
 use crate::shape::{Compact, Geometry, Shape, ShapeHandle};
 
 /// The broad phase of a world.
-pub(crate) type WorldBroadPhase<N, const D: usize> =
-    dyn BroadPhase<N, Aabb<N, D>, CollisionObjectHandle> + Send + Sync;
+pub(crate) type WorldBroadPhase<N, const D: usize> = dyn WorldsBroadPhase<N, D>;
 
 /// The object is tested against itself, as the narrow phase knows.
 const SELF_PAIR: u32 = 1 << 31;
@@ -29,7 +29,7 @@ pub(super) const MAX_CHANGES: u32 = PLACE;
 /// hold as of the last update. Of `f32` in 3D 96 bytes, and there are as many as objects.
 ///
 /// What queries read stands side by side, the rest at both ends.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 #[repr(C)]
 pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     pub(crate) shape: ShapeHandle<N, D>,
@@ -44,7 +44,26 @@ pub(crate) struct WorldBody<N: Space<D>, const D: usize> {
     pub(crate) query: PackedQuery<N>,
 }
 
+clone_fields!([N: Space<D>, const D: usize] WorldBody<N, D> {
+    shape, isometry, solid, proxy, state, handle, groups, query,
+});
+
+/// What of a body changes when it moves, and when an update sees that.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BodyMotion<N: Space<D>, const D: usize> {
+    isometry: N::Isometry,
+    state: u32,
+}
+
 impl<N: Space<D>, const D: usize> WorldBody<N, D> {
+    pub(super) const fn motion(&self) -> BodyMotion<N, D> {
+        BodyMotion { isometry: self.isometry, state: self.state }
+    }
+
+    pub(super) const fn set_motion(&mut self, motion: BodyMotion<N, D>) {
+        (self.isometry, self.state) = (motion.isometry, motion.state);
+    }
+
     /// The handle index.
     pub(crate) const fn index(&self) -> u32 {
         self.handle.index()

@@ -13,7 +13,7 @@ use super::dirty::DirtyTree;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::broad_phase::ProxyHandle;
 use crate::math::{Real, Space};
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 use crate::narrow_phase::{ObjectRow, ObjectTable};
 
 /// No handle index.
@@ -34,7 +34,7 @@ struct BodyChanges {
 
 /// An object that changed.
 #[derive(Clone, Debug)]
-struct BodyEntry<N: Real, const D: usize> {
+pub(crate) struct BodyEntry<N: Real, const D: usize> {
     /// The handle index; [`GONE`] if the object is.
     index: u32,
     changes: BodyChanges,
@@ -59,6 +59,10 @@ pub(crate) struct ChangeList<N: Space<D>, const D: usize> {
     /// Of the last update: those whose pairs with themselves begin or end.
     self_changed: Vec<u32>,
 }
+
+clone_fields!([N: Space<D>, const D: usize] ChangeList<N, D> {
+    entries, predictions, skins, dirty, order, self_changed,
+});
 
 /// What learns of changes when an update begins.
 pub(crate) struct Readers<'a, N: Space<D>, const D: usize> {
@@ -326,6 +330,33 @@ impl<N: Space<D>, const D: usize> ChangeList<N, D> {
             self.entries.push(BodyEntry { index, changes, aabb: Aabb::unbounded() });
             place
         })
+    }
+
+    /// The objects that changed since the last update.
+    pub(super) fn entries(&self) -> &[BodyEntry<N, D>] {
+        &self.entries
+    }
+
+    /// The objects that changed are these again.
+    pub(super) fn go_back(&mut self, entries: &[BodyEntry<N, D>]) {
+        self.entries.clear();
+        self.entries.extend_from_slice(entries);
+        self.dirty.take();
+    }
+
+    /// The pose that stands here for an index, whether it is of meaning or not.
+    pub(super) fn known_prediction(&self, index: u32) -> Option<N::Isometry> {
+        self.predictions.get(index as usize).copied()
+    }
+
+    /// Gives an object a skin and a prediction back.
+    pub(super) fn keep(&mut self, index: u32, skin: N, prediction: Option<N::Isometry>) {
+        if skin != self.skin(index) {
+            self.put_skin(index, skin);
+        }
+        if let Some(prediction) = prediction {
+            self.predict(index, prediction);
+        }
     }
 
     /// What is wrong with the places of an object in the list, if anything.

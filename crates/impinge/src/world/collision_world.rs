@@ -5,11 +5,13 @@
 use super::entries;
 use super::error::{or_panic, usable_pose, usable_query};
 use super::filter::Filters;
+use super::fork::History;
 use super::objects::Description;
 use super::removed::RemovedObjects;
 use super::step::in_order;
 use super::{
-    CollisionGroups, CollisionObject, CollisionObjects, NarrowPhase, WorldBroadPhase, WorldError,
+    CollisionGroups, CollisionObject, CollisionObjects, WorldBroadPhase, WorldError,
+    WorldsNarrowPhase,
 };
 use crate::math::Space;
 use crate::memory::Recent;
@@ -51,10 +53,10 @@ use crate::shape::ShapeHandle;
 pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) objects: CollisionObjects<N, D, T>,
     pub(super) broad_phase: Box<WorldBroadPhase<N, D>>,
-    pub(super) narrow_phase: Box<dyn NarrowPhase<N, D, T>>,
+    pub(super) narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>,
     /// What takes over at the next update.
     pub(super) next_broad_phase: Option<Box<WorldBroadPhase<N, D>>>,
-    pub(super) next_narrow_phase: Option<Box<dyn NarrowPhase<N, D, T>>>,
+    pub(super) next_narrow_phase: Option<Box<dyn WorldsNarrowPhase<N, D, T>>>,
     pub(super) filters: Filters<N, D, T>,
     /// Those of the last update.
     pub(super) events: Events,
@@ -70,6 +72,7 @@ pub struct CollisionWorld<N: Space<D>, const D: usize, T> {
     pub(super) interactions: Vec<Interaction>,
     /// How long the lists of the world have been lately.
     pub(super) recent: Recent,
+    pub(super) history: History<N, D, T>,
 }
 
 /// Making a world and filling it.
@@ -110,6 +113,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
             algorithms: Vec::new(),
             interactions: Vec::new(),
             recent: Recent::default(),
+            history: History::new(),
         })
     }
 
@@ -171,7 +175,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     pub fn try_remove(&mut self, handles: &[CollisionObjectHandle]) -> Result<(), WorldError> {
         let mut proxies = Vec::with_capacity(handles.len());
         for &handle in handles {
-            proxies.push(self.objects.fresh(handle)?.0.proxy);
+            proxies.push(self.objects.known(handle)?.proxy);
         }
         refuse_repeated(handles)?;
         let mut pairs = Vec::new();
@@ -225,7 +229,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         position: N::Isometry,
     ) -> Result<(), WorldError> {
-        let (body, changes) = self.objects.fresh(handle)?;
+        let (body, changes) = self.objects.fresh_to_move(handle)?;
         entries::set_isometry(body, changes, position)
     }
 
@@ -250,7 +254,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         positions: &[(CollisionObjectHandle, N::Isometry)],
     ) -> Result<(), WorldError> {
         for (handle, position) in positions {
-            self.objects.fresh(*handle)?;
+            self.objects.known(*handle)?;
             usable_pose::<N, D>(position, Some(*handle))?;
         }
         for (handle, position) in positions {

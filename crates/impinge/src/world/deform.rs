@@ -56,7 +56,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle: CollisionObjectHandle,
         change: impl FnOnce(&mut S) -> R,
     ) -> Result<R, WorldError> {
-        let (body, _) = self.objects.fresh(handle)?;
+        let body = self.objects.known(handle)?;
         let shape = body.shape.as_shape::<S>().ok_or(WorldError::ShapeType(handle))?;
         let mut shape = shape.clone();
         let result = change(&mut shape);

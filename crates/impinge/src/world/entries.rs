@@ -3,17 +3,17 @@
 use super::bodies::WorldBody;
 use super::changes::{ChangeList, Readers};
 use super::dirty::{DirtyTree, DirtyVisitor};
+use super::fork::UsualBroadPhase;
 use super::objects::Slot;
 use super::queries::cast::Cast;
 use super::queries::shape;
 use super::{ContactViewPiece, ContactViews, WorldBroadPhase, WorldError, narrow_phase};
 use crate::bounding_volume::{Aabb, Ray};
-use crate::broad_phase::DBVTBroadPhase;
 use crate::collide::Placed;
 use crate::convex::Separation;
 use crate::math::{Point, Space, Vector};
 use crate::narrow_phase::{
-    CollisionObjectHandle, DefaultNarrowPhase, Events, GeometricQueryType, Interaction, ObjectTable,
+    DefaultNarrowPhase, Events, GeometricQueryType, Interaction, ObjectTable,
 };
 use crate::partitioning::Sweep;
 use crate::query::{Impact, ImpactOptions, PointProjection, RayIntersection};
@@ -201,5 +201,5 @@ compiled! {
 }
 
 fn boxed_broad_phase<N: Space<D>, const D: usize>(margin: N) -> Box<WorldBroadPhase<N, D>> {
-    Box::new(DBVTBroadPhase::<N, Aabb<N, D>, CollisionObjectHandle>::new(margin))
+    Box::new(UsualBroadPhase::new(margin))
 }

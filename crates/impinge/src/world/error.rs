@@ -2,6 +2,7 @@
 
 use core::fmt;
 
+use super::WorldMark;
 use crate::math::{Pose, Real, Space, is_unit};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 
@@ -60,6 +61,8 @@ pub enum WorldError {
     },
     /// The shape of the object is of another type than the one to be deformed.
     ShapeType(CollisionObjectHandle),
+    /// The world does not keep the mark: it has ended, or belongs to another world.
+    MarkGone(WorldMark),
     /// The world holds as many objects as it can name.
     Full,
 }
@@ -104,6 +107,7 @@ impl fmt::Display for WorldError {
             Self::ShapeType(handle) => {
                 write!(f, "the shape of {handle:?} is not of the type to be deformed")
             }
+            Self::MarkGone(_) => write!(f, "the mark has ended, or belongs to another world"),
             Self::Full => write!(f, "the world holds as many objects as it can name"),
         }
     }

@@ -1,10 +1,12 @@
 //! Filters of the user's own on the pairs that the broad phase finds.
 
 use core::fmt;
+use std::sync::Arc;
 
 use super::error::or_panic;
 use super::{CollisionObject, CollisionWorld, WorldError};
 use crate::math::Space;
+use crate::memory::clone_fields;
 use crate::narrow_phase::CollisionObjectHandle;
 
 /// Says which pairs shall exist at all.
@@ -30,7 +32,7 @@ pub trait BroadPhasePairFilter<N: Space<D>, const D: usize, T>: Send + Sync {
     -> bool;
 }
 
-type Named<N, const D: usize, T> = (String, Box<dyn BroadPhasePairFilter<N, D, T>>);
+type Named<N, const D: usize, T> = (String, Arc<dyn BroadPhasePairFilter<N, D, T>>);
 
 /// The filters of a world, sorted by name.
 pub(super) struct Filters<N: Space<D>, const D: usize, T> {
@@ -39,13 +41,15 @@ pub(super) struct Filters<N: Space<D>, const D: usize, T> {
     have_changed: bool,
 }
 
+clone_fields!([N: Space<D>, const D: usize, T] Filters<N, D, T> { filters, have_changed });
+
 impl<N: Space<D>, const D: usize, T> Filters<N, D, T> {
     pub(super) const fn new() -> Self {
         Self { filters: Vec::new(), have_changed: false }
     }
 
     /// Puts a filter under a name, in place of the one that has it.
-    pub(super) fn register(&mut self, name: &str, filter: Box<dyn BroadPhasePairFilter<N, D, T>>) {
+    pub(super) fn register(&mut self, name: &str, filter: Arc<dyn BroadPhasePairFilter<N, D, T>>) {
         self.have_changed = true;
         match self.position(name) {
             Ok(place) => self.filters[place].1 = filter,
@@ -119,7 +123,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     where
         F: BroadPhasePairFilter<N, D, T> + 'static,
     {
-        self.filters.register(name, Box::new(filter));
+        self.filters.register(name, Arc::new(filter));
         self.broad_phase.deferred_recompute_all_proximities();
     }
 

@@ -14,6 +14,7 @@ mod emptying;
 pub(crate) mod entries;
 mod error;
 mod filter;
+mod fork;
 mod group_masks;
 mod groups;
 mod motion;
@@ -35,6 +36,7 @@ pub(crate) use dirty::{DirtyTree, DirtyVisitor};
 pub(crate) use entries::{SmallWorldEntries, WorldEntries};
 pub use error::WorldError;
 pub use filter::BroadPhasePairFilter;
+pub use fork::{WorldMark, WorldsBroadPhase, WorldsNarrowPhase};
 pub use groups::{CollisionGroups, GroupError};
 pub use narrow_phase::{
     ContactManifolds, ContactPairs, ContactViewPiece, ContactViews, NarrowPhase, ProximityPairs,

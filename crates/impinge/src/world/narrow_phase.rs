@@ -49,7 +49,7 @@ pub type ContactViewPiece<'a, N, const D: usize> = Box<
 /// use impinge::dim2::narrow_phase::{DefaultNarrowPhase, NarrowPhase};
 /// use impinge::dim2::world::CollisionWorld;
 ///
-/// fn exchange(world: &mut CollisionWorld<f32, ()>, narrow_phase: impl NarrowPhase<f32, 2, ()> + 'static) {
+/// fn exchange(world: &mut CollisionWorld<f32, ()>, narrow_phase: impl NarrowPhase<f32, 2, ()> + Clone + 'static) {
 ///     world.set_narrow_phase(Box::new(narrow_phase));
 /// }
 ///

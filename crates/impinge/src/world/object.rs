@@ -4,6 +4,7 @@ use super::CollisionGroups;
 use super::bodies::WorldBody;
 use crate::broad_phase::ProxyHandle;
 use crate::math::Space;
+use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType};
 use crate::shape::ShapeHandle;
 
@@ -29,6 +30,8 @@ pub struct CollisionObject<N: Space<D>, const D: usize, T> {
     pub(super) body: WorldBody<N, D>,
     pub(super) data: T,
 }
+
+clone_fields!([N: Space<D>, const D: usize, T: Clone] CollisionObject<N, D, T> { body, data });
 
 impl<N: Space<D>, const D: usize, T> CollisionObject<N, D, T> {
     /// The object's name in its world.

@@ -1,15 +1,17 @@
 //! The objects of a world: the handle table with the records, and what the narrow phase reads of them.
 
 use super::bodies::{MAX_CHANGES, WorldBody, WorldBroadPhase};
-use super::changes::{ChangeList, Readers};
+use super::changes::{BodyEntry, ChangeList, Readers};
 use super::dirty::DirtyTree;
 use super::entries;
+use super::fork::ObjectNote;
 use super::{CollisionGroups, CollisionObject, WorldError};
 use crate::bounding_volume::Aabb;
 use crate::broad_phase::ProxyHandle;
 use crate::generation::Generation;
+use crate::journal::Journal;
 use crate::math::Space;
-use crate::memory::Look;
+use crate::memory::{Look, clone_fields};
 use crate::narrow_phase::{CollisionObjectHandle, GeometricQueryType, ObjectRow, ObjectTable};
 use crate::shape::ShapeHandle;
 
@@ -32,24 +34,34 @@ const MANY: usize = 4;
 /// ```
 pub struct CollisionObjects<N: Space<D>, const D: usize, T> {
     /// That of the first object at an index.
-    first: Generation,
-    slots: Vec<Slot>,
+    pub(super) first: Generation,
+    pub(super) slots: Vec<Slot>,
     /// The objects in no particular order, without gaps: that a handle is fresh shows in its slot,
     /// so who only hands objects on does not wait for their memory.
-    records: Vec<CollisionObject<N, D, T>>,
+    pub(super) records: Vec<CollisionObject<N, D, T>>,
     /// Indices without an object, the next one to be used at the end.
-    free: Vec<u32>,
+    pub(super) free: Vec<u32>,
     pub(super) changes: ChangeList<N, D>,
     pub(super) table: ObjectTable<N, D>,
+    pub(super) journal: Journal<ObjectNote<N, D, T>, Vec<BodyEntry<N, D>>>,
+    /// How objects are cloned, once there are marks: not all data are.
+    pub(super) cloned: Option<CloneObject<N, D, T>>,
 }
+
+clone_fields!([N: Space<D>, const D: usize, T: Clone] CollisionObjects<N, D, T> {
+    first, slots, records, free, changes, table, journal, cloned,
+});
+
+/// How an object is cloned.
+type CloneObject<N, const D: usize, T> = fn(&CollisionObject<N, D, T>) -> CollisionObject<N, D, T>;
 
 /// What an index of a handle stands for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slot {
     /// That of the object here, or of the next one.
-    generation: Generation,
+    pub(super) generation: Generation,
     /// Where the object is, or [`NOWHERE`].
-    place: u32,
+    pub(super) place: u32,
 }
 
 /// The handle of the object at an index, which there is.
@@ -79,6 +91,8 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
             free: Vec::new(),
             changes: ChangeList::new(),
             table: ObjectTable::new(),
+            journal: Journal::default(),
+            cloned: None,
         }
     }
 
@@ -94,6 +108,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         handle: CollisionObjectHandle,
     ) -> Option<&mut CollisionObject<N, D, T>> {
         let place = self.place(handle)?;
+        self.note(place);
         self.records.get_mut(place)
     }
 
@@ -200,13 +215,34 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         &self.table
     }
 
-    /// The object of a handle and the list of changes, or the error that says that the handle is stale.
+    /// The body of a handle, or the error that says that the handle is stale.
+    pub(super) fn known(
+        &self,
+        handle: CollisionObjectHandle,
+    ) -> Result<&WorldBody<N, D>, WorldError> {
+        let object = self.get(handle).ok_or(WorldError::StaleHandle(handle))?;
+        Ok(&object.body)
+    }
+
+    /// The body of a handle, to be changed, and the list of changes, or the error that says that the handle is stale.
     pub(super) fn fresh(
         &mut self,
         handle: CollisionObjectHandle,
     ) -> Result<(&mut WorldBody<N, D>, &mut ChangeList<N, D>), WorldError> {
-        let object = self.place(handle).and_then(|place| self.records.get_mut(place));
-        let object = object.ok_or(WorldError::StaleHandle(handle))?;
+        let place = self.place(handle).ok_or(WorldError::StaleHandle(handle))?;
+        self.note(place);
+        let object = self.records.get_mut(place).ok_or(WorldError::StaleHandle(handle))?;
+        Ok((&mut object.body, &mut self.changes))
+    }
+
+    /// [`Self::fresh`], to change nothing but the position.
+    pub(super) fn fresh_to_move(
+        &mut self,
+        handle: CollisionObjectHandle,
+    ) -> Result<(&mut WorldBody<N, D>, &mut ChangeList<N, D>), WorldError> {
+        let place = self.place(handle).ok_or(WorldError::StaleHandle(handle))?;
+        self.note_motion(place);
+        let object = self.records.get_mut(place).ok_or(WorldError::StaleHandle(handle))?;
         Ok((&mut object.body, &mut self.changes))
     }
 
@@ -232,6 +268,7 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         let place = u32::try_from(self.records.len()).expect("no more objects than handles");
         let slot = Slot { generation: handle.generation(), place };
         self.records.push(CollisionObject { body, data });
+        self.journal.note(ObjectNote::Added(handle));
         if self.free.pop().is_some() {
             self.slots[handle.uid()] = slot;
         } else {
@@ -242,17 +279,26 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
     /// Takes an object out.
     pub(super) fn remove(&mut self, handle: CollisionObjectHandle) -> CollisionObject<N, D, T> {
         let next = handle.generation().next();
-        let slot = &mut self.slots[handle.uid()];
-        let place = core::mem::replace(&mut slot.place, NOWHERE);
-        slot.generation = next.unwrap_or(slot.generation);
-        let object = self.records.swap_remove(place as usize);
-        if let Some(moved) = self.records.get(place as usize) {
-            self.slots[moved.body.handle.uid()].place = place;
-        }
+        self.note_removed(handle);
+        let object = self.take_record(handle);
+        self.slots[handle.uid()].generation = next.unwrap_or(handle.generation());
         self.changes.forget(&object.body);
         self.table.release(handle.index());
         if next.is_some() {
             self.free.push(handle.index());
+        }
+        object
+    }
+
+    /// Takes the record of an object out; the last one gets its place.
+    pub(super) fn take_record(
+        &mut self,
+        handle: CollisionObjectHandle,
+    ) -> CollisionObject<N, D, T> {
+        let place = core::mem::replace(&mut self.slots[handle.uid()].place, NOWHERE);
+        let object = self.records.swap_remove(place as usize);
+        if let Some(moved) = self.records.get(place as usize) {
+            self.slots[moved.body.handle.uid()].place = place;
         }
         object
     }
@@ -264,11 +310,12 @@ impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
         broad_phase: &mut WorldBroadPhase<N, D>,
         algorithms: &mut Vec<u32>,
     ) {
+        let order = self.changes.take_order();
+        self.note_all(&order);
         let Self { slots, records, changes, table, .. } = self;
         table.begin_update();
         algorithms.clear();
         let mut readers = Readers { table, broad_phase, algorithms };
-        let order = changes.take_order();
         for &index in &order {
             if let Some(object) = records.get_mut(slots[index as usize].place as usize) {
                 entries::flush(changes, &mut object.body, &mut readers);

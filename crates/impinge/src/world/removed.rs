@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{CollisionObject, CollisionWorld};
 use crate::math::Space;
+use crate::memory::clone_fields;
 use crate::narrow_phase::{CollisionObjectHandle, Events};
 
 /// The removed objects that events name, and which objects these are.
@@ -16,6 +17,8 @@ pub(super) struct RemovedObjects<N: Space<D>, const D: usize, T> {
     /// How many events of each kind were looked at: those of the last update, and those queued since.
     noted: [(usize, usize); 2],
 }
+
+clone_fields!([N: Space<D>, const D: usize, T: Clone] RemovedObjects<N, D, T> { objects, named, noted });
 
 impl<N: Space<D>, const D: usize, T> RemovedObjects<N, D, T> {
     pub(super) const fn new() -> Self {

@@ -1,6 +1,6 @@
 //! One update of a world, and the exchange of its phases.
 
-use super::{CollisionObject, CollisionWorld, NarrowPhase, WorldBroadPhase};
+use super::{CollisionObject, CollisionWorld, WorldBroadPhase, WorldsNarrowPhase};
 use crate::math::Space;
 use crate::narrow_phase::{
     CollisionObjectHandle, ContactEvent, Events, Interaction, ProximityEvent,
@@ -220,9 +220,10 @@ enum StepStatus {
 
 /// Exchanging the phases. The old ones serve until the next update, which makes all proxies anew.
 impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
-    /// Gives the world another broad phase, to which nothing has been added yet.
+    /// Gives the world another broad phase, to which nothing has been added yet: any that is `Clone`, `Send` and
+    /// `Sync`.
     ///
-    /// It takes over at the next update, which reports what changed, as any other does.
+    /// It takes over at the next update, which reports what changed, as any other does, and ends all marks.
     pub fn set_broad_phase(&mut self, broad_phase: Box<WorldBroadPhase<N, D>>) {
         self.next_broad_phase = Some(broad_phase);
     }
@@ -233,11 +234,11 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         &*self.broad_phase
     }
 
-    /// Gives the world another narrow phase, which knows no pair yet.
+    /// Gives the world another narrow phase, which knows no pair yet: any that is `Clone`.
     ///
-    /// It takes over at the next update, which reports what changed, as any other does; contacts get
-    /// new names.
-    pub fn set_narrow_phase(&mut self, narrow_phase: Box<dyn NarrowPhase<N, D, T>>) {
+    /// It takes over at the next update, which reports what changed, as any other does, and ends all marks;
+    /// contacts get new names.
+    pub fn set_narrow_phase(&mut self, narrow_phase: Box<dyn WorldsNarrowPhase<N, D, T>>) {
         self.next_narrow_phase = Some(narrow_phase);
     }
 
@@ -246,6 +247,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// pairs are not among them; a new one starts from nothing, and what it finds is compared with
     /// what was before.
     fn update_with_other_phases(&mut self, filter: Option<LentFilter<'_, N, D, T>>) {
+        self.end_marks();
         let Some(mut narrow_phase) = self.next_narrow_phase.take() else {
             let before = self.renew_proxies();
             self.write_changes();

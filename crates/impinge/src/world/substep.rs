@@ -77,7 +77,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
         handle2: CollisionObjectHandle,
     ) -> Result<bool, WorldError> {
         for handle in [handle1, handle2] {
-            self.objects.fresh(handle)?;
+            self.objects.known(handle)?;
         }
         let (first, second) = in_order(handle1, handle2);
         let key = [first.index(), second.index()];

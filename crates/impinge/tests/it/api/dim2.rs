@@ -158,7 +158,7 @@ fn dispatchers_of_ones_own() {
 }
 
 /// The default narrow phase behind a wall: it reports no proximities to others.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct ContactsOnly(DefaultNarrowPhase<f32>);
 
 impl<T> NarrowPhase<f32, 2, T> for ContactsOnly {

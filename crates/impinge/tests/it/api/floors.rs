@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// From the ground up.
 const FLOORS: [&[&str]; 13] = [
-    &["chunks", "generation", "math", "memory"],
+    &["chunks", "generation", "journal", "math", "memory"],
     &["bounding_volume", "pairs"],
     &["bvh"],
     &["partitioning"],

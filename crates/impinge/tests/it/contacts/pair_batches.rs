@@ -12,6 +12,7 @@ use scene_stage::{Digest, Play, Player, digest_state};
 use std::hash::Hasher;
 
 /// The default narrow phase, given pairs one by one: `handle_interactions` is the provided method.
+#[derive(Clone)]
 struct OneByOne<N: Space<D>, const D: usize>(DefaultNarrowPhase<N, D>);
 
 impl<N: Space<D>, const D: usize, T> NarrowPhase<N, D, T> for OneByOne<N, D> {

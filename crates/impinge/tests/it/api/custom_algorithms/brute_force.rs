@@ -8,14 +8,14 @@ use super::dim::math::{Point, Real};
 use super::dim::query::Ray;
 
 /// Exact boxes, no margin, no memory but the pairs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct BruteForce<N: Real, T> {
     /// By index; an index is used once.
     proxies: Vec<Option<Proxy<N, T>>>,
     pairs: BTreeSet<(u32, u32)>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Proxy<N: Real, T> {
     volume: Aabb<N>,
     next: Aabb<N>,

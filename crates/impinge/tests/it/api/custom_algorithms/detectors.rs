@@ -9,7 +9,7 @@ use super::dim::shape::{Ball, Shape};
 use super::generators::Policy;
 
 /// The proximity of two balls; answers that it cannot treat other solids.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct OwnNearness(Proximity);
 
 impl<N: Real> ProximityDetector<N, DIM> for OwnNearness {
@@ -38,6 +38,10 @@ impl<N: Real> ProximityDetector<N, DIM> for OwnNearness {
 
     fn proximity(&self) -> Proximity {
         self.0
+    }
+
+    fn boxed_clone(&self) -> ProximityAlgorithm<N> {
+        Box::new(self.clone())
     }
 }
 

@@ -12,7 +12,7 @@ use super::dim::shape::{Ball, FeatureId, Shape};
 use super::standalone::{at, vector};
 
 /// Contacts of two balls; holds none for other solids.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct OwnBalls<N: Real> {
     /// The number that names the pair, once it has one.
     pair: Option<u64>,
@@ -77,6 +77,10 @@ impl<N: Real> ContactManifoldGenerator<N, DIM> for OwnBalls<N> {
 
     fn contacts<'a>(&'a self, out: &mut Vec<&'a ContactManifold<N>>) {
         out.extend((!self.manifold.is_empty()).then_some(&self.manifold));
+    }
+
+    fn boxed_clone(&self) -> ContactAlgorithm<N> {
+        Box::new(self.clone())
     }
 }
 

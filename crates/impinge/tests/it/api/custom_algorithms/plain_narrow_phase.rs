@@ -17,12 +17,14 @@ type Handle = CollisionObjectHandle;
 type Key = (Handle, Handle);
 
 /// What is kept of a pair.
+#[derive(Clone)]
 struct Entry<N: Real> {
     work: Work<N>,
     is_touching: bool,
     status: Proximity,
 }
 
+#[derive(Clone)]
 enum Work<N: Real> {
     Contacts(ContactAlgorithm<N>, ContactPrediction<N>),
     Proximity(ProximityAlgorithm<N>, N),
@@ -49,7 +51,7 @@ impl<N: Real> Work<N> {
 }
 
 /// All pairs, in order.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct PlainNarrowPhase<N: Real> {
     pairs: BTreeMap<Key, Entry<N>>,
     ids: IdAllocator,

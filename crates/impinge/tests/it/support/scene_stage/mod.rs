@@ -12,7 +12,7 @@ use impinge::shape::{
     Ball, Capsule, Cone, ConvexHull, ConvexPolygon, Cuboid, Cylinder, Plane, Segment, ShapeHandle,
     Triangle,
 };
-use impinge::world::{CollisionGroups, CollisionWorld};
+use impinge::world::{CollisionGroups, CollisionWorld, WorldMark};
 use impinge_scenes::{Placement, Scene, SceneGroups, SceneQuery, SceneShape};
 
 pub(crate) type World<N, const D: usize> = CollisionWorld<N, D, usize>;
@@ -131,6 +131,13 @@ pub(crate) struct Player<N: Play<D>, const D: usize> {
     pub(crate) world: World<N, D>,
 }
 
+/// A state of a player.
+pub(crate) struct PlayerMark {
+    world: WorldMark,
+    step: u32,
+    handles: Vec<Option<CollisionObjectHandle>>,
+}
+
 impl<N: Play<D>, const D: usize> Player<N, D> {
     /// A world without objects, before the first step, in which all lengths are those of the scene
     /// times `scale`.
@@ -138,6 +145,24 @@ impl<N: Play<D>, const D: usize> Player<N, D> {
         let handles = vec![None; scene.objects.len()];
         let world = World::new(N::lit(scene.margin * scale));
         Self { scene, scale, step: 0, handles, world }
+    }
+
+    /// How many steps were played.
+    pub(crate) const fn step_number(&self) -> u32 {
+        self.step
+    }
+
+    /// The present state, to go back to.
+    pub(crate) fn mark(&mut self) -> PlayerMark {
+        PlayerMark { world: self.world.mark(), step: self.step, handles: self.handles.clone() }
+    }
+
+    /// Goes back to the state of a mark.
+    pub(crate) fn rewind(&mut self, mark: &PlayerMark) {
+        self.world.rewind(mark.world);
+        self.world.validate().expect("the parts of the world agree");
+        self.step = mark.step;
+        self.handles.clone_from(&mark.handles);
     }
 
     /// Removes, adds and moves what the next step says, and updates the world.

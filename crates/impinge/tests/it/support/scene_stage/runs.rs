@@ -1,5 +1,8 @@
 //! The scenes whose hashes are golden, and how they are played.
 
+#![allow(dead_code, reason = "each test uses a part")]
+
+use std::collections::VecDeque;
 use std::hash::Hasher;
 
 use impinge::broad_phase::DBVTBroadPhase;
@@ -38,16 +41,61 @@ impl<const D: usize> Run<D> {
             let broad_phase = DBVTBroadPhase::with_lanes(margin, lanes).expect("a margin");
             player.world.set_broad_phase(Box::new(broad_phase));
         }
-        let (mut digest, mut outcome) = (Digest::new(), Outcome::default());
+        let mut score = Score { digest: Digest::new(), outcome: Outcome::default() };
         for _ in 0..self.steps {
             player.step();
-            let world = &player.world;
-            digest_state(world, &mut digest);
-            outcome.contacts += world.contact_manifolds().map(|(_, _, m)| m.len()).sum::<usize>();
-            outcome.events += world.contact_events().len() + world.proximity_events().len();
+            score.note(&player);
         }
-        outcome.hash = digest.finish();
-        outcome
+        score.finish()
+    }
+
+    /// Plays the scene with a mark before each step. After every fifth new step it goes back, at most eight steps,
+    /// and plays these again; after every seventh, a clone goes on.
+    pub(crate) fn play_again<N: Play<D>>(&self) -> Outcome {
+        let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
+        let mut score = Score { digest: Digest::new(), outcome: Outcome::default() };
+        let (mut marks, mut farthest) = (VecDeque::new(), 0);
+        while player.step_number() < self.steps {
+            marks.push_back((player.mark(), score.clone()));
+            player.step();
+            score.note(&player);
+            if player.step_number() <= farthest {
+                continue;
+            }
+            farthest = player.step_number();
+            if farthest % 5 == 0 {
+                let first = marks.len().saturating_sub(8);
+                let (mark, before) = &marks[first];
+                player.rewind(mark);
+                score = before.clone();
+                marks.clear();
+            } else if farthest % 7 == 0 {
+                player.world = player.world.clone();
+                marks.clear();
+            }
+        }
+        score.finish()
+    }
+}
+
+/// What a run has come to.
+#[derive(Clone, Debug)]
+struct Score {
+    digest: Digest,
+    outcome: Outcome,
+}
+
+impl Score {
+    /// Takes in what the world says after a step.
+    fn note<N: Play<D>, const D: usize>(&mut self, player: &Player<N, D>) {
+        let (world, outcome) = (&player.world, &mut self.outcome);
+        digest_state(world, &mut self.digest);
+        outcome.contacts += world.contact_manifolds().map(|(_, _, m)| m.len()).sum::<usize>();
+        outcome.events += world.contact_events().len() + world.proximity_events().len();
+    }
+
+    fn finish(self) -> Outcome {
+        Outcome { hash: self.digest.finish(), ..self.outcome }
     }
 }
 

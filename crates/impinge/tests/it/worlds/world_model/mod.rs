@@ -7,6 +7,7 @@
 mod both;
 mod draw;
 mod engine;
+mod forks;
 mod twins;
 
 use both::Both;

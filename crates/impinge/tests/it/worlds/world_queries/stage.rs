@@ -196,7 +196,7 @@ pub(crate) fn neighbors<N: Space<D>, const D: usize>(
 }
 
 /// A broad phase that has no order of its own: that of the library, without what it overrides.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Unordered<N: Space<D>, const D: usize>(
     DBVTBroadPhase<N, Aabb<N, D>, CollisionObjectHandle>,
 );

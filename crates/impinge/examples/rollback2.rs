@@ -1,0 +1,172 @@
+//! A game of two over a network that is eight frames slow. Each side plays on at once with a guess of what the other does;
+//! when an input arrives that was guessed wrong, it goes back to before that frame and plays the frames since again.
+//! Marks keep what changed, so that nothing is copied. The output is how often that happened, and the same hash on both sides.
+
+#![allow(clippy::print_stdout, reason = "printing is what the program is for")]
+
+use std::collections::{BTreeMap, VecDeque};
+
+use impinge::dim2::prelude::*;
+use impinge::dim2::world::WorldMark;
+
+/// The data is how often an object was touched: it goes back with the world.
+type World = CollisionWorld<f32, u32>;
+
+const FRAMES: usize = 240;
+/// Frames that an input is under way.
+const DELAY: usize = 8;
+
+/// The direction in which a player walks in a frame, as the player presses keys.
+fn input(player: usize, frame: usize) -> Vector<f32> {
+    let keys = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    Vector::from(keys[(frame / [23, 31][player] + 2 * player) % 4])
+}
+
+/// Two players among crates; the first two objects are the players.
+fn build() -> (World, [CollisionObjectHandle; 2]) {
+    let mut world = World::new(0.02);
+    let (groups, query) = (CollisionGroups::new(), ContactQuery::default());
+    let body = ShapeHandle::new(Ball::new(0.45));
+    let players = [-3.25, 3.25]
+        .map(|x| world.add(Isometry::translation(x, 0.0), body.clone(), groups, query, 0));
+    let crate_ = ShapeHandle::new(Cuboid::new(Vector::new(0.4, 0.4)));
+    for n in 0..400_u16 {
+        let (column, row) = (f32::from(n % 20) - 9.5, f32::from(n / 20) - 9.5);
+        let place = Isometry::translation(1.2 * column, 1.2 * row);
+        world.add(place, crate_.clone(), groups, query, 0);
+    }
+    (world, players)
+}
+
+/// One frame: the players walk, and what is touched is pushed out of the way.
+fn step(world: &mut World, players: [CollisionObjectHandle; 2], inputs: [Vector<f32>; 2]) {
+    for (player, input) in players.into_iter().zip(inputs) {
+        move_by(world, player, input * 0.0625);
+    }
+    world.update();
+    let mut pushes = BTreeMap::<_, Vector<f32>>::new();
+    for (object1, object2, manifold) in world.contact_manifolds() {
+        let Some(deepest) = manifold.deepest_contact() else { continue };
+        let push = deepest.contact.normal.into_inner() * deepest.contact.depth.max(0.0);
+        for (object, push) in [(object1.handle(), -push), (object2.handle(), push)] {
+            *pushes.entry(object).or_insert_with(Vector::zeros) += push;
+        }
+    }
+    for (object, push) in pushes.into_iter().filter(|(object, _)| !players.contains(object)) {
+        move_by(world, object, push);
+    }
+    for event in world.contact_events().to_vec() {
+        let (first, second) = event.handles();
+        for handle in [first, second] {
+            *world.collision_object_mut(handle).expect("nobody is removed").data_mut() += 1;
+        }
+    }
+}
+
+fn move_by(world: &mut World, handle: CollisionObjectHandle, way: Vector<f32>) {
+    let mut position = *world.collision_object(handle).expect("nobody is removed").position();
+    position.translation.vector += way;
+    world.set_position(handle, position);
+}
+
+/// All positions, data and contacts in one number (FNV-1a).
+fn hash(world: &World) -> u64 {
+    let objects = world.collision_objects().flat_map(|object| {
+        let place = object.position().translation;
+        [place.x.to_bits(), place.y.to_bits(), *object.data()]
+    });
+    let depths = world.contact_manifolds().flat_map(|(_, _, manifold)| manifold.contacts());
+    let all = objects.chain(depths.map(|point| point.contact.depth.to_bits()));
+    all.fold(0xcbf2_9ce4_8422_2325, |hash: u64, word| {
+        (hash ^ u64::from(word)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+/// What runs on the machine of one player.
+struct Side {
+    me: usize,
+    world: World,
+    players: [CollisionObjectHandle; 2],
+    /// The state before each of the last frames, and what was guessed for it.
+    frames: VecDeque<(WorldMark, Vector<f32>)>,
+    /// The inputs of the other player, as far as they have arrived.
+    arrived: Vec<Vector<f32>>,
+    /// The next frame.
+    now: usize,
+    returns: usize,
+    repeated: usize,
+}
+
+impl Side {
+    fn new(me: usize) -> Self {
+        let (world, players) = build();
+        let (frames, arrived) = (VecDeque::new(), Vec::new());
+        Self { me, world, players, frames, arrived, now: 0, returns: 0, repeated: 0 }
+    }
+
+    /// Plays the next frame. Of an input that is under way it is guessed that it is the last one that arrived.
+    fn play(&mut self) {
+        let last = self.arrived.last().copied().unwrap_or_else(Vector::zeros);
+        let other = self.arrived.get(self.now).copied().unwrap_or(last);
+        let mut inputs = [input(self.me, self.now), other];
+        if self.me == 1 {
+            inputs.reverse();
+        }
+        self.frames.push_back((self.world.mark(), other));
+        if self.frames.len() > DELAY {
+            self.frames.pop_front();
+        }
+        step(&mut self.world, self.players, inputs);
+        self.now += 1;
+    }
+
+    /// Takes the input of the next frame that has none, which was played some frames ago. If it was guessed wrong, these
+    /// frames are played again.
+    fn receive(&mut self, input: Vector<f32>) {
+        let frame = self.arrived.len();
+        self.arrived.push(input);
+        let back = self.now - frame;
+        let place = self.frames.len() - back;
+        let (mark, guess) = self.frames[place];
+        if guess == input {
+            return;
+        }
+        self.world.rewind(mark);
+        self.frames.truncate(place);
+        self.now = frame;
+        (0..back).for_each(|_| self.play());
+        self.returns += 1;
+        self.repeated += back;
+    }
+}
+
+fn main() {
+    let mut sides = [Side::new(0), Side::new(1)];
+    for frame in 0..FRAMES + DELAY {
+        for side in &mut sides {
+            if let Some(sent) = frame.checked_sub(DELAY) {
+                side.receive(input(1 - side.me, sent));
+            }
+            if frame < FRAMES {
+                side.play();
+            }
+        }
+    }
+
+    // The same game without a network.
+    let (mut world, players) = build();
+    for frame in 0..FRAMES {
+        step(&mut world, players, [0, 1].map(|player| input(player, frame)));
+    }
+    for Side { me, world: here, returns, repeated, .. } in &sides {
+        println!(
+            "player {me}: {returns} returns, {repeated} frames again, hash {:016x}",
+            hash(here)
+        );
+        assert_eq!(hash(here), hash(&world), "the game that both would have played without delay");
+        assert!(*returns > 4, "guesses were wrong");
+    }
+    let touched = world.collision_objects().filter(|object| *object.data() > 0).count();
+    println!("{touched} of {} objects were touched", world.len());
+    assert!(touched > 20, "there was something to agree on");
+}

@@ -1,0 +1,141 @@
+//! Going back to a mark.
+//!
+//! What decides about pairs is brought back: the exact and the loosened boxes, which objects there are, what waits, and
+//! the pairs. Where an object is in the trees decides about time alone, and stays.
+
+use super::finder::{Home, Waiting, small};
+use super::{DBVTBroadPhase, PairFinder, ProxyHandle};
+use crate::bounding_volume::Aabb;
+use crate::bvh::{Bounds, NONE};
+use crate::math::{Real, Space};
+
+/// A change of the objects of a broad phase.
+#[derive(Clone, Debug)]
+pub(super) enum ProxyNote<T> {
+    Created(ProxyHandle),
+    /// With its data.
+    Removed(ProxyHandle, Option<T>),
+}
+
+/// An object before it was first changed since a mark.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BoxNote<N: Real, const D: usize> {
+    id: u32,
+    exact: Aabb<N, D>,
+    loose: Bounds<D>,
+    home: Home,
+}
+
+/// What waited for the next update when a mark was made.
+#[derive(Clone, Debug)]
+pub(super) struct FinderHead<N: Real, const D: usize> {
+    waiting: Vec<Waiting<N, D>>,
+    again: Vec<u32>,
+    is_all_again: bool,
+}
+
+impl<N: Space<D>, const D: usize, T> DBVTBroadPhase<N, Aabb<N, D>, T> {
+    /// Adds a mark; see [`Journal`](crate::journal::Journal).
+    pub(crate) fn mark(&mut self, number: u64) {
+        self.journal.mark(number, ());
+        self.finder.add_mark(number);
+    }
+
+    /// Forgets the marks with smaller numbers.
+    pub(crate) fn forget_before(&mut self, number: u64) {
+        self.journal.forget_before(number);
+        self.finder.journal.forget_before(number);
+        self.finder.pairs.forget_before(number);
+    }
+
+    /// Goes back to a mark. Costs O(changed · log n).
+    pub(crate) fn rewind(&mut self, number: u64) {
+        while let Some(note) = self.journal.undo(number) {
+            match note {
+                ProxyNote::Created(handle) => {
+                    self.handles.uncreate(handle);
+                    self.proxies[handle.uid()] = None;
+                }
+                ProxyNote::Removed(handle, data) => {
+                    self.handles.unremove(handle);
+                    self.proxies[handle.uid()] = data;
+                }
+            }
+        }
+        self.finder.rewind(number);
+    }
+}
+
+impl<N: Real, const D: usize> PairFinder<N, D> {
+    fn add_mark(&mut self, number: u64) {
+        // Changes are left over only where a filter panicked.
+        let again = self.again.iter().chain(&self.changes).copied().collect();
+        let (waiting, is_all_again) = (self.waiting.clone(), self.is_all_again);
+        self.journal.mark(number, FinderHead { waiting, again, is_all_again });
+        self.pairs.mark(number);
+    }
+
+    /// Notes an object that is about to change.
+    pub(super) fn note(&mut self, id: u32) {
+        let index = id as usize;
+        if self.journal.is_first(index) {
+            let (exact, loose, home) = (self.exact[index], self.loose[index], self.homes[index]);
+            self.journal.note(BoxNote { id, exact, loose, home });
+        }
+    }
+
+    fn rewind(&mut self, number: u64) {
+        let mut journal = core::mem::take(&mut self.journal);
+        for id in self.changes.drain(..) {
+            self.marks[id as usize] = 0;
+        }
+        self.searched.clear();
+        for Waiting { id, .. } in self.waiting.drain(..).filter(|waiting| waiting.id != NONE) {
+            self.waiting_at[id as usize] = NONE;
+        }
+        while let Some(note) = journal.undo(number) {
+            self.bring_back(&note);
+        }
+        for tree in [&mut self.moving, &mut self.still] {
+            tree.refit();
+            tree.settle();
+        }
+        self.pairs.rewind(number, |_| ());
+        if let Some(head) = journal.head() {
+            self.wait_again(head);
+        }
+        self.journal = journal;
+    }
+
+    fn wait_again(&mut self, head: &FinderHead<N, D>) {
+        self.waiting.clone_from(&head.waiting);
+        for (at, Waiting { id, .. }) in self.waiting.iter().enumerate() {
+            if *id != NONE {
+                self.waiting_at[*id as usize] = small(at);
+            }
+        }
+        self.again.clone_from(&head.again);
+        self.is_all_again = head.is_all_again;
+    }
+
+    /// Gives an object the boxes that it had. One that was bounded and is keeps its tree.
+    fn bring_back(&mut self, &BoxNote { id, exact, loose, home }: &BoxNote<N, D>) {
+        let index = id as usize;
+        (self.exact[index], self.loose[index]) = (exact, loose);
+        match (self.homes[index], home) {
+            (Home::Moving, Home::Moving | Home::Still) => self.moving.set_still(id, &loose),
+            (Home::Still, Home::Moving | Home::Still) => self.still.set_still(id, &loose),
+            (_, Home::Nowhere) => self.leave_home(id),
+            (_, Home::Unbounded) => {
+                self.leave_home(id);
+                self.homes[index] = Home::Unbounded;
+                self.unbounded.push(id);
+            }
+            (_, Home::Moving | Home::Still) => {
+                self.leave_home(id);
+                self.homes[index] = Home::Moving;
+                self.moving.insert_still(id, &loose);
+            }
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! The objects of a world as they were at a mark.
+
+use crate::math::Space;
+use crate::narrow_phase::CollisionObjectHandle;
+use crate::world::bodies::BodyMotion;
+use crate::world::objects::Slot;
+use crate::world::{CollisionObject, CollisionObjects};
+
+/// A change of the objects.
+pub(in crate::world) enum ObjectNote<N: Space<D>, const D: usize, T> {
+    Added(CollisionObjectHandle),
+    Removed(Box<KeptObject<N, D, T>>),
+    /// It is about to change for the first time since a mark.
+    Changed(Box<KeptObject<N, D, T>>),
+    /// The same, of one that moves.
+    Moved(u32, BodyMotion<N, D>),
+}
+
+/// An object as it was, with what stands elsewhere by index.
+pub(in crate::world) struct KeptObject<N: Space<D>, const D: usize, T> {
+    object: CollisionObject<N, D, T>,
+    skin: N,
+    prediction: Option<N::Isometry>,
+}
+
+impl<N: Space<D>, const D: usize, T> CollisionObjects<N, D, T> {
+    /// Adds a mark; see [`Journal`](crate::journal::Journal).
+    pub(super) fn mark(&mut self, number: u64)
+    where
+        T: Clone,
+    {
+        self.cloned = Some(Clone::clone);
+        self.journal.mark(number, self.changes.entries().to_vec());
+        self.table.mark(number);
+    }
+
+    /// Forgets the marks with smaller numbers.
+    pub(super) fn forget_before(&mut self, number: u64) {
+        self.journal.forget_before(number);
+        self.table.forget_before(number);
+    }
+
+    /// Goes back to a mark, which is kept.
+    pub(super) fn rewind(&mut self, number: u64) {
+        while let Some(note) = self.journal.undo(number) {
+            match note {
+                ObjectNote::Added(handle) => self.unadd(handle),
+                ObjectNote::Removed(kept) => self.unremove(*kept),
+                ObjectNote::Changed(kept) => {
+                    let place = self.slots[kept.object.handle().uid()].place as usize;
+                    self.records[place] = self.unpack(*kept);
+                }
+                ObjectNote::Moved(index, motion) => {
+                    let place = self.slots[index as usize].place as usize;
+                    self.records[place].body.set_motion(motion);
+                }
+            }
+        }
+        self.changes.go_back(self.journal.head().expect("the mark is kept"));
+        self.table.rewind(number);
+    }
+
+    /// Undoes the last addition.
+    fn unadd(&mut self, handle: CollisionObjectHandle) {
+        self.take_record(handle);
+        if handle.generation() == self.first {
+            self.slots.pop();
+        } else {
+            self.free.push(handle.index());
+        }
+    }
+
+    /// Undoes the last removal.
+    fn unremove(&mut self, kept: KeptObject<N, D, T>) {
+        let (handle, object) = (kept.object.handle(), self.unpack(kept));
+        let generation = handle.generation();
+        let place = u32::try_from(self.records.len()).expect("no more objects than handles");
+        self.slots[handle.uid()] = Slot { generation, place };
+        if generation.next().is_some() {
+            self.free.pop();
+        }
+        self.records.push(object);
+    }
+
+    /// The object, after its skin and prediction are brought back.
+    fn unpack(&mut self, kept: KeptObject<N, D, T>) -> CollisionObject<N, D, T> {
+        let KeptObject { object, skin, prediction } = kept;
+        self.changes.keep(object.body.index(), skin, prediction);
+        object
+    }
+
+    /// Notes the object at a place of the records, which is about to change.
+    #[inline]
+    pub(in crate::world) fn note(&mut self, place: usize) {
+        if self.journal.is_on() {
+            self.note_changed(place);
+        }
+    }
+
+    fn note_changed(&mut self, place: usize) {
+        if let Some(object) = self.records.get(place)
+            && self.journal.is_first_whole(object.handle().uid())
+            && let Some(kept) = self.kept(place)
+        {
+            self.journal.note(ObjectNote::Changed(kept));
+        }
+    }
+
+    /// Notes the object at a place of the records, which is about to move.
+    #[inline]
+    pub(in crate::world) fn note_motion(&mut self, place: usize) {
+        if self.journal.is_on()
+            && let Some(CollisionObject { body, .. }) = self.records.get(place)
+            && self.journal.is_first(body.handle.uid())
+        {
+            self.journal.note(ObjectNote::Moved(body.index(), body.motion()));
+        }
+    }
+
+    /// Notes the objects of some indices, which an update is about to see.
+    pub(in crate::world) fn note_all(&mut self, indices: &[u32]) {
+        if self.journal.is_on() {
+            for &index in indices {
+                self.note_motion(self.slots[index as usize].place as usize);
+            }
+        }
+    }
+
+    /// Notes an object that is about to leave.
+    pub(in crate::world) fn note_removed(&mut self, handle: CollisionObjectHandle) {
+        if let Some(kept) = self.kept(self.slots[handle.uid()].place as usize) {
+            self.journal.note(ObjectNote::Removed(kept));
+        }
+    }
+
+    /// The object at a place of the records, if there are marks.
+    fn kept(&self, place: usize) -> Option<Box<KeptObject<N, D, T>>> {
+        let cloned = self.cloned.filter(|_| self.journal.is_on())?;
+        let object = self.records.get(place)?;
+        let skin = self.changes.skin(object.body.index());
+        let prediction = self.changes.known_prediction(object.body.index());
+        Some(Box::new(KeptObject { object: cloned(object), skin, prediction }))
+    }
+}
