@@ -8,6 +8,7 @@
 
 pub(crate) mod between;
 pub(crate) mod bounds;
+mod meeting;
 mod separation;
 mod slab_lanes;
 pub(crate) mod slabs;
@@ -17,6 +18,7 @@ mod sweep;
 mod tests;
 
 pub(crate) use between::{Between, PartPair};
+pub(crate) use meeting::each_meeting;
 pub(crate) use separation::{
     PairVisitor, PartSeparation, Wanted, nearest_between, separation, visit_near_pairs,
 };
