@@ -150,7 +150,7 @@ fn of_two<N: Space<D>, const D: usize>(
     if between.are_boxes_beyond(loosened(reach)) {
         return;
     }
-    let is_searched = each_meeting(between, reach, &mut |parts| {
+    let is_searched = each_meeting(between, reach, false, &mut |parts| {
         found.push(parts);
         true
     });

@@ -424,7 +424,7 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     /// nothing more is asked.
     fn settles_touching(&mut self) -> bool {
         let (between, reach) = (self.between, min(self.limit, N::ZERO));
-        let is_searched = each_meeting(between, reach, &mut |parts| {
+        let is_searched = each_meeting(between, reach, true, &mut |parts| {
             self.visit(parts);
             self.bound() >= N::ZERO
         });

@@ -9,10 +9,10 @@
 
 use smallvec::SmallVec;
 
-use super::block_slabs::BlockSlab;
-use super::tree::small;
-use super::{Block, Bounds, LANES, Tree};
 use crate::bounding_volume::Aabb;
+use crate::bvh::block_slabs::BlockSlab;
+use crate::bvh::tree::small;
+use crate::bvh::{Block, Bounds, LANES, Tree};
 use crate::math::lanes::{bits, with_lanes};
 use crate::math::order::sort_few;
 use crate::math::simd::{Level, Simd};
@@ -34,8 +34,9 @@ pub(crate) trait TreeMeeting<N: Real, const D: usize> {
     /// Objects that are farther apart are of no interest; `None` ends the search.
     fn reach(&self) -> Option<N>;
 
-    /// A box around an object of the first (0) or the second (1) tree, in the frame of the other.
-    fn object_in_other(&self, which: usize, id: u32) -> Aabb<N, D>;
+    /// A box around an object of the first (0) or the second (1) tree, in the frame of the other, but for rounding; if
+    /// there are any near it, it is visited next.
+    fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
 
     /// Gets an object of the first (0) or the second (1) tree and all of one block of the other whose boxes are within
     /// its reach.
@@ -300,4 +301,98 @@ fn lanes_of(mut mask: u32) -> impl Iterator<Item = usize> {
 
 fn loosened<const D: usize>(bounds: &Bounds<D>, room: f32) -> Bounds<D> {
     Bounds { lo: filled(|axis| bounds.lo[axis] - room), hi: filled(|axis| bounds.hi[axis] + room) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::Lanes;
+    use crate::math::noise::Noise;
+    use crate::math::{Isometry3, Point, Vector};
+
+    /// Segments, each given by its ends in the frame of its tree.
+    type Segments = Vec<[Point<f64, 3>; 2]>;
+
+    struct Turned<'a> {
+        segments: &'a [Segments; 2],
+        poses: [Pose<f64, 3>; 2],
+        reach: f64,
+        found: Vec<[u32; 2]>,
+        is_first_enough: bool,
+    }
+
+    impl TreeMeeting<f64, 3> for Turned<'_> {
+        fn pose(&self, which: usize) -> &Pose<f64, 3> {
+            &self.poses[which]
+        }
+
+        fn reach(&self) -> Option<f64> {
+            (self.found.is_empty() || !self.is_first_enough).then_some(self.reach)
+        }
+
+        fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<f64, 3> {
+            around(&self.segments[which][id as usize].map(|end| self.poses[which].point(&end)))
+        }
+
+        fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
+            let pair = |other| if which == 0 { [own, other] } else { [other, own] };
+            self.found.extend(others.iter().map(|&other| pair(other)));
+        }
+    }
+
+    fn around([a, b]: &[Point<f64, 3>; 2]) -> Aabb<f64, 3> {
+        Aabb::new(a.inf(b), a.sup(b))
+    }
+
+    fn segments(noise: &mut Noise, count: usize) -> Segments {
+        let each = |_| {
+            let start = Point::from(noise.vector::<f64>(20.0));
+            [start, start + noise.vector::<f64>(2.0)]
+        };
+        (0..count).map(each).collect()
+    }
+
+    /// The least distance of places along two segments.
+    fn distance(one: &[Point<f64, 3>; 2], other: &[Point<f64, 3>; 2]) -> f64 {
+        let place = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
+        let ways = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
+        ways.map(|(at1, at2)| (place(one, at1) - place(other, at2)).norm())
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn no_near_pair_is_missed() {
+        let noise = &mut Noise(9);
+        for (count1, count2, reach) in
+            [(0, 9, 1.0), (1, 1, 60.0), (5, 300, 2.0), (700, 12, 1.0), (400, 900, 0.5)]
+        {
+            let all = [segments(noise, count1), segments(noise, count2)];
+            let tree = |segments: &Segments| {
+                let boxes = segments.iter().map(|own| Bounds::enclosing(&around(own)));
+                Tree::of_still(Lanes::detect(), (0..).zip(boxes))
+            };
+            let trees = [tree(&all[0]), tree(&all[1])];
+            let turn = noise.vector::<f64>(3.0);
+            let pose = Pose::from(Isometry3::new(Vector::<f64, 3>::new(9.0, -4.0, 2.0), turn));
+            let poses = [pose.inverse(), pose];
+            let mut pairs =
+                Turned { segments: &all, poses, reach, found: Vec::new(), is_first_enough: false };
+            visit_meetings(trees.each_ref(), &mut pairs);
+            let mut found = core::mem::take(&mut pairs.found);
+            found.sort_unstable();
+            assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
+            for (id1, one) in (0..).zip(&all[0]) {
+                for (id2, other) in (0..).zip(&all[1]) {
+                    let distance = distance(one, &other.map(|end| pose.point(&end)));
+                    let is_found = found.binary_search(&[id1, id2]).is_ok();
+                    assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
+                }
+            }
+            let most = count1 * count2;
+            assert!(most < 1000 || found.len() * 20 < most, "{} of {most} pairs", found.len());
+            pairs.is_first_enough = true;
+            visit_meetings(trees.each_ref(), &mut pairs);
+            assert!(pairs.found.len() <= LANES, "the search ends");
+        }
+    }
 }
