@@ -23,7 +23,9 @@ from timing import Side, arguments, interleaved, machine, markdown
 from trimesh.ray.ray_pyembree import RayMeshIntersector
 
 PACKAGES = ("impinge", "coal", "trimesh", "embreex", "numpy")
-QUESTIONS = ("distance", "witness", "collide")
+QUESTIONS = ("distance", "witness", "collide", "contacts")
+# More than two meshes here have.
+ALL_CONTACTS = 1_000_000
 
 # Answers that differ by more than this part of the size of the solids are reported.
 TOLERANCE = 1e-6
@@ -191,6 +193,8 @@ def ours(question: str) -> Callable[..., Any]:
         return impinge.distance
     if question == "witness":
         return lambda *sides, **options: impinge.witness(*sides, **options).distance
+    if question == "contacts":
+        return lambda *sides, **options: np.isfinite(impinge.contact(*sides, **options).depth)
     return lambda *sides, **options: impinge.proximity(*sides, **options) == 0
 
 
@@ -198,13 +202,16 @@ def coals(question: str, one: Body, other: Body, poses: Any) -> Callable[[], Any
     """Functors with requests and results that are used again. Of two meshes that overlap the distance is zero."""
     here = coal.Transform3s()
     there = [coal.Transform3s(pose[:3, :3] @ other.turn, pose[:3, 3]) for pose in poses]
-    if question == "collide":
+    is_collision = question in ("collide", "contacts")
+    if is_collision:
         call, request, result = coal.ComputeCollision(one.coal, other.coal), coal.CollisionRequest(), coal.CollisionResult()
+        if question == "contacts":
+            request.num_max_contacts = ALL_CONTACTS
     else:
         call, request, result = coal.ComputeDistance(one.coal, other.coal), coal.DistanceRequest(), coal.DistanceResult()
         request.enable_signed_distance = question == "witness"
     clear = result.clear
-    if question == "collide":
+    if is_collision:
         return lambda: [(clear(), call(here, pose, request, result) > 0)[1] for pose in there]
     return lambda: [(clear(), call(here, pose, request, result))[1] for pose in there]
 
@@ -257,7 +264,8 @@ def write_pairs(rows: list[list[object]], line: str, options: argparse.Namespace
         "# Meshes\n",
         f"{line}. `python meshes.py`: microseconds of processor time for a pose, one thread, median of {options.rounds} rounds of "
         f"{options.poses} poses. Coal's BVHs are of OBBRSS. The witness is the signed distance, of the deepest two parts where several "
-        "overlap; Coal answers zero where two meshes overlap, and with a convex solid the depth of parts that it came upon. "
+        "overlap; Coal answers zero where two meshes overlap, and with a convex solid the depth of parts that it came upon. `contacts`: the "
+        "deepest contact that the whole has, beside one contact of every two parts that overlap. "
         f"`differ` counts answers that are farther apart than {TOLERANCE}, `largest` is by how much.\n",
         markdown(header, rows),
     ]

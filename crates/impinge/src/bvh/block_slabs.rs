@@ -17,9 +17,9 @@ const ROUNDING: f64 = 32.0;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockSlab<const D: usize> {
     /// About of unit length.
-    across: [f32; D],
-    low: f32,
-    high: f32,
+    pub(super) across: [f32; D],
+    pub(super) low: f32,
+    pub(super) high: f32,
 }
 
 /// A box and a slab around the same.

@@ -39,7 +39,6 @@ mod gaps;
 mod join;
 mod kernel;
 mod near_first;
-mod near_pairs;
 mod order;
 mod ordered;
 mod place;
@@ -52,6 +51,7 @@ mod slabs;
 mod still;
 mod tree;
 mod triangles;
+mod two;
 mod validate;
 mod visit;
 
@@ -64,12 +64,12 @@ pub(crate) use gaps::Gaps;
 pub(crate) use join::{Changes, Joiner};
 pub use kernel::Lanes;
 pub(crate) use near_first::{GROUP, RayProbe};
-pub(crate) use near_pairs::{Toward, TreePair, visit_pairs};
 pub(crate) use ordered::{Frontier, Keys};
 pub(crate) use ranked::{BoxRanking, visit_ranked};
 pub(crate) use slabs::Slabs;
 pub(crate) use tree::{NONE, Tree};
 pub(crate) use triangles::{ShearedLine, Triangles};
+pub(crate) use two::{Toward, TreeMeeting, TreePair, visit_meetings, visit_pairs};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.
 pub(crate) const PARALLEL_FROM: usize = 2000;

@@ -5,7 +5,9 @@ use crate::batch::{SolidGroup, update_group2, update_group3};
 use crate::bounding_volume::Ray;
 use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
 use crate::collide::packet::{GapVisitor, LANES, PartPacket, TiledParts};
-use crate::collide::parts::{AxisSlabs, Between, part_gaps2, part_gaps3};
+use crate::collide::parts::{
+    AxisSlabs, Between, PairVerdicts, PartPairs, part_gaps2, part_gaps3, part_pairs2, part_pairs3,
+};
 use crate::collide::separation::{
     Projection, distance_in_plane, distance_in_space, gaps2, gaps3, seen_in_plane, seen_in_space,
     separation_in_plane, separation_in_space,
@@ -47,6 +49,9 @@ pub trait ByDimension<N: Real, const D: usize>:
 
     /// How far each of eight parts is from the solid in the slabs, at least.
     fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
+
+    /// Which of eight pairs of parts are beyond a limit, or within it.
+    fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairVerdicts;
 
     /// Updates the contacts of a convex solid and a chain of segments, or of a ball and a surface; `false` where the
     /// generic path must do it.
@@ -144,6 +149,10 @@ impl<N: Real> ByDimension<N, 2> for Here {
 
     fn part_gaps(slabs: &AxisSlabs<N, 2>, tiles: &PartPacket<N, 2>, limit: N) -> [N; LANES] {
         part_gaps2(slabs, tiles, limit)
+    }
+
+    fn part_pairs(pairs: &PartPairs<N, 2>, limit: N) -> PairVerdicts {
+        part_pairs2(pairs, limit)
     }
 
     fn update_quickly(
@@ -257,6 +266,10 @@ impl<N: Real> ByDimension<N, 3> for Here {
 
     fn part_gaps(slabs: &AxisSlabs<N, 3>, tiles: &PartPacket<N, 3>, limit: N) -> [N; LANES] {
         part_gaps3(slabs, tiles, limit)
+    }
+
+    fn part_pairs(pairs: &PartPairs<N, 3>, limit: N) -> PairVerdicts {
+        part_pairs3(pairs, limit)
     }
 
     fn update_quickly(

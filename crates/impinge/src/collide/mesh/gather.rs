@@ -8,6 +8,7 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::{aabb_of, enclosing, loosened};
+use crate::collide::parts::each_meeting;
 use crate::math::{Point, Pose, Real, Space, min};
 use crate::shape::CompositeShape;
 
@@ -137,8 +138,8 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
     found
 }
 
-/// The parts of one of two composites, each looked up in the other: of the one with fewer parts those
-/// that are near the other.
+/// The parts of two composites that may be within `reach`: by their trees, which tell by the parts as well. Where they
+/// have none, the parts of one are looked up in the other: of the one with fewer parts those that are near the other.
 fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     parts1: &dyn CompositeShape<N, D>,
@@ -147,6 +148,13 @@ fn of_two<N: Space<D>, const D: usize>(
     found: &mut PartPairs,
 ) {
     if between.are_boxes_beyond(loosened(reach)) {
+        return;
+    }
+    let is_searched = each_meeting(between, reach, false, &mut |parts| {
+        found.push(parts);
+        true
+    });
+    if is_searched {
         return;
     }
     let poses = [&between.pose21, &between.pair.pose12];

@@ -63,7 +63,7 @@ use super::parts::bounds::aabb_of;
 use crate::bounding_volume::Ray;
 use crate::collide::packet::PartGap;
 use crate::collide::pair::{Ordered, Placed};
-use crate::collide::separation::{of_ordered, placed};
+use crate::collide::separation::{of_ordered, placed, touching_of_ordered};
 use crate::collide::{ManifoldRequest, Pair, PairIds};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, min};
@@ -388,7 +388,11 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
         }
         return Some(found).filter(|found| found.distance <= limit).map(in_world);
     }
-    let nearest = of_ordered(&ordered, limit)?;
+    // The deepest contact of two composites is looked for among all that they have.
+    let nearest = match between.composites() {
+        [Some(_), Some(_)] => touching_of_ordered(&ordered, limit)?,
+        _ => of_ordered(&ordered, limit)?,
+    };
     // A half-space has one normal, whatever part it meets: the deepest part has the deepest contact.
     if between.is_half_space_first() && nearest.distance.is_finite_number() {
         return Some(nearest);

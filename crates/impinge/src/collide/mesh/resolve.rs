@@ -140,22 +140,20 @@ fn is_explained<N: Space<D>, const D: usize>(
         }
         asked.push(way);
     }
-    !asked.is_empty() && {
-        let points = &arena.points[contact.piece.points.clone()];
-        let mut placed = None;
-        asked.into_iter().any(|way| {
-            let shift = way.normal * way.depth;
-            // A point of the part that is still well within the solid says that they are not parted.
-            let is_held = points.iter().any(|point| {
-                let moved = point.point1 + normal * point.distance + shift;
-                scene.is_within(&moved, N::TWO * contact.tolerance)
-            });
-            !is_held && {
-                let placed = placed.get_or_insert_with(|| scene.pair(contact.parts()));
-                placed.is_parted(&shift, contact.tolerance)
-            }
-        })
+    // A point of the part that is still well within the solid says that they are not parted.
+    let points = &arena.points[contact.piece.points.clone()];
+    let mut shifts = SmallVec::<[Vector<N, D>; 16]>::new();
+    for way in asked {
+        let shift = way.normal * way.depth;
+        let is_held = points.iter().any(|point| {
+            let moved = point.point1 + normal * point.distance + shift;
+            scene.is_within(&moved, N::TWO * contact.tolerance)
+        });
+        if !is_held {
+            shifts.push(shift);
+        }
     }
+    !shifts.is_empty() && scene.pair(contact.parts()).is_parted_by_one(&shifts, contact.tolerance)
 }
 
 /// If the contacts that hold are farther than the nearest two parts, adds that of these. What is

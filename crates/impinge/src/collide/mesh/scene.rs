@@ -6,8 +6,10 @@ use core::cell::OnceCell;
 use super::gather::Nearby;
 use super::part_cache::PartCache;
 use super::patch::{Piece, Points};
-use crate::collide::packet::{GapVisitor, TiledParts};
+use crate::collide::packet::{GapVisitor, LANES, TiledParts};
 use crate::collide::parts::between::{Between, anchor, recentred};
+use crate::collide::parts::slabs::corners;
+use crate::collide::parts::{PairVerdicts, PartPairs};
 use crate::collide::{Pair, RawManifold};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
@@ -103,6 +105,14 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
         match &self.solid {
             WholeOrPart::Whole(kind) => *kind,
             WholeOrPart::Part(solid) => solid.geometry().0,
+        }
+    }
+
+    /// The corners of what is given by them.
+    fn corners(&self) -> Option<[Vector<N, D>; 3]> {
+        match &self.solid {
+            WholeOrPart::Whole(_) => None,
+            WholeOrPart::Part(solid) => corners(solid, &self.pose),
         }
     }
 
@@ -420,8 +430,36 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         if self.lying.is_turned { -normal } else { normal }
     }
 
+    /// Moving the second shape by one of some vectors of the first's frame parts the two, up to a tolerance.
+    pub(super) fn is_parted_by_one(&self, ways: &[Vector<N, D>], tolerance: N) -> bool {
+        let Some([one, other]) = self.corners() else {
+            return ways.iter().any(|way| self.is_parted(way, tolerance));
+        };
+        let mut pairs = PartPairs::new(N::ZERO);
+        ways.chunks(LANES).any(|ways| {
+            for (lane, way) in ways.iter().enumerate() {
+                pairs.ones.put(lane, &one.mapped(Point::from));
+                pairs.others.put(lane, &other.mapped(|corner| Point::from(corner + way)));
+            }
+            pairs.count = ways.len();
+            let PairVerdicts { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
+            // Few pairs are as far apart as the tolerance but for rounding.
+            let is_open = |lane: usize| (beyond | within) >> lane & 1 == 0;
+            let mut open = ways.iter().enumerate().filter(|(lane, _)| is_open(*lane));
+            beyond != 0 || open.any(|(_, way)| self.is_parted(way, tolerance))
+        })
+    }
+
+    /// The corners of the part of the first shape and of that of the second, in the frame of the first put through the
+    /// point that they are seen from; `None` of parts without.
+    fn corners(&self) -> Option<[[Vector<N, D>; 3]; 2]> {
+        let [first, second] = self.turned([&self.bodies[0], &self.bodies[1]]);
+        let second = second.corners()?;
+        Some([first.corners()?, second.mapped(|corner| self.lying.turn.vector(&corner))])
+    }
+
     /// Moving the second shape by a vector of the first's frame parts the two, up to a tolerance.
-    pub(super) fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
+    fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
         pair.pose12.translation += self.inward(way);
         <N::Algorithms>::separation(&pair, -tolerance).is_none()

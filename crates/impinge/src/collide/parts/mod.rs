@@ -9,6 +9,8 @@
 pub(crate) mod between;
 pub(crate) mod bounds;
 mod inside;
+mod meeting;
+mod pair_lanes;
 mod separation;
 mod slab_lanes;
 pub(crate) mod slabs;
@@ -19,6 +21,8 @@ mod tests;
 
 pub(crate) use between::{Between, PartPair};
 pub(crate) use inside::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
+pub(crate) use meeting::each_meeting;
+pub(crate) use pair_lanes::{PairVerdicts, PartPairs, part_pairs2, part_pairs3};
 pub(crate) use separation::{
     PairVisitor, PartSeparation, Wanted, nearest_between, separation, visit_near_pairs,
 };

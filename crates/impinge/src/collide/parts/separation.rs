@@ -7,6 +7,7 @@ use smallvec::SmallVec;
 use super::between::{Between, by_number};
 use super::bounds::{extent, loosened};
 use super::inside::with_inside;
+use super::meeting::each_meeting;
 use super::slabs::{AxisSlabs, corners, range};
 use super::solid_bounds::{SolidBounds, gap_slack};
 use super::sweep::PartSweep;
@@ -16,7 +17,7 @@ use crate::collide::Pair;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::separation as of_convex;
 use crate::convex::Separation;
-use crate::math::{Mapped, Point, Real, Space, Vector, max, max_component, unit};
+use crate::math::{Mapped, Point, Real, Space, Vector, max, max_component, min, unit};
 use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Kind};
 
@@ -90,7 +91,10 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     if let Some(parts) = first {
         nearest.visit(parts);
     }
-    visit_near_pairs(between, &mut nearest);
+    let is_settled = wanted == Wanted::Touching && nearest.settles_touching();
+    if !is_settled {
+        visit_near_pairs(between, &mut nearest);
+    }
     if between.has_bodies() {
         return with_inside(between, limit, wanted, nearest.best);
     }
@@ -417,6 +421,19 @@ struct NearestPart<'a, N: Real, const D: usize> {
     limit: N,
     wanted: Wanted,
     best: Option<PartSeparation<N, D>>,
+}
+
+impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
+    /// Looks for parts of two composites that touch, for which it is enough to see that boxes overlap; answers whether
+    /// nothing more is asked.
+    fn settles_touching(&mut self) -> bool {
+        let (between, reach) = (self.between, min(self.limit, N::ZERO));
+        let is_searched = each_meeting(between, reach, true, &mut |parts| {
+            self.visit(parts);
+            self.bound() >= N::ZERO
+        });
+        is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
+    }
 }
 
 impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {

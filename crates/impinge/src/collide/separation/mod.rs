@@ -64,6 +64,7 @@ pub(crate) use table3::separation as separation_in_space;
 pub(crate) use triangles::{BallQuestion, NearTriangles, gaps2, gaps3, near_triangles};
 pub(crate) use world::{
     AtIsometry, distance_in_world, in_world, of_ordered, placed, touching_in_world,
+    touching_of_ordered,
 };
 
 /// An algorithm for one pair of kinds.

@@ -38,8 +38,15 @@ pub(crate) fn touching_in_world<N: Space<D>, const D: usize>(
     placed2: &Placed<'_, N, D>,
     limit: N,
 ) -> Option<Separation<N, D>> {
-    let ordered = Ordered::new(placed1, placed2);
-    let found = in_first(&ordered, limit, Wanted::Touching)?;
+    touching_of_ordered(&Ordered::new(placed1, placed2), limit)
+}
+
+/// [`touching_in_world`] of two whose canonical order is known.
+pub(crate) fn touching_of_ordered<N: Space<D>, const D: usize>(
+    ordered: &Ordered<'_, '_, N, D>,
+    limit: N,
+) -> Option<Separation<N, D>> {
+    let found = in_first(ordered, limit, Wanted::Touching)?;
     Some(placed(&found, ordered.first, ordered.swapped))
 }
 

@@ -55,6 +55,12 @@ pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     {
         return found;
     }
+    // What the search proves is apart, which is beyond such a limit.
+    if limit <= N::ZERO
+        && let (Kind::Triangle(_), Kind::Triangle(_)) = (pair.first, pair.second)
+    {
+        return nearer(pair)(pair, limit);
+    }
     result(pair, limit, false).separation(pair, limit)
 }
 

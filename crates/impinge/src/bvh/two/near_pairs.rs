@@ -12,12 +12,12 @@ use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
-use super::block_slabs::{SlabBox, in_use};
-use super::gaps::Gaps;
-use super::near_first::Open;
-use super::tree::small;
-use super::{Bounds, LANES, NONE, Tree};
 use crate::bounding_volume::Aabb;
+use crate::bvh::block_slabs::{SlabBox, in_use};
+use crate::bvh::gaps::Gaps;
+use crate::bvh::near_first::Open;
+use crate::bvh::tree::small;
+use crate::bvh::{Bounds, LANES, NONE, Tree};
 use crate::math::{Mapped, Point, Real, Vector, max, unit};
 
 /// Entries made room for at the start: enough for most searches.

@@ -1,0 +1,398 @@
+//! Pairs of objects of two trees that may touch, each tree in a frame of its own.
+//!
+//! Depth first over pairs of blocks. The box around one block is turned into the frame of the other tree, once, and is
+//! held against the boxes in the other block, all at a time: along the axes of both frames, which part most boxes that
+//! are apart (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, have the directions across two edges as well), and across
+//! its slab. Of two blocks the larger is opened. No queue: what is deepest in the box comes next.
+//!
+//! All is done in `f32`, with room for its rounding: what is left out is certainly beyond the reach.
+
+use smallvec::SmallVec;
+
+use crate::bounding_volume::Aabb;
+use crate::bvh::block_slabs::BlockSlab;
+use crate::bvh::tree::small;
+use crate::bvh::{Block, Bounds, LANES, Tree};
+use crate::math::lanes::{bits, with_lanes};
+use crate::math::order::sort_few;
+use crate::math::simd::{Level, Simd};
+use crate::math::{Mapped, Pose, Real, Wide, filled, max_component};
+
+/// Lanes that are treated at once.
+const HALF: usize = LANES / 2;
+/// What rounding does to heights, in units of `f32` of all lengths: 3 for a turn, as many for a sum of products, 2 for
+/// directions that are not quite unit, in up to three axes. The rest is reserve.
+const ROUNDING: f32 = 64.0;
+/// So many pairs of blocks are put off without memory of their own.
+const STACK: usize = 48;
+
+/// How two trees lie to each other, and what is done with pairs of their objects.
+pub(crate) trait TreeMeeting<N: Real, const D: usize> {
+    /// The frame of the first (0) or the second (1) tree in that of the other.
+    fn pose(&self, which: usize) -> &Pose<N, D>;
+
+    /// Objects that are farther apart are of no interest; `None` ends the search.
+    fn reach(&self) -> Option<N>;
+
+    /// A box around an object of the first (0) or the second (1) tree, in the frame of the other, but for rounding; if
+    /// there are any near it, it is visited next.
+    fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
+
+    /// Gets an object of the first (0) or the second (1) tree and all of one block of the other whose boxes are within
+    /// its reach.
+    fn visit(&mut self, which: usize, own: u32, others: &[u32]);
+}
+
+/// A block of each tree.
+#[derive(Clone, Copy)]
+struct BlockPair {
+    layers: [u8; 2],
+    blocks: [u32; 2],
+}
+
+/// How the frame of one tree lies in that of the other.
+#[derive(Clone, Copy)]
+struct Turn<const D: usize> {
+    /// Its axes.
+    axes: [[f32; D]; D],
+    shift: [f32; D],
+}
+
+/// What lies between two planes.
+#[derive(Clone, Copy)]
+struct TurnedSlab<const D: usize> {
+    across: [f32; D],
+    low: f32,
+    high: f32,
+}
+
+/// A convex region as the blocks of a tree see it: a box and slabs, all wider by the reach and what rounding does.
+struct TurnedBox<const D: usize> {
+    bounds: Bounds<D>,
+    /// Along the axes of the other frame, and across a slab.
+    slabs: SmallVec<[TurnedSlab<D>; 4]>,
+}
+
+/// The boxes of a block that a region may touch.
+struct Held {
+    mask: u32,
+    /// How far each box is from the region along the direction that parts them best, or less.
+    gaps: [f32; LANES],
+}
+
+struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
+    trees: [&'a Tree<D>; 2],
+    turns: [Turn<D>; 2],
+    level: Level,
+    /// What rounding does.
+    room: f32,
+    question: &'q mut dyn TreeMeeting<N, D>,
+}
+
+/// Visits the pairs of objects of two trees whose boxes are within the reach of the question, and some others.
+pub(crate) fn visit_meetings<N: Real, const D: usize>(
+    trees: [&Tree<D>; 2],
+    question: &mut dyn TreeMeeting<N, D>,
+) {
+    if trees.iter().any(|tree| tree.is_empty()) {
+        return;
+    }
+    debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
+    let turns = [0, 1].mapped(|which| Turn::of(question.pose(which)));
+    let way = max_component(&question.pose(0).translation).as_f32()
+        + max_component(&question.pose(1).translation).as_f32();
+    let size = trees[0].size() + trees[1].size() + way;
+    let room = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
+    let whole = BlockPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0] };
+    MeetingSearch { trees, turns, level: Level::new(), room, question }.run(whole);
+}
+
+impl<const D: usize> Turn<D> {
+    fn of<N: Real>(pose: &Pose<N, D>) -> Self {
+        let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));
+        Self { axes, shift: filled(|row| pose.translation[row].as_f32()) }
+    }
+
+    fn vector(&self, local: &[f32; D]) -> [f32; D] {
+        filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
+    }
+
+    /// A box of one tree, and a slab around the same, as the other tree sees them, wider by `room`.
+    fn turned(&self, bounds: &Bounds<D>, slab: Option<&BlockSlab<D>>, room: f32) -> TurnedBox<D> {
+        let half: [f32; D] = filled(|axis| bounds.hi[axis] * 0.5 - bounds.lo[axis] * 0.5);
+        let turned: [f32; D] = self.vector(&bounds.center());
+        let center: [f32; D] = filled(|row| turned[row] + self.shift[row]);
+        let extents: [f32; D] = filled(|row| {
+            room + (0..D).map(|axis| self.axes[axis][row].abs() * half[axis]).sum::<f32>()
+        });
+        let mut slabs = SmallVec::new();
+        for (across, half) in self.axes.iter().zip(half) {
+            let height = dot(across, &center);
+            slabs.push(TurnedSlab {
+                across: *across,
+                low: height - half - room,
+                high: height + half + room,
+            });
+        }
+        if let Some(slab) = slab {
+            let across = self.vector(&slab.across);
+            let height = dot(&across, &self.shift);
+            slabs.push(TurnedSlab {
+                across,
+                low: height + slab.low - room,
+                high: height + slab.high + room,
+            });
+        }
+        let bounds = Bounds {
+            lo: filled(|row| center[row] - extents[row]),
+            hi: filled(|row| center[row] + extents[row]),
+        };
+        TurnedBox { bounds, slabs }
+    }
+}
+
+fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl<const D: usize> TurnedBox<D> {
+    /// Which of the boxes of a block it may touch.
+    fn held(&self, level: Level, block: &Block<D>) -> Held {
+        let mut held = Held { mask: 0, gaps: [0.0; LANES] };
+        for first in [0, HALF] {
+            let gaps = &mut held.gaps[first..first + HALF];
+            let mask = with_lanes!(level, simd => self.held_half(simd, block, first, gaps));
+            held.mask |= u32::from(mask) << first;
+        }
+        held
+    }
+
+    /// Eight of the boxes of a block. Empty ones are infinitely far.
+    #[inline(always)]
+    fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
+        let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));
+        let (mut lo, mut hi) = ([zero; D], [zero; D]);
+        let mut gap = S::F32x8::all(simd, f32::NEG_INFINITY);
+        for axis in 0..D {
+            lo[axis] = S::F32x8::load(simd, &block.lo[axis][lanes.clone()]);
+            hi[axis] = S::F32x8::load(simd, &block.hi[axis][lanes.clone()]);
+            gap = (lo[axis] - S::F32x8::all(simd, self.bounds.hi[axis])).larger(gap);
+            gap = (S::F32x8::all(simd, self.bounds.lo[axis]) - hi[axis]).larger(gap);
+        }
+        if bits(gap.simd_gt(zero)) != u8::MAX {
+            for TurnedSlab { across, low, high } in &self.slabs {
+                let (mut lowest, mut highest) = (zero, zero);
+                for axis in 0..D {
+                    let along = S::F32x8::all(simd, across[axis]);
+                    let is_down = across[axis] < 0.0;
+                    let (near, far) =
+                        if is_down { (hi[axis], lo[axis]) } else { (lo[axis], hi[axis]) };
+                    (lowest, highest) = (lowest + along * near, highest + along * far);
+                }
+                // What is no number is not larger.
+                gap = (lowest - S::F32x8::all(simd, *high)).larger(gap);
+                gap = (S::F32x8::all(simd, *low) - highest).larger(gap);
+            }
+        }
+        gap.store(gaps);
+        !bits(gap.simd_gt(zero))
+    }
+}
+
+impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
+    fn run(&mut self, whole: BlockPair) {
+        let mut stack = SmallVec::<[BlockPair; STACK]>::new();
+        stack.push(whole);
+        while let Some(pair) = stack.pop() {
+            let Some(reach) = self.question.reach() else { return };
+            let room = self.room + reach.as_f32_above();
+            match pair.layers {
+                [0, 0] => self.meet(&pair, room),
+                [_, 0] => self.open(0, &pair, room, &mut stack),
+                [0, _] => self.open(1, &pair, room, &mut stack),
+                _ => {
+                    let [one, other] =
+                        [0, 1].mapped(|which| self.bounds(which, &pair).half_surface());
+                    self.open(usize::from(other > one), &pair, room, &mut stack);
+                }
+            }
+        }
+    }
+
+    fn bounds(&self, which: usize, pair: &BlockPair) -> &Bounds<D> {
+        &self.trees[which].layers[usize::from(pair.layers[which])].bounds
+            [pair.blocks[which] as usize]
+    }
+
+    /// The boxes in one of two blocks that what is in the other may touch.
+    fn held(&self, which: usize, pair: &BlockPair, room: f32) -> Held {
+        let own =
+            self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
+        let seen = self.turns[1 - which].turned(own.bounds, own.slab, room);
+        let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
+        seen.held(self.level, &self.trees[which].layers[layer].blocks[block])
+    }
+
+    /// Puts off the blocks below one of two, each with the other, so that the deepest comes next.
+    fn open(
+        &self,
+        which: usize,
+        pair: &BlockPair,
+        room: f32,
+        stack: &mut SmallVec<[BlockPair; STACK]>,
+    ) {
+        let Held { mask, gaps } = self.held(which, pair, room);
+        let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
+        let mut near = SmallVec::<[(f32, u32); LANES]>::new();
+        for lane in lanes_of(mask) {
+            let block = first + small(lane);
+            // Nothing is beyond an infinite reach, not even an empty lane.
+            if self.trees[which].is_block(layer, block) {
+                near.push((gaps[lane], block));
+            }
+        }
+        sort_few(&mut near, |one, other| one.0 > other.0);
+        for (_, block) in near {
+            let mut below = *pair;
+            (below.layers[which], below.blocks[which]) = (layer, block);
+            stack.push(below);
+        }
+    }
+
+    /// Visits the objects of two leaf blocks: each of that with fewer near ones with those of the other.
+    fn meet(&mut self, pair: &BlockPair, room: f32) {
+        let mut masks = [0; 2];
+        for which in [0, 1] {
+            masks[which] = self.held(which, pair, room).mask;
+            if masks[which] == 0 {
+                return;
+            }
+        }
+        let which = usize::from(masks[1].count_ones() < masks[0].count_ones());
+        let [tree, other] = [self.trees[which], self.trees[1 - which]];
+        let [own, others] = [pair.blocks[which], pair.blocks[1 - which]];
+        let block = &other.layers[0].blocks[others as usize];
+        for lane in lanes_of(masks[which]) {
+            let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
+            let aabb = self.question.object_in_other(which, id);
+            let bounds = loosened(&Bounds::enclosing(&aabb), room);
+            let near = TurnedBox { bounds, slabs: SmallVec::new() }.held(self.level, block).mask;
+            let ids = lanes_of(near & masks[1 - which])
+                .filter_map(|lane| other.id_in(others * small(LANES) + small(lane)));
+            let ids = ids.collect::<SmallVec<[u32; LANES]>>();
+            if !ids.is_empty() {
+                self.question.visit(which, id, &ids);
+                if self.question.reach().is_none() {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// The lanes whose bits are set.
+fn lanes_of(mut mask: u32) -> impl Iterator<Item = usize> {
+    core::iter::from_fn(move || {
+        let lane = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (lane < LANES).then_some(lane)
+    })
+}
+
+fn loosened<const D: usize>(bounds: &Bounds<D>, room: f32) -> Bounds<D> {
+    Bounds { lo: filled(|axis| bounds.lo[axis] - room), hi: filled(|axis| bounds.hi[axis] + room) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::Lanes;
+    use crate::math::noise::Noise;
+    use crate::math::{Isometry3, Point, Vector};
+
+    /// Segments, each given by its ends in the frame of its tree.
+    type Segments = Vec<[Point<f64, 3>; 2]>;
+
+    struct Turned<'a> {
+        segments: &'a [Segments; 2],
+        poses: [Pose<f64, 3>; 2],
+        reach: f64,
+        found: Vec<[u32; 2]>,
+        is_first_enough: bool,
+    }
+
+    impl TreeMeeting<f64, 3> for Turned<'_> {
+        fn pose(&self, which: usize) -> &Pose<f64, 3> {
+            &self.poses[which]
+        }
+
+        fn reach(&self) -> Option<f64> {
+            (self.found.is_empty() || !self.is_first_enough).then_some(self.reach)
+        }
+
+        fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<f64, 3> {
+            around(&self.segments[which][id as usize].map(|end| self.poses[which].point(&end)))
+        }
+
+        fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
+            let pair = |other| if which == 0 { [own, other] } else { [other, own] };
+            self.found.extend(others.iter().map(|&other| pair(other)));
+        }
+    }
+
+    fn around([a, b]: &[Point<f64, 3>; 2]) -> Aabb<f64, 3> {
+        Aabb::new(a.inf(b), a.sup(b))
+    }
+
+    fn segments(noise: &mut Noise, count: usize) -> Segments {
+        let each = |_| {
+            let start = Point::from(noise.vector::<f64>(20.0));
+            [start, start + noise.vector::<f64>(2.0)]
+        };
+        (0..count).map(each).collect()
+    }
+
+    /// The least distance of places along two segments.
+    fn distance(one: &[Point<f64, 3>; 2], other: &[Point<f64, 3>; 2]) -> f64 {
+        let place = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
+        let ways = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
+        ways.map(|(at1, at2)| (place(one, at1) - place(other, at2)).norm())
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    #[test]
+    fn no_near_pair_is_missed() {
+        let noise = &mut Noise(9);
+        for (count1, count2, reach) in
+            [(0, 9, 1.0), (1, 1, 60.0), (5, 300, 2.0), (700, 12, 1.0), (400, 900, 0.5)]
+        {
+            let all = [segments(noise, count1), segments(noise, count2)];
+            let tree = |segments: &Segments| {
+                let boxes = segments.iter().map(|own| Bounds::enclosing(&around(own)));
+                Tree::of_still(Lanes::detect(), (0..).zip(boxes))
+            };
+            let trees = [tree(&all[0]), tree(&all[1])];
+            let turn = noise.vector::<f64>(3.0);
+            let pose = Pose::from(Isometry3::new(Vector::<f64, 3>::new(9.0, -4.0, 2.0), turn));
+            let poses = [pose.inverse(), pose];
+            let mut pairs =
+                Turned { segments: &all, poses, reach, found: Vec::new(), is_first_enough: false };
+            visit_meetings(trees.each_ref(), &mut pairs);
+            let mut found = core::mem::take(&mut pairs.found);
+            found.sort_unstable();
+            assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
+            for (id1, one) in (0..).zip(&all[0]) {
+                for (id2, other) in (0..).zip(&all[1]) {
+                    let distance = distance(one, &other.map(|end| pose.point(&end)));
+                    let is_found = found.binary_search(&[id1, id2]).is_ok();
+                    assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
+                }
+            }
+            let most = count1 * count2;
+            assert!(most < 1000 || found.len() * 20 < most, "{} of {most} pairs", found.len());
+            pairs.is_first_enough = true;
+            visit_meetings(trees.each_ref(), &mut pairs);
+            assert!(pairs.found.len() <= LANES, "the search ends");
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Two trees, each in a frame of its own: near pairs of their objects, near ones first ([`near_pairs`]), and pairs that may
+//! touch, in no order ([`meeting`]).
+
+mod meeting;
+mod near_pairs;
+
+pub(crate) use meeting::{TreeMeeting, visit_meetings};
+pub(crate) use near_pairs::{Toward, TreePair, visit_pairs};
