@@ -184,10 +184,9 @@ impl<const D: usize> TurnedBox<D> {
                 let (mut lowest, mut highest) = (zero, zero);
                 for axis in 0..D {
                     let along = S::F32x8::all(simd, across[axis]);
-                    let is_down = across[axis] < 0.0;
-                    let (near, far) =
-                        if is_down { (hi[axis], lo[axis]) } else { (lo[axis], hi[axis]) };
-                    (lowest, highest) = (lowest + along * near, highest + along * far);
+                    let ends = [along * lo[axis], along * hi[axis]];
+                    let far = usize::from(across[axis] >= 0.0);
+                    (lowest, highest) = (lowest + ends[1 - far], highest + ends[far]);
                 }
                 // What is no number is not larger.
                 gap = (lowest - S::F32x8::all(simd, *high)).larger(gap);

@@ -108,7 +108,7 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             held.ask_width(&along, squared * other_squared);
         }
     }
-    held.unsure = held.unsure | !is_askew;
+    held.unsure |= !is_askew;
     if bits(is_askew | held.beyond) != u8::MAX {
         let (beyond, within) = (held.beyond, held.within);
         for (sides, normal) in [(&own, &normal), (&others, &other_normal)] {
@@ -174,9 +174,9 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         let gap = (other_low - high).larger(low - other_high);
         let is_length = squared.simd_gt(V::all(self.simd, N::MIN_POSITIVE / N::EPSILON))
             & squared.simd_lt(V::all(self.simd, N::INFINITY));
-        self.beyond = self.beyond | (gap.simd_gt(self.limits[0] * length) & is_length);
+        self.beyond |= gap.simd_gt(self.limits[0] * length) & is_length;
         // Also false for NaN.
-        self.within = self.within & gap.simd_le(self.limits[1] * length);
+        self.within &= gap.simd_le(self.limits[1] * length);
     }
 
     /// A direction across two vectors with this product of squares is exact.
@@ -188,7 +188,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
 
     #[inline(always)]
     fn ask_width(&mut self, along: &[V; D], squares: V) {
-        self.unsure = self.unsure | !self.is_wide(along, squares);
+        self.unsure |= !self.is_wide(along, squares);
     }
 
     #[inline(always)]

@@ -69,7 +69,7 @@ fn check_way_out<N: Space<3>>(
     noise: N,
 ) {
     let back = contact(m2, other, m1, mesh, N::ZERO).expect("in contact").flipped();
-    assert_eq!(back, *found);
+    assert_eq!(back, *found, "in both roles");
     let off = found.world1 - found.normal.into_inner() * found.depth - found.world2;
     assert!(off.norm() <= noise, "{found:?}");
     // What lies wholly inside is parted by the way out.
@@ -183,7 +183,8 @@ fn solids_in_solids<N: Space<3>>() {
         let noise = N::EPSILON * N::lit(4096.0);
         let touches = compare(&outer, &m1, &m2, &inner.mesh, noise);
         let exact = distance(&m1, &outer.hull, &m2, &inner.hull);
-        assert!((distance(&m1, &outer.mesh, &m2, &inner.mesh) - exact).abs() <= noise);
+        let found = distance(&m1, &outer.mesh, &m2, &inner.mesh);
+        assert!((found - exact).abs() <= noise, "{found:?} {exact:?}");
         compare(&inner, &m2, &m1, &outer.mesh, noise);
         counts[usize::from(touches)] += 1;
     }

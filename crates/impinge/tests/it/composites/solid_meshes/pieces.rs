@@ -14,10 +14,10 @@ type Found = Option<(f64, Vector<f64, 3>)>;
 fn between(one: &dyn Shape<f64, 3>, place: [f64; 3], other: &dyn Shape<f64, 3>) -> (f64, Found) {
     let (here, there) = (Isometry3::identity(), at(place));
     let near = distance(&here, one, &there, other);
-    assert_eq!(near, distance(&there, other, &here, one));
+    assert_eq!(near, distance(&there, other, &here, one), "in both roles");
     let found = contact(&here, one, &there, other, 0.0);
     let back = contact(&there, other, &here, one, 0.0).map(|found| found.flipped());
-    assert_eq!(found, back);
+    assert_eq!(found, back, "in both roles");
     let touches = proximity(&here, one, &there, other, 0.0) == Proximity::Intersecting;
     assert_eq!((touches, touches), (near == 0.0, found.is_some()), "{found:?}");
     (near, found.map(|found| (found.depth, found.normal.into_inner())))

@@ -38,13 +38,14 @@ fn against_polygons<N: Space<2>>() {
                 (distance(&m1, &hull, &m2, &*other), distance(&m1, &line, &m2, &*other));
             let noise = N::EPSILON * N::lit(1024.0);
             assert!((exact - found).abs() <= noise, "{exact:?} {found:?} {m1:?} {m2:?}");
-            assert_eq!(found, distance(&m2, &*other, &m1, &line));
+            assert_eq!(found, distance(&m2, &*other, &m1, &line), "in both roles");
             assert_eq!(
                 proximity(&m1, &line, &m2, &*other, N::ONE),
-                proximity(&m2, &*other, &m1, &line, N::ONE)
+                proximity(&m2, &*other, &m1, &line, N::ONE),
+                "in both roles"
             );
             let touch = contact(&m1, &line, &m2, &*other, N::ZERO);
-            assert_eq!(touch.is_some(), found == N::ZERO);
+            assert_eq!(touch.is_some(), found == N::ZERO, "{found:?}");
             if let Some(touch) = touch {
                 let depth =
                     contact(&m1, &hull, &m2, &*other, N::ZERO).map_or(N::ZERO, |exact| exact.depth);
