@@ -88,8 +88,10 @@ fn proximities_and_queries() {
     );
     let all = CollisionGroups::new();
     let inside = P3::new(-2.0, 1.0, 0.0);
-    let held: Vec<_> =
-        world.interferences_with_point(&inside, &all).map(|object| object.handle()).collect();
+    let held: Vec<_> = world
+        .interferences_with_point(&inside, &all)
+        .map(impinge::dim3::world::CollisionObject::handle)
+        .collect();
     assert_eq!(held, [body], "the point is inside");
     let ray = Ray::new(inside, V3::z());
     let hits: Vec<_> = world
