@@ -1,0 +1,89 @@
+//! Why an entity is not followed.
+
+use core::fmt;
+use core::marker::PhantomData;
+
+use bevy_ecs::prelude::{Component, Entity, Message};
+use impinge::shape::{MeshError, ScaleError, ShapeError};
+use impinge::world::WorldError;
+
+use crate::{DefaultWorld, WorldKey};
+
+/// Why the collider of an entity is not in the world, or not as the entity says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ColliderError {
+    /// A size or point of the shape is not usable.
+    Shape(ShapeError),
+    /// Vertices or indices of a mesh or polyline are not usable.
+    Mesh(MeshError),
+    /// The shape does not exist with the scale of the transform: the ends of a capsule would be oval, say. Change the scale, or take a
+    /// shape that has every scale, such as a convex hull or a triangle mesh.
+    Scale(ScaleError),
+    /// A number of the transform is NaN or infinite, or its quaternion is no rotation.
+    Pose(WorldError),
+    /// A scaled parent is rotated against its child: the product is no scale along the child's axes.
+    Sheared,
+    /// In 2D: the transform turns the entity out of the x-y plane.
+    OutOfPlane,
+    /// A `Mesh` that has no triangles to read, and why.
+    NoTriangles(&'static str),
+}
+
+impl fmt::Display for ColliderError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Shape(error) => write!(f, "the shape: {error}"),
+            Self::Mesh(error) => write!(f, "the mesh: {error}"),
+            Self::Scale(error) => write!(f, "the scale of the transform: {error}"),
+            Self::Pose(error) => write!(f, "the transform: {error}"),
+            Self::Sheared => write!(f, "the transform shears: a scaled parent, a rotated child"),
+            Self::OutOfPlane => write!(f, "the transform turns the entity out of the x-y plane"),
+            Self::NoTriangles(why) => write!(f, "the mesh has no triangles to read: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for ColliderError {}
+
+impl From<ShapeError> for ColliderError {
+    fn from(error: ShapeError) -> Self {
+        Self::Shape(error)
+    }
+}
+
+impl From<MeshError> for ColliderError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
+    }
+}
+
+impl From<ScaleError> for ColliderError {
+    fn from(error: ScaleError) -> Self {
+        Self::Scale(error)
+    }
+}
+
+impl From<WorldError> for ColliderError {
+    fn from(error: WorldError) -> Self {
+        Self::Pose(error)
+    }
+}
+
+/// On an entity whose collider is not in the world as it says: why. The plugin inserts it and removes it.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct ColliderProblem<const D: usize, W: WorldKey = DefaultWorld> {
+    /// The reason.
+    pub error: ColliderError,
+    pub(crate) world: PhantomData<W>,
+}
+
+/// A message: the collider of an entity is not in the world as it says. Written once when a problem begins or changes.
+#[derive(Message, Clone, Copy, Debug, PartialEq)]
+pub struct ColliderFailed<const D: usize, W: WorldKey = DefaultWorld> {
+    /// The entity.
+    pub entity: Entity,
+    /// The reason.
+    pub error: ColliderError,
+    pub(crate) world: PhantomData<W>,
+}

@@ -1,0 +1,358 @@
+//! Questions about everything in a world: rays, points, shapes at rest and in motion.
+
+use core::fmt;
+
+use bevy_ecs::prelude::Entity;
+use impinge::narrow_phase::GeometricQueryType;
+use impinge::query::{ClosestPoints, Impact, ImpactOptions, RayIntersection};
+use impinge::shape::ShapeHandle;
+use impinge::world::{NearObject, QueryFilter};
+
+use crate::collider::point;
+use crate::collisions::Object;
+use crate::glam::{Glam, Pose, Vec_};
+use crate::{Collider, CollisionLayers, Collisions, WorldKey};
+
+/// Which entities a question is about: all, unless something leaves some out.
+///
+/// ```
+/// use bevy_ecs::prelude::*;
+/// use bevy_impinge::{CollisionLayers, SpatialFilter};
+///
+/// let is_enemy = |entity: Entity| entity != Entity::PLACEHOLDER;
+/// let walls = CollisionLayers::new(CollisionLayers::ALL, 1 << 3);
+/// let filter = SpatialFilter::new().layers(walls).without_sensors().predicate(&is_enemy);
+/// # let _ = filter;
+/// ```
+#[derive(Clone, Default)]
+pub struct SpatialFilter<'a> {
+    layers: Option<CollisionLayers>,
+    excluded: Vec<Entity>,
+    skips_sensors: bool,
+    predicate: Option<&'a dyn Fn(Entity) -> bool>,
+}
+
+impl<'a> SpatialFilter<'a> {
+    /// All entities.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Only entities that may meet a collider with these layers.
+    #[must_use]
+    pub fn layers(self, layers: CollisionLayers) -> Self {
+        Self { layers: Some(layers), ..self }
+    }
+
+    /// Not this entity, nor those excluded before: the one that asks, say.
+    #[must_use]
+    pub fn exclude(mut self, entity: Entity) -> Self {
+        self.excluded.push(entity);
+        self
+    }
+
+    /// No sensors.
+    #[must_use]
+    pub fn without_sensors(self) -> Self {
+        Self { skips_sensors: true, ..self }
+    }
+
+    /// Only entities for which this is true; in place of a predicate given before.
+    #[must_use]
+    pub fn predicate(self, predicate: &'a dyn Fn(Entity) -> bool) -> Self {
+        Self { predicate: Some(predicate), ..self }
+    }
+
+    fn accepts<const D: usize>(&self, object: &Object<D>) -> bool
+    where
+        f32: Glam<D>,
+    {
+        let is_sensor = || matches!(object.query_type(), GeometricQueryType::Proximity(_));
+        if self.excluded.contains(object.data()) || (self.skips_sensors && is_sensor()) {
+            return false;
+        }
+        self.predicate.is_none_or(|predicate| predicate(*object.data()))
+    }
+
+    /// Asks a question with the library's filter.
+    pub(crate) fn ask<const D: usize, A>(
+        &self,
+        question: impl FnOnce(&QueryFilter<'_, f32, D, Entity>) -> A,
+    ) -> A
+    where
+        f32: Glam<D>,
+    {
+        let predicate = |object: &Object<D>| self.accepts(object);
+        let mut filter = QueryFilter::new().predicate(&predicate);
+        if let Some(layers) = self.layers {
+            filter = filter.groups(layers.groups());
+        }
+        question(&filter)
+    }
+}
+
+impl fmt::Debug for SpatialFilter<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SpatialFilter")
+            .field("layers", &self.layers)
+            .field("excluded", &self.excluded)
+            .field("skips_sensors", &self.skips_sensors)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayHit<const D: usize>
+where
+    f32: Glam<D>,
+{
+    /// The entity.
+    pub entity: Entity,
+    /// The distance from the origin of the ray; zero if it starts in the collider.
+    pub distance: f32,
+    /// The point that was hit.
+    pub point: Vec_<D>,
+    /// The unit vector out of the collider; zero if the ray starts in it.
+    pub normal: Vec_<D>,
+}
+
+/// What a moving shape met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeHit<const D: usize>
+where
+    f32: Glam<D>,
+{
+    /// The entity.
+    pub entity: Entity,
+    /// The fraction of the motion that is possible, from 0 to 1.
+    pub fraction: f32,
+    /// The point on the surface of the entity.
+    pub point: Vec_<D>,
+    /// The unit vector from the entity to the moving shape.
+    pub normal: Vec_<D>,
+}
+
+/// The point of an entity that is nearest to a given one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointHit<const D: usize>
+where
+    f32: Glam<D>,
+{
+    /// The entity.
+    pub entity: Entity,
+    /// Its nearest point.
+    pub point: Vec_<D>,
+    /// The distance; zero inside.
+    pub distance: f32,
+    /// The given point lies in the collider or on its surface.
+    pub is_inside: bool,
+}
+
+/// An entity near a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestEntity<const D: usize>
+where
+    f32: Glam<D>,
+{
+    /// The entity.
+    pub entity: Entity,
+    /// The distance; zero if they touch or overlap.
+    pub distance: f32,
+    /// The nearest points, on the shape and on the entity; `None` if they overlap.
+    pub points: Option<[Vec_<D>; 2]>,
+}
+
+/// Questions about all entities. A shape with an error, and a pose or point that is not finite, meets nothing.
+impl<const D: usize, W: WorldKey> Collisions<D, W>
+where
+    f32: Glam<D>,
+{
+    /// What a ray meets first, at most `max_distance` away; of several the entity that was added first. Colliders are
+    /// solid: a ray that starts in one meets it at distance 0. Costs the search of a tree.
+    #[must_use]
+    pub fn cast_ray(
+        &self,
+        ray: <f32 as Glam<D>>::Ray,
+        max_distance: f32,
+        filter: &SpatialFilter<'_>,
+    ) -> Option<RayHit<D>> {
+        let ray = f32::ray(&ray);
+        let (object, hit) =
+            filter.ask(|filter| self.world.first_ray_hit(&ray, max_distance, true, filter))?;
+        Some(ray_hit(*object.data(), &ray, &hit))
+    }
+
+    /// All that a ray meets, nearest first, each entity once.
+    #[must_use]
+    pub fn cast_ray_all(
+        &self,
+        ray: <f32 as Glam<D>>::Ray,
+        max_distance: f32,
+        filter: &SpatialFilter<'_>,
+    ) -> Vec<RayHit<D>> {
+        let ray = f32::ray(&ray);
+        let hits = filter.ask(|filter| self.world.ray_hits(&ray, max_distance, true, filter));
+        hits.into_iter().map(|(object, hit)| ray_hit(*object.data(), &ray, &hit)).collect()
+    }
+
+    /// What a shape meets first that moves straight by `motion` without turning. What touches at the start counts only
+    /// if the motion leads into it.
+    #[must_use]
+    pub fn cast_shape<V: WorldKey>(
+        &self,
+        shape: &Collider<D, V>,
+        pose: impl Into<Pose<D>>,
+        motion: Vec_<D>,
+        filter: &SpatialFilter<'_>,
+    ) -> Option<ShapeHit<D>> {
+        self.cast_with_skin(shape.shape().ok()?, &pose.into(), motion, 0.0, filter)
+    }
+
+    /// [`Self::cast_shape`], but a distance of `skin` counts as touching.
+    pub(crate) fn cast_with_skin(
+        &self,
+        shape: &ShapeHandle<f32, D>,
+        pose: &Pose<D>,
+        motion: Vec_<D>,
+        skin: f32,
+        filter: &SpatialFilter<'_>,
+    ) -> Option<ShapeHit<D>> {
+        let options = ImpactOptions::new().with_max_time(1.0).with_target_distance(skin);
+        let (position, motion) = (f32::isometry_of(pose), f32::vector(motion));
+        let (object, impact) = filter
+            .ask(|filter| self.world.cast_shape(&position, &motion, &**shape, &options, filter))?;
+        Some(shape_hit(*object.data(), &impact))
+    }
+
+    /// All that a shape would meet on its way if nothing stopped it, the first first, each entity once.
+    #[must_use]
+    pub fn cast_shape_all<V: WorldKey>(
+        &self,
+        shape: &Collider<D, V>,
+        pose: impl Into<Pose<D>>,
+        motion: Vec_<D>,
+        filter: &SpatialFilter<'_>,
+    ) -> Vec<ShapeHit<D>> {
+        let Ok(shape) = shape.shape() else { return Vec::new() };
+        let options = ImpactOptions::new().with_max_time(1.0);
+        let (position, motion) = (f32::isometry_of(&pose.into()), f32::vector(motion));
+        let hits = filter.ask(|filter| {
+            self.world.cast_shape_all(&position, &motion, &**shape, &options, filter)
+        });
+        hits.into_iter().map(|(object, impact)| shape_hit(*object.data(), &impact)).collect()
+    }
+
+    /// The entities that hold a point, on their surface at least.
+    #[must_use]
+    pub fn entities_at(&self, at: Vec_<D>, filter: &SpatialFilter<'_>) -> Vec<Entity> {
+        filter.ask(|filter| {
+            let objects = self.world.objects_containing(&point::<D>(at), filter);
+            objects.map(|object| *object.data()).collect()
+        })
+    }
+
+    /// The entities that touch or overlap a shape.
+    #[must_use]
+    pub fn overlapping<V: WorldKey>(
+        &self,
+        shape: &Collider<D, V>,
+        pose: impl Into<Pose<D>>,
+        filter: &SpatialFilter<'_>,
+    ) -> Vec<Entity> {
+        let Ok(shape) = shape.shape() else { return Vec::new() };
+        let position = f32::isometry_of(&pose.into());
+        filter.ask(|filter| {
+            let objects = self.world.objects_overlapping(&position, &**shape, filter);
+            objects.map(|object| *object.data()).collect()
+        })
+    }
+
+    /// Whether any entity touches or overlaps a shape; ends at the first.
+    #[must_use]
+    pub fn overlaps_any<V: WorldKey>(
+        &self,
+        shape: &Collider<D, V>,
+        pose: impl Into<Pose<D>>,
+        filter: &SpatialFilter<'_>,
+    ) -> bool {
+        let Ok(shape) = shape.shape() else { return false };
+        let position = f32::isometry_of(&pose.into());
+        filter.ask(|filter| self.world.overlaps_any(&position, &**shape, filter))
+    }
+
+    /// The nearest point of any entity, at most `max_distance` away. A point in a collider is its own nearest point.
+    #[must_use]
+    pub fn nearest_point(
+        &self,
+        to: Vec_<D>,
+        max_distance: f32,
+        filter: &SpatialFilter<'_>,
+    ) -> Option<PointHit<D>> {
+        let to = point::<D>(to);
+        let (object, found) =
+            filter.ask(|filter| self.world.project_point(&to, max_distance, true, filter))?;
+        let distance = if found.is_inside { 0.0 } else { (found.point - to).norm() };
+        Some(PointHit {
+            entity: *object.data(),
+            point: f32::vec(&found.point.coords),
+            distance,
+            is_inside: found.is_inside,
+        })
+    }
+
+    /// The `count` entities nearest to a shape, at most `max_distance` away, nearest first.
+    #[must_use]
+    pub fn nearest_entities<V: WorldKey>(
+        &self,
+        shape: &Collider<D, V>,
+        pose: impl Into<Pose<D>>,
+        (count, max_distance): (usize, f32),
+        filter: &SpatialFilter<'_>,
+    ) -> Vec<NearestEntity<D>> {
+        let Ok(shape) = shape.shape() else { return Vec::new() };
+        let position = f32::isometry_of(&pose.into());
+        let found = filter.ask(|filter| {
+            self.world.nearest_objects(&position, &**shape, count, max_distance, filter)
+        });
+        found.iter().map(nearest_entity).collect()
+    }
+}
+
+fn ray_hit<const D: usize>(
+    entity: Entity,
+    ray: &impinge::query::Ray<f32, D>,
+    hit: &RayIntersection<f32, D>,
+) -> RayHit<D>
+where
+    f32: Glam<D>,
+{
+    let (point, normal) = (f32::vec(&ray.point_at(hit.toi).coords), f32::vec(&hit.normal));
+    RayHit { entity, distance: hit.toi, point, normal }
+}
+
+fn shape_hit<const D: usize>(entity: Entity, impact: &Impact<f32, D>) -> ShapeHit<D>
+where
+    f32: Glam<D>,
+{
+    ShapeHit {
+        entity,
+        fraction: impact.toi,
+        point: f32::vec(&impact.world2.coords),
+        normal: f32::vec(&-impact.normal.into_inner()),
+    }
+}
+
+fn nearest_entity<const D: usize>(near: &NearObject<'_, f32, D, Entity>) -> NearestEntity<D>
+where
+    f32: Glam<D>,
+{
+    let points = match near.points {
+        ClosestPoints::WithinMargin(one, other) => {
+            Some([f32::vec(&one.coords), f32::vec(&other.coords)])
+        }
+        _ => None,
+    };
+    NearestEntity { entity: *near.object.data(), distance: near.distance, points }
+}

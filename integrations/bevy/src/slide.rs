@@ -1,0 +1,159 @@
+//! Characters: a motion that stops at obstacles and goes on along them.
+
+use impinge::math::Vector;
+
+use crate::glam::{Glam, Pose, Vec_};
+use crate::{Collider, Collisions, ShapeHit, SpatialFilter, WorldKey};
+
+/// How [`Collisions::move_and_slide`] moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlideSettings {
+    /// The distance kept from all obstacles: about a hundredth of the size of the character. 0.01 by default.
+    pub skin: f32,
+    /// The largest number of obstacles met on the way: with 1 the motion is straight and ends at the first. 6 by default.
+    pub max_hits: usize,
+}
+
+impl Default for SlideSettings {
+    fn default() -> Self {
+        Self { skin: 0.01, max_hits: 6 }
+    }
+}
+
+impl SlideSettings {
+    /// The usual settings with another skin.
+    #[must_use]
+    pub fn with_skin(skin: f32) -> Self {
+        Self { skin, ..Self::default() }
+    }
+}
+
+/// Where a character got to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slide<const D: usize>
+where
+    f32: Glam<D>,
+{
+    /// The motion that was possible: add it to the translation.
+    pub motion: Vec_<D>,
+    /// The rest of the wish, without what leads into the obstacles met last: zero if it was all used up. Divided by the
+    /// time step and added to the speed of `motion`, it is the velocity to go on with.
+    pub rest: Vec_<D>,
+    /// The obstacles in the order in which they were met, but those that the motion only grazed; their fractions are those of what was left of the motion.
+    pub hits: Vec<ShapeHit<D>>,
+}
+
+/// A motion into a wall by less than this part of its length goes along it: the rounding of a distance of a skin.
+const GRAZE: f32 = 1e-3;
+/// The part of its length by which a motion along a wall leads off it, so that rounding does not lead it into the wall:
+/// the next cast would stop where it starts.
+const LIFT: f32 = 1e-5;
+/// The largest number of walls that are grazed.
+const MAX_GRAZES: usize = 4;
+
+impl<const D: usize, W: WorldKey> Collisions<D, W>
+where
+    f32: Glam<D>,
+{
+    /// Moves a shape by `motion`, at most until it is `skin` away from an obstacle; what is left of the motion goes on
+    /// along the obstacle, in 3D between two of them along their edge. Sensors are no obstacles. A motion along a wall is led off
+    /// it by 1e-5 of its length, more than rounding. The shape does not turn,
+    /// and it is not pushed out of what it overlaps at the start: it goes no deeper.
+    ///
+    /// Exclude the character itself by the filter. The entities are where the last step saw them.
+    ///
+    /// ```
+    /// use bevy_app::prelude::*;
+    /// use bevy_impinge::d2::prelude::*;
+    /// use bevy_math::{Isometry2d, Vec2};
+    ///
+    /// let mut app = App::new();
+    /// app.add_plugins(ImpingePlugin::default().in_schedule(Update));
+    /// app.world_mut().spawn(Collider::half_plane(Vec2::Y));
+    /// app.update();
+    /// let (ball, at) = (Collider::circle(0.5), Isometry2d::from_xy(0.0, 1.0));
+    /// let settings = SlideSettings::with_skin(0.25);
+    /// let collisions = app.world().resource::<Collisions>();
+    /// let slide = collisions.move_and_slide(&ball, at, Vec2::new(2.0, -1.0), &settings, &SpatialFilter::new());
+    /// let expected = Vec2::new(2.0, -0.25);
+    /// assert!(slide.motion.abs_diff_eq(expected, 1e-4), "the floor stops the fall alone");
+    /// ```
+    #[must_use]
+    pub fn move_and_slide<V: WorldKey>(
+        &self,
+        shape: &Collider<D, V>,
+        pose: impl Into<Pose<D>>,
+        motion: Vec_<D>,
+        settings: &SlideSettings,
+        filter: &SpatialFilter<'_>,
+    ) -> Slide<D> {
+        let mut slide = Slide { motion: Vec_::<D>::default(), rest: motion, hits: Vec::new() };
+        let Ok(shape) = shape.shape() else { return slide };
+        let start = pose.into();
+        let filter = filter.clone().without_sensors();
+        let (mut done, mut rest) = (Vector::<f32, D>::zeros(), f32::vector(motion));
+        let mut walls: Vec<Vector<f32, D>> = Vec::new();
+        for _ in 0..settings.max_hits.saturating_add(MAX_GRAZES) {
+            if rest == Vector::<f32, D>::zeros() || slide.hits.len() >= settings.max_hits {
+                break;
+            }
+            let here = moved(&start, &done);
+            let skin = settings.skin;
+            let hit = self.cast_with_skin(shape, &here, f32::vec(&rest), skin, &filter);
+            let Some(hit) = hit else {
+                done += rest;
+                rest = Vector::zeros();
+                break;
+            };
+            done += rest * hit.fraction;
+            // Walls left behind no longer count.
+            if hit.fraction > 0.0 {
+                walls.clear();
+            }
+            let normal = f32::vector(hit.normal);
+            let is_graze = rest.dot(&normal) >= -GRAZE * rest.norm();
+            walls.push(normal);
+            rest = off(along(&(rest * (1.0 - hit.fraction)), &walls), &walls);
+            if !is_graze {
+                slide.hits.push(hit);
+            }
+        }
+        Slide { motion: f32::vec(&done), rest: f32::vec(&rest), ..slide }
+    }
+}
+
+fn moved<const D: usize>(pose: &Pose<D>, by: &Vector<f32, D>) -> Pose<D>
+where
+    f32: Glam<D>,
+{
+    let mut isometry = f32::isometry_of(pose);
+    f32::translate(&mut isometry, by);
+    f32::pose_of(&isometry)
+}
+
+/// A motion along walls, led off them by [`LIFT`].
+fn off<const D: usize>(motion: Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
+    let lift = LIFT * motion.norm();
+    walls.iter().fold(motion, |motion, wall| motion + wall * lift)
+}
+
+/// The part of a motion that leads into none of the walls, whose normals point at the character: along the last wall,
+/// else along the edge of the last and another, else zero.
+fn along<const D: usize>(motion: &Vector<f32, D>, walls: &[Vector<f32, D>]) -> Vector<f32, D> {
+    let zero = Vector::zeros();
+    let Some((last, others)) = walls.split_last() else { return *motion };
+    // Rounding of a product of unit vectors, times the length of the motion.
+    let rounding = 1e-6 * motion.norm();
+    let is_free = |v: &Vector<f32, D>| walls.iter().all(|wall| v.dot(wall) >= -rounding);
+    let without = |v: &Vector<f32, D>, wall: &Vector<f32, D>| v - wall * v.dot(wall);
+    let flat = without(motion, last);
+    if is_free(&flat) {
+        return flat;
+    }
+    let edge = |other: &Vector<f32, D>| {
+        // The direction of the other wall within the last one.
+        let across = without(other, last).try_normalize(1e-6)?;
+        Some(without(&flat, &across)).filter(is_free)
+    };
+    others.iter().rev().find_map(edge).unwrap_or(zero)
+}
