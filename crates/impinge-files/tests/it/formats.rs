@@ -92,7 +92,9 @@ fn a_room_keeps_its_fronts_unless_it_shall_be_solid() {
     };
     let plain = [1.0; 3];
     assert!(touches("one_sided", plain, 0.4) && !touches("one_sided", plain, -0.4), "from inside");
-    assert!(!touches("solid", plain, 0.4) && touches("solid", plain, -0.4), "from outside");
+    assert!(touches("solid", plain, -0.4), "from outside");
+    assert!(touches("solid", plain, 0.4) && touches("solid", plain, 1.0), "a body, not a room");
+    assert!(!touches("one_sided", plain, 1.0), "a room is hollow");
     assert!(touches("surface", plain, 0.4) && touches("surface", plain, -0.4), "from both sides");
     let mirrored = [-1.0, 1.0, 1.0];
     assert!(
