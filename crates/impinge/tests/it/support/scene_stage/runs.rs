@@ -49,7 +49,7 @@ impl<const D: usize> Run<D> {
         score.finish()
     }
 
-    /// Plays the scene with a mark before each step. After every fifth new step it goes back, at most eight steps,
+    /// Plays the scene with a mark before each step. After every tenth new step it goes back, at most eight steps,
     /// and plays these again; after every seventh, a clone goes on.
     pub(crate) fn play_again<N: Play<D>>(&self) -> Outcome {
         let mut player = Player::<N, D>::new(self.scene.clone(), 1.0);
@@ -63,7 +63,7 @@ impl<const D: usize> Run<D> {
                 continue;
             }
             farthest = player.step_number();
-            if farthest % 5 == 0 {
+            if farthest % 10 == 0 {
                 let first = marks.len().saturating_sub(8);
                 let (mark, before) = &marks[first];
                 player.rewind(mark);
