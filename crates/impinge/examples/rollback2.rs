@@ -82,7 +82,7 @@ fn hash(world: &World) -> u64 {
     })
 }
 
-/// What runs on the machine of one player.
+/// The program on the machine of one player.
 struct Side {
     me: usize,
     world: World,
@@ -153,7 +153,7 @@ fn main() {
         }
     }
 
-    // The same game without a network.
+    // This game has no network: nothing arrives late.
     let (mut world, players) = build();
     for frame in 0..FRAMES {
         step(&mut world, players, [0, 1].map(|player| input(player, frame)));

@@ -36,7 +36,7 @@ fn the_schema_is_that_of_the_types() {
     assert_eq!(written, SceneFile::schema(), "IMPINGE_BLESS=1 writes it anew");
 }
 
-/// That the schema refuses them too is a test of the page, where a validator of schemas is at hand.
+/// The tests of the page ask the schema about the same scenes, by a validator of schemas.
 #[test]
 fn scenes_that_the_schema_refuses_are_refused() {
     let refused: Vec<serde_json::Value> =

@@ -1,7 +1,7 @@
 //! Going back to a mark.
 //!
-//! What decides about pairs is brought back: the exact and the loosened boxes, which objects there are, what waits, and
-//! the pairs. Where an object is in the trees decides about time alone, and stays.
+//! The state that decides about pairs comes back: the exact and the loosened boxes, which objects there are, what
+//! waits, and the pairs. Where an object is in the trees decides about time alone, and stays.
 
 use super::finder::{Home, Waiting, small};
 use super::{DBVTBroadPhase, PairFinder, ProxyHandle};
@@ -26,7 +26,7 @@ pub(super) struct BoxNote<N: Real, const D: usize> {
     home: Home,
 }
 
-/// What waited for the next update when a mark was made.
+/// The changes that waited for the next update when a mark was made.
 #[derive(Clone, Debug)]
 pub(super) struct FinderHead<N: Real, const D: usize> {
     waiting: Vec<Waiting<N, D>>,

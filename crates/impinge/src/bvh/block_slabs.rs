@@ -13,7 +13,7 @@ const THINNER: f64 = 4.0;
 /// What heights lose to rounding, in units of the coordinates.
 const ROUNDING: f64 = 32.0;
 
-/// What lies between two planes.
+/// The space between two planes, in the frame of a tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockSlab<const D: usize> {
     /// About of unit length.

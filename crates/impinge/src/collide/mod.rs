@@ -15,7 +15,6 @@ pub(crate) mod batch;
 pub(crate) mod far;
 pub(crate) mod manifold;
 pub(crate) mod mesh;
-mod ones;
 pub(crate) mod packet;
 pub(crate) mod pair;
 pub(crate) mod parts;

@@ -21,6 +21,7 @@ pub(crate) mod lanes;
 pub(crate) mod lone;
 #[cfg(test)]
 pub(crate) mod noise;
+pub(crate) mod ones;
 pub(crate) mod order;
 pub(crate) mod outward;
 mod pose;

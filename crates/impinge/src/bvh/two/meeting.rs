@@ -14,13 +14,14 @@ use crate::bvh::block_slabs::BlockSlab;
 use crate::bvh::tree::small;
 use crate::bvh::{Block, Bounds, LANES, Tree};
 use crate::math::lanes::{bits, with_lanes};
+use crate::math::ones::Ones;
 use crate::math::order::sort_few;
 use crate::math::simd::{Level, Simd};
 use crate::math::{Mapped, Pose, Real, Wide, filled, max_component};
 
 /// Lanes that are treated at once.
 const HALF: usize = LANES / 2;
-/// What rounding does to heights, in units of `f32` of all lengths: 3 for a turn, as many for a sum of products, 2 for
+/// Heights lose this to rounding, in units of `f32` of all lengths: 3 for a turn, as many for a sum of products, 2 for
 /// directions that are not quite unit, in up to three axes. The rest is reserve.
 const ROUNDING: f32 = 64.0;
 /// So many pairs of blocks are put off without memory of their own.
@@ -58,19 +59,11 @@ struct Turn<const D: usize> {
     shift: [f32; D],
 }
 
-/// What lies between two planes.
-#[derive(Clone, Copy)]
-struct TurnedSlab<const D: usize> {
-    across: [f32; D],
-    low: f32,
-    high: f32,
-}
-
 /// A convex region as the blocks of a tree see it: a box and slabs, all wider by the reach and what rounding does.
 struct TurnedBox<const D: usize> {
     bounds: Bounds<D>,
     /// Along the axes of the other frame, and across a slab.
-    slabs: SmallVec<[TurnedSlab<D>; 4]>,
+    slabs: SmallVec<[BlockSlab<D>; 4]>,
 }
 
 /// The boxes of a block that a region may touch.
@@ -84,7 +77,7 @@ struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
     turns: [Turn<D>; 2],
     level: Level,
-    /// What rounding does.
+    /// Rounding moves a gap by no more than this.
     room: f32,
     question: &'q mut dyn TreeMeeting<N, D>,
 }
@@ -128,20 +121,14 @@ impl<const D: usize> Turn<D> {
         let mut slabs = SmallVec::new();
         for (across, half) in self.axes.iter().zip(half) {
             let height = dot(across, &center);
-            slabs.push(TurnedSlab {
-                across: *across,
-                low: height - half - room,
-                high: height + half + room,
-            });
+            let (low, high) = (height - half - room, height + half + room);
+            slabs.push(BlockSlab { across: *across, low, high });
         }
         if let Some(slab) = slab {
             let across = self.vector(&slab.across);
             let height = dot(&across, &self.shift);
-            slabs.push(TurnedSlab {
-                across,
-                low: height + slab.low - room,
-                high: height + slab.high + room,
-            });
+            let (low, high) = (height + slab.low - room, height + slab.high + room);
+            slabs.push(BlockSlab { across, low, high });
         }
         let bounds = Bounds {
             lo: filled(|row| center[row] - extents[row]),
@@ -180,7 +167,7 @@ impl<const D: usize> TurnedBox<D> {
             gap = (S::F32x8::all(simd, self.bounds.lo[axis]) - hi[axis]).larger(gap);
         }
         if bits(gap.simd_gt(zero)) != u8::MAX {
-            for TurnedSlab { across, low, high } in &self.slabs {
+            for BlockSlab { across, low, high } in &self.slabs {
                 let (mut lowest, mut highest) = (zero, zero);
                 for axis in 0..D {
                     let along = S::F32x8::all(simd, across[axis]);
@@ -243,7 +230,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         let Held { mask, gaps } = self.held(which, pair, room);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
         let mut near = SmallVec::<[(f32, u32); LANES]>::new();
-        for lane in lanes_of(mask) {
+        for lane in Ones::<LANES>(mask) {
             let block = first + small(lane);
             // Nothing is beyond an infinite reach, not even an empty lane.
             if self.trees[which].is_block(layer, block) {
@@ -271,12 +258,12 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         let [tree, other] = [self.trees[which], self.trees[1 - which]];
         let [own, others] = [pair.blocks[which], pair.blocks[1 - which]];
         let block = &other.layers[0].blocks[others as usize];
-        for lane in lanes_of(masks[which]) {
+        for lane in Ones::<LANES>(masks[which]) {
             let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
             let aabb = self.question.object_in_other(which, id);
             let bounds = loosened(&Bounds::enclosing(&aabb), room);
             let near = TurnedBox { bounds, slabs: SmallVec::new() }.held(self.level, block).mask;
-            let ids = lanes_of(near & masks[1 - which])
+            let ids = Ones::<LANES>(near & masks[1 - which])
                 .filter_map(|lane| other.id_in(others * small(LANES) + small(lane)));
             let ids = ids.collect::<SmallVec<[u32; LANES]>>();
             if !ids.is_empty() {
@@ -287,15 +274,6 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             }
         }
     }
-}
-
-/// The lanes whose bits are set.
-fn lanes_of(mut mask: u32) -> impl Iterator<Item = usize> {
-    core::iter::from_fn(move || {
-        let lane = mask.trailing_zeros() as usize;
-        mask &= mask.wrapping_sub(1);
-        (lane < LANES).then_some(lane)
-    })
 }
 
 fn loosened<const D: usize>(bounds: &Bounds<D>, room: f32) -> Bounds<D> {

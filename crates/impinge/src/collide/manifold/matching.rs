@@ -4,8 +4,8 @@
 //! either solid are found in lists sorted by the first coordinate. Lanes know the places on the first solid, and of the
 //! second which of its vertices a point is on.
 
-use super::super::ones::Ones;
 use super::ids::{Anchors, REACH, SHARE, are_edges, moved, near_scale};
+use crate::math::ones::Ones;
 use crate::math::order::{order_of, sort_keyed};
 use crate::math::{Mapped, Real};
 use crate::shape::FeatureId;

@@ -6,8 +6,8 @@ use crate::collide::manifold::ids::{in_order, is_same_point, near_scale, normals
 use crate::collide::manifold::matching::each_near;
 use crate::collide::manifold::reduce::{Projected, Projections, chosen};
 use crate::collide::manifold::{ALL, slack_level};
-use crate::collide::ones::Ones;
 use crate::collide::{RawManifold, RawPoint};
+use crate::math::ones::Ones;
 use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::FeatureId;
 
