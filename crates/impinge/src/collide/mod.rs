@@ -32,5 +32,5 @@ pub(crate) use manifold::{
 };
 pub(crate) use mesh::{CompositeContacts, each_contact_within, own_distance};
 pub(crate) use pair::{Pair, Placed, Placing, canonical};
-pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint};
+pub(crate) use raw_manifold::{ManifoldRequest, PairIds, RawManifold, RawPoint, RawPoints};
 pub(crate) use separation::AtIsometry;

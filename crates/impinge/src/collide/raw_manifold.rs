@@ -49,6 +49,9 @@ pub(crate) struct RawPoint<N: Real, const D: usize> {
     pub(crate) code: u32,
 }
 
+/// The points of many manifolds, one after the other.
+pub(crate) type RawPoints<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
+
 impl<N: Real, const D: usize> RawPoint<N, D> {
     /// The same contact with the second solid first, in the frame of which the first one lies.
     pub(crate) fn flip(&mut self, pose21: &Pose<N, D>, normal: &Vector<N, D>) {

@@ -4,7 +4,7 @@
 //! here is a `map`: closures that are handed to it are not inlined into vector code.
 
 use super::simd::{Simd, SimdMask};
-use super::{Pose, Real, Vector, Wide, max};
+use super::{Matrix, Pose, Real, Vector, Wide, max};
 use crate::math::filled;
 
 /// Runs `$body` with `$simd` bound to the vectors of a [`Level`](super::simd::Level), or to arrays.
@@ -188,6 +188,25 @@ pub(crate) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
     filled(
         #[inline(always)]
         |axis| dot(&axes[axis], vector),
+    )
+}
+
+/// Vectors in the frame that a rotation leads from, the same in all lanes.
+#[inline(always)]
+pub(crate) fn turned_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    turn: &Matrix<N, 3>,
+    v: &[V; 3],
+) -> [V; 3] {
+    filled(
+        #[inline(always)]
+        |axis| {
+            let column: [V; 3] = filled(
+                #[inline(always)]
+                |row| V::all(simd, turn[(row, axis)]),
+            );
+            dot(&column, v)
+        },
     )
 }
 

@@ -69,6 +69,7 @@ pub use solids::tetrahedron::Tetrahedron;
 pub use solids::triangle::Triangle;
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 #[doc(hidden)]
+pub(crate) use surface::face_seams::FaceSeams;
 pub use surface::own_surface::SurfaceAccess;
 pub(crate) use surface::sidedness::{KnownSegment, KnownSegments, Sidedness};
 pub(crate) use tilt::FACING_SINE_SQUARED;

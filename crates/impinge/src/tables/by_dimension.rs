@@ -3,13 +3,16 @@
 use super::Here;
 use crate::batch::{SolidGroup, update_group2, update_group3};
 use crate::bounding_volume::Ray;
-use crate::collide::mesh::{CompositeContacts, over2, over3, update_chain, update_on_surface};
-use crate::collide::packet::{GapVisitor, LANES, PartPacket, TiledParts};
+use crate::collide::mesh::{
+    Arena, CompositeContacts, Nearby, PartContacts, Query, Scene, face_contacts, over2, over3,
+    update_chain, update_on_surface,
+};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::parts::{
     AxisSlabs, Between, PairVerdicts, PartPairs, part_gaps2, part_gaps3, part_pairs2, part_pairs3,
 };
 use crate::collide::separation::{
-    Projection, distance_in_plane, distance_in_space, gaps2, gaps3, seen_in_plane, seen_in_space,
+    Projection, distance_in_plane, distance_in_space, seen_in_plane, seen_in_space,
     separation_in_plane, separation_in_space,
 };
 use crate::collide::{
@@ -20,7 +23,7 @@ use crate::collide::{
 use crate::convex::Separation;
 #[cfg(feature = "debug_render")]
 use crate::debug_render::{Sketch, sketch2, sketch3};
-use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{DueContacts, update_lanes2, update_lanes3};
 use crate::query::mass::MassByDimension;
 use crate::query::point::{SurfacePoint, point2, point3};
@@ -37,14 +40,14 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// The one fact about a pair of solids; see [`crate::query`].
     fn separation(pair: &Pair<'_, N, D>, limit: N) -> Option<Separation<N, D>>;
 
-    /// The separations of many triangles from one solid; `false` if there is no algorithm for many.
-    fn gaps(
-        parts: &TiledParts<'_, N, D>,
-        solid: Kind<'_, N, D>,
-        pose12: &Pose<N, D>,
+    /// The contacts of a solid with faces and the triangles of a surface; `false` where there is no algorithm for many.
+    fn face_contacts(
+        query: &Query<'_, N, D>,
+        scene: &Scene<'_, N, D>,
+        nearby: &Nearby<N>,
         prediction: N,
-        limit: N,
-        visit: GapVisitor<'_, N, D>,
+        contacts: &mut PartContacts<N, D>,
+        arena: &mut Arena<N, D>,
     ) -> bool;
 
     /// How far each of eight parts is from the solid in the slabs, at least.
@@ -136,15 +139,15 @@ impl<N: Real> ByDimension<N, 2> for Here {
         separation_in_plane(pair, limit)
     }
 
-    fn gaps(
-        parts: &TiledParts<'_, N, 2>,
-        solid: Kind<'_, N, 2>,
-        pose12: &Pose<N, 2>,
-        prediction: N,
-        limit: N,
-        visit: GapVisitor<'_, N, 2>,
+    fn face_contacts(
+        _: &Query<'_, N, 2>,
+        _: &Scene<'_, N, 2>,
+        _: &Nearby<N>,
+        _: N,
+        _: &mut PartContacts<N, 2>,
+        _: &mut Arena<N, 2>,
     ) -> bool {
-        gaps2(parts, solid, pose12, prediction, limit, visit)
+        false
     }
 
     fn part_gaps(slabs: &AxisSlabs<N, 2>, tiles: &PartPacket<N, 2>, limit: N) -> [N; LANES] {
@@ -253,15 +256,15 @@ impl<N: Real> ByDimension<N, 3> for Here {
         separation_in_space(pair, limit)
     }
 
-    fn gaps(
-        parts: &TiledParts<'_, N, 3>,
-        solid: Kind<'_, N, 3>,
-        pose12: &Pose<N, 3>,
+    fn face_contacts(
+        query: &Query<'_, N, 3>,
+        scene: &Scene<'_, N, 3>,
+        nearby: &Nearby<N>,
         prediction: N,
-        limit: N,
-        visit: GapVisitor<'_, N, 3>,
+        contacts: &mut PartContacts<N, 3>,
+        arena: &mut Arena<N, 3>,
     ) -> bool {
-        gaps3(parts, solid, pose12, prediction, limit, visit)
+        face_contacts(query, scene, nearby, prediction, contacts, arena)
     }
 
     fn part_gaps(slabs: &AxisSlabs<N, 3>, tiles: &PartPacket<N, 3>, limit: N) -> [N; LANES] {

@@ -11,6 +11,7 @@
 mod along;
 mod chain;
 mod clip;
+pub(in crate::collide) mod face_lanes;
 pub(in crate::collide) mod frame;
 mod half_space;
 pub(in crate::collide) mod ids;

@@ -9,8 +9,8 @@ use super::ring::LANES;
 use crate::collide::separation::bare;
 use crate::math::{Point, Real, Vector, max};
 use crate::shape::{
-    ConvexPolyhedron, Cuboid, FaceRing, Feature, FeatureId, Geometry, Kind, Polytope, RoundPart,
-    Segment, SupportMap, Triangle,
+    ConvexPolyhedron, Cuboid, FaceRing, Feature, FeatureId, Geometry, Kind, RoundPart, Segment,
+    SupportMap, Triangle,
 };
 
 /// The corners of a feature, eight at a time; the id and the normal of the feature are those of the first eight.
@@ -26,8 +26,9 @@ pub(super) fn supporting_feature<N: Real>(
     let is_filled = match kind {
         Kind::Segment(segment) => fill_segment(segment, face),
         Kind::Capsule(capsule) => fill_segment(capsule.segment(), face),
-        Kind::Cuboid(cuboid) => fill_cuboid(cuboid, direction, face),
-        Kind::Polytope(hull) => fill_hull(hull, direction, face),
+        Kind::Cuboid(_) | Kind::Polytope(_) => {
+            part_shown(kind, direction).is_some_and(|part| fill_part(kind, part, face))
+        }
         Kind::Triangle(triangle) => fill_triangle(triangle, direction, face),
         Kind::Cylinder(cylinder, _) => fill_round(cylinder.part_shown(direction), face),
         Kind::Cone(cone, _) => fill_round(cone.part_shown(direction), face),
@@ -63,31 +64,37 @@ fn fill_segment<N: Real>(segment: &Segment<N, 3>, face: &mut FaceRing<N>) -> boo
     fill_ends(FeatureId::Edge(0), ends, face)
 }
 
-/// False of a flat box, some of whose parts coincide.
-fn fill_cuboid<N: Real>(
-    cuboid: &Cuboid<N, 3>,
+/// What a box or a hull shows in a direction; `None` of a flat box, some of whose parts coincide, and of other solids.
+pub(super) fn part_shown<N: Real>(
+    kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
-    face: &mut FaceRing<N>,
-) -> bool {
-    let is_flat = cuboid.half_extents().iter().any(|half| *half == N::ZERO);
-    !is_flat
-        && match Cuboid::part_shown(direction) {
-            FeatureId::Face(index) => cuboid.fill_ring(index, face),
-            edge @ FeatureId::Edge(_) => fill_ends(edge, cuboid.edge(edge), face),
-            vertex @ FeatureId::Vertex(_) => fill_point(vertex, &cuboid.vertex(vertex), face),
+) -> Option<FeatureId> {
+    match kind {
+        Kind::Cuboid(cuboid) => {
+            let is_flat = cuboid.half_extents().iter().any(|half| *half == N::ZERO);
+            (!is_flat).then(|| Cuboid::part_shown(direction))
         }
+        Kind::Polytope(hull) => Some(hull.part_shown(direction)),
+        _ => None,
+    }
 }
 
-/// False of a face with more than eight corners.
-fn fill_hull<N: Real>(
-    hull: &Polytope<N, 3>,
-    direction: &Vector<N, 3>,
+/// Fills a blank ring with a part of a box or a hull. False of a face with more than eight corners.
+pub(super) fn fill_part<N: Real>(
+    kind: Kind<'_, N, 3>,
+    part: FeatureId,
     face: &mut FaceRing<N>,
 ) -> bool {
-    match hull.part_shown(direction) {
-        FeatureId::Face(index) => hull.fill_ring(index, face),
-        edge @ FeatureId::Edge(_) => fill_ends(edge, hull.edge(edge), face),
-        vertex @ FeatureId::Vertex(_) => fill_point(vertex, &hull.vertex(vertex), face),
+    match (kind, part) {
+        (Kind::Cuboid(cuboid), FeatureId::Face(index)) => cuboid.fill_ring(index, face),
+        (Kind::Cuboid(cuboid), FeatureId::Edge(_)) => fill_ends(part, cuboid.edge(part), face),
+        (Kind::Cuboid(cuboid), FeatureId::Vertex(_)) => {
+            fill_point(part, &cuboid.vertex(part), face)
+        }
+        (Kind::Polytope(hull), FeatureId::Face(index)) => hull.fill_ring(index, face),
+        (Kind::Polytope(hull), FeatureId::Edge(_)) => fill_ends(part, hull.edge(part), face),
+        (Kind::Polytope(hull), FeatureId::Vertex(_)) => fill_point(part, &hull.vertex(part), face),
+        _ => false,
     }
 }
 

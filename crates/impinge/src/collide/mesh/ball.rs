@@ -12,7 +12,7 @@ use super::{
     of_parts,
 };
 use crate::bounding_volume::Aabb;
-use crate::collide::packet::{LANES, PartGap};
+use crate::collide::packet::LANES;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::enclosing;
 use crate::collide::separation::{BallQuestion, NearTriangles, ball_triangle, near_triangles};
@@ -41,7 +41,7 @@ pub(crate) fn update_on_surface<N: Real>(
     arena.rounding = rounding;
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
     if !is_settled(&part_contacts) {
-        let around = Some(&contacts.around);
+        let around = &contacts.around;
         let request = &rolling.request;
         let query = Query { between, is_self: false, around, reference: &reference, request };
         query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
@@ -184,17 +184,16 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         let pair = Pair { first: Kind::Ball(self.ball), second: kind, pose12: self.turn };
         let Some(found) = ball_triangle(&pair, self.request.prediction) else { return };
         let found = self.plainly(seen, &found, arena).unwrap_or_else(|| {
-            let scene = Scene::new(self.between, Some(around));
+            let scene = Scene::new(self.between, around);
             let parts = [0, seen.part];
             let query = Query {
                 is_self: false,
                 between: self.between,
-                around: Some(around),
+                around,
                 reference: &Some(self.from),
                 request: &self.request,
             };
-            let gap = PartGap::of(&found);
-            part_contact::compute(&scene, &scene.pair(parts), parts, &query, Some(&gap), arena)
+            part_contact::compute(&scene, &scene.pair(parts), parts, &query, Some(&found), arena)
         });
         part_contacts.extend(found);
     }

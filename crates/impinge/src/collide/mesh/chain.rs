@@ -47,7 +47,7 @@ pub(crate) fn update_chain<N: Real>(
     let query = Query {
         between,
         is_self: false,
-        around: Some(&contacts.around),
+        around: &contacts.around,
         reference: &reference,
         request: &chain.request,
     };
@@ -342,4 +342,4 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
 }
 
 /// The points of all pieces.
-type ChainPoints<N> = super::patch::Points<N, 2>;
+type ChainPoints<N> = crate::collide::RawPoints<N, 2>;

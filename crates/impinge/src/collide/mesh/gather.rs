@@ -2,15 +2,16 @@
 
 use smallvec::SmallVec;
 
-use super::cull::CullProbe;
+use super::cull::LowerBoundQuery;
 use super::part_cache::PartCache;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::{aabb_of, enclosing, loosened};
 use crate::collide::parts::each_meeting;
+use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, min};
-use crate::shape::CompositeShape;
+use crate::shape::{CompositeShape, Part};
 
 /// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
@@ -19,7 +20,7 @@ pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 pub(super) type NearBits = SmallVec<[u8; 8]>;
 
 /// What of two shapes may be within reach of each other.
-pub(super) struct Nearby<N: Real> {
+pub(crate) struct Nearby<N: Real> {
     /// In order.
     pub(super) parts: PartPairs,
     /// The same as bits for each of the tiles that are kept; empty if there are none.
@@ -37,60 +38,43 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
     reach: N,
-    around: Option<&mut PartCache<N, D>>,
+    around: &mut PartCache<N, D>,
 ) -> Nearby<N> {
-    let ([None, Some(parts2)], Some(probe)) =
-        (between.composites(), CullProbe::new(between, reach))
-    else {
-        let parts = candidates(between, is_self, reach);
-        return Nearby { parts, near: NearBits::new(), clearance: N::ZERO };
-    };
-    let aabb = search_box(between, reach);
-    if let Some(around) = around
-        && around.reaches(parts2, &aabb)
-    {
-        return near_kept(&probe, parts2, around, &aabb);
+    if let [None, Some(parts2)] = between.composites() {
+        let aabb = search_box(between, reach);
+        if around.reaches(parts2, &aabb)
+            && let Some(query) = LowerBoundQuery::new(between, reach, around, &aabb)
+        {
+            return near_kept(&query, parts2, around, &aabb);
+        }
     }
-    let (mut parts, mut clearance) = (PartPairs::new(), depth_in(&aabb, probe.center()));
-    parts2.search().overlapping(&aabb, &mut |part2| parts.push([0, part2]));
-    parts.retain(|[_, part2]| {
-        let Some(bound) = probe.bound(parts2, *part2, None) else { return false };
-        clearance = min(clearance, bound.from_middle);
-        !bound.is_beyond
-    });
-    parts.sort_unstable();
-    Nearby { parts, near: NearBits::new(), clearance }
+    let parts = candidates(between, is_self, reach);
+    Nearby { parts, near: NearBits::new(), clearance: N::ZERO }
 }
 
-/// Of the parts that are kept those that may be within reach.
+/// Of the parts that are kept those that may be within reach; of parts without corners those whose boxes may be.
 fn near_kept<N: Space<D>, const D: usize>(
-    probe: &CullProbe<'_, N, D>,
+    query: &LowerBoundQuery<N, D>,
     composite: &dyn CompositeShape<N, D>,
-    around: &mut PartCache<N, D>,
+    around: &PartCache<N, D>,
     aabb: &Aabb<N, D>,
 ) -> Nearby<N> {
-    let query = probe.lower_bound_query(around, aabb);
     let (mut parts, mut near) = (PartPairs::new(), NearBits::new());
-    let mut clearance = depth_in(aabb, probe.center());
-    for (block, kept) in around.parts().chunks(LANES).enumerate() {
-        let bounds = around.tiles().get(block).map(|tiles| query.bounds(tiles));
-        if let Some(bounds) = bounds {
-            clearance = min(clearance, bounds.from_middle);
-            // Beyond the last part are copies of it.
-            near.push(bounds.near & (u8::MAX >> (LANES - kept.len())));
-            let is_near = |lane: &usize| bounds.near >> lane & 1 == 1;
-            for lane in (0..kept.len()).filter(is_near) {
-                parts.push([0, kept[lane]]);
-            }
-            continue;
-        }
-        for &part2 in kept {
-            let Some(bound) = probe.bound(composite, part2, Some(aabb)) else { continue };
-            clearance = min(clearance, bound.from_middle);
-            if !bound.is_beyond {
-                parts.push([0, part2]);
-            }
-        }
+    let mut clearance = depth_in(aabb, &query.middle());
+    for (kept, tiles) in around.parts().chunks(LANES).zip(around.tiles()) {
+        let bounds = query.bounds(tiles);
+        clearance = min(clearance, bounds.from_middle);
+        // Beyond the last part are copies of it.
+        let bits = bounds.near & (u8::MAX >> (LANES - kept.len()));
+        near.push(bits);
+        parts.extend(Ones::<LANES>(bits.into()).map(|lane| [0, kept[lane]]));
+    }
+    if around.tiles().is_empty() {
+        clearance = N::ZERO;
+        parts.extend(around.parts().iter().filter_map(|&part2| {
+            let Part { pose, solid } = composite.part(part2);
+            aabb.intersects(&solid.as_shape().aabb(&pose)).then_some([0, part2])
+        }));
     }
     Nearby { parts, near, clearance }
 }

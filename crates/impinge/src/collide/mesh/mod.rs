@@ -1,7 +1,7 @@
 //! Contacts of composites: those of the parts, as the whole has them.
 //!
 //! 1. [`gather`] finds the parts within the prediction: among those in [`part_cache`], where they serve still,
-//!    less those that a lower bound rejects ([`cull`], eight at a time [`cull_lanes`]).
+//!    less those that a lower bound rejects ([`cull`]).
 //! 2. [`part_contact`] computes the contact of every two parts and asks the surfaces, if there are any, whether
 //!    the normal is one that the whole has there ([`normal_filter`]): if it is that of a seam, only contacts with
 //!    the face of the part count.
@@ -10,7 +10,8 @@
 //! 4. [`inside`] adds the contacts of what lies wholly inside a body and so touches no part.
 //! 5. [`patch`] merges what is left into flat patches.
 //!
-//! [`chain`] does all of this for a chain in 2D, [`ball`] for a ball in 3D, with the same bits.
+//! Boxes and hulls take step 2 in [`faces`], eight triangles of a surface at a time. [`chain`] does all of this for a
+//! chain in 2D, [`ball`] for a ball in 3D.
 //!
 //! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges know
 //! their neighbours.
@@ -25,7 +26,7 @@ mod chain;
 #[cfg(test)]
 mod chain_tests;
 mod cull;
-mod cull_lanes;
+mod faces;
 mod gather;
 mod hidden;
 mod inside;
@@ -48,20 +49,21 @@ use smallvec::SmallVec;
 
 pub(crate) use self::ball::update_on_surface;
 pub(crate) use self::chain::update_chain;
-use self::gather::Nearby;
+pub(crate) use self::faces::face_contacts;
+pub(crate) use self::gather::Nearby;
 use self::hidden::are_alike;
 pub(crate) use self::over::{over2, over3};
 use self::part_cache::PartCache;
-use self::part_contact::{Arena, PartContact, PartStatus, Reference};
+pub(crate) use self::part_contact::Arena;
+use self::part_contact::{PartContact, PartStatus, Reference};
 use self::patch::{Merging, Piece, merge};
 pub(crate) use self::patch::{Patch, PatchPoint};
-use self::scene::Scene;
+pub(crate) use self::scene::Scene;
 use self::within::deepest_within;
 pub(crate) use self::within::each_contact_within;
 use super::parts::between::Between;
 use super::parts::bounds::aabb_of;
 use crate::bounding_volume::Ray;
-use crate::collide::packet::PartGap;
 use crate::collide::pair::{Ordered, Placed};
 use crate::collide::separation::{of_ordered, placed, touching_of_ordered};
 use crate::collide::{ManifoldRequest, Pair, PairIds};
@@ -181,14 +183,15 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         request: &ManifoldRequest<N>,
     ) {
         let of_parts = of_parts(between, request);
-        let around = Some(&mut self.around);
+        let around = &mut self.around;
         let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
+        self.around.learn_seams(between, &nearby.near);
         let center = middle_of_first(between);
         // A body knows by itself on which side its inside is.
         let old = self.reference.filter(|_| !between.has_bodies());
         let way = Travelled { old, clearance: nearby.clearance };
         let reference = center.map(|center| advanced(between, &way, center));
-        let around = Some(&self.around);
+        let around = &self.around;
         let query = Query { between, is_self, around, reference: &reference, request: &of_parts };
         let mut arena = Arena::default();
         let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
@@ -280,18 +283,18 @@ fn advanced<N: Space<D>, const D: usize>(
 }
 
 /// What is asked of a pair.
-struct Query<'a, N: Real, const D: usize> {
+pub(crate) struct Query<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// The two are one shape.
     is_self: bool,
     /// What is kept of the parts of the second shape.
-    around: Option<&'a PartCache<N, D>>,
+    around: &'a PartCache<N, D>,
     reference: &'a Reference<N, D>,
     /// What is asked of two parts.
     request: &'a ManifoldRequest<N>,
 }
 
-type PartContacts<N, const D: usize> = SmallVec<[PartContact<N, D>; 8]>;
+pub(crate) type PartContacts<N, const D: usize> = SmallVec<[PartContact<N, D>; 8]>;
 
 /// Beside more parts than these room is made for all that may be found, so many points at each.
 const MANY_PARTS: usize = 32;
@@ -307,21 +310,17 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         arena: &mut Arena<N, D>,
     ) -> PartContacts<N, D> {
         let scene = Scene::new(self.between, self.around);
-        let (mut contacts, mut slot) = (PartContacts::new(), None);
+        let mut contacts = PartContacts::new();
         if nearby.parts.len() > MANY_PARTS {
             contacts.reserve(nearby.parts.len());
             arena.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
         }
-        if let Some(surface) = scene.surfaces[1] {
-            surface.prefetch(nearby.parts.iter().map(|&[_, part]| part));
-        }
-        let mut find = |index: usize, gap: Option<&PartGap<N, D>>| {
-            let parts = nearby.parts[index];
-            let placed = scene.pair_in(&mut slot, parts);
-            contacts.extend(part_contact::compute(&scene, placed, parts, self, gap, arena));
-        };
-        if !scene.each_gap(nearby, prediction, self.request.prediction, &mut find) {
-            (0..nearby.parts.len()).for_each(|index| find(index, None));
+        if !<N::Algorithms>::face_contacts(self, &scene, nearby, prediction, &mut contacts, arena) {
+            let mut slot = None;
+            for &parts in &nearby.parts {
+                let placed = scene.pair_in(&mut slot, parts);
+                contacts.extend(part_contact::compute(&scene, placed, parts, self, None, arena));
+            }
         }
         let inside = self.take_inside(&mut contacts);
         self.settle(&scene, &mut contacts, arena);
@@ -468,7 +467,8 @@ pub(crate) fn own_distance<N: Space<D>, const D: usize>(
 ) -> Option<N> {
     let between = Between::of_pair(pair);
     let candidates = gather::candidates(&between, true, max(limit, N::ZERO));
-    let scene = Scene::new(&between, None);
+    let around = PartCache::for_once();
+    let scene = Scene::new(&between, &around);
     let one = |&parts| <N::Algorithms>::separation(&scene.pair(parts).pair(), limit);
     let distances = candidates.iter().filter_map(one).map(|found| found.distance);
     distances.reduce(min)

@@ -4,10 +4,13 @@
 
 use smallvec::SmallVec;
 
+use super::faces::has_faces;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::{LANES, PartPacket};
+use crate::collide::parts::between::Between;
+use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
-use crate::shape::{CompositeShape, Part, PartSolid, Segment, SupportMap, Triangle};
+use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportMap, Triangle};
 
 /// The room that is searched around a box to find parts for later.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,6 +35,16 @@ impl CacheRoom {
     }
 }
 
+/// What is kept of the seams of a triangle.
+#[derive(Clone, Copy, Debug)]
+enum KeptSeams<N: Real> {
+    /// Nobody asked.
+    Unasked,
+    /// The surface has to be asked each time.
+    Unknown,
+    Known(FaceSeams<N>),
+}
+
 /// The parts around a convex solid, found for a larger box than it needs: they serve for as long as it
 /// stays in that.
 ///
@@ -45,6 +58,8 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     parts: SmallVec<[u32; 8]>,
     /// Of all parts, or of none.
     tiles: Vec<PartPacket<N, D>>,
+    /// Of all parts, as far as they were near to a solid that asks for it, or of none.
+    seams: Vec<KeptSeams<N>>,
     are_segments: bool,
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
@@ -102,6 +117,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
         let with_room = |room: CacheRoom| aabb.loosened(half * N::lit(room.share()));
         let mut within = with_room(self.room);
+        let before = if self.seams.is_empty() { SmallVec::new() } else { self.parts.clone() };
         self.search(composite, &within);
         if self.room == CacheRoom::Large && self.parts.len() > most {
             self.room = CacheRoom::Small;
@@ -112,6 +128,23 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.parts.sort_unstable();
         self.within = Some(within);
         self.fill_tiles(composite);
+        self.keep_seams(&before);
+    }
+
+    /// Keeps what is known of the seams of parts that were kept before, and forgets the rest.
+    fn keep_seams(&mut self, before: &[u32]) {
+        if before.is_empty() {
+            return self.seams.clear();
+        }
+        let (mut kept, mut at) = (Vec::with_capacity(self.parts.len()), 0);
+        for part in &self.parts {
+            while at < before.len() && before[at] < *part {
+                at += 1;
+            }
+            let is_known = at < before.len() && before[at] == *part;
+            kept.push(if is_known { self.seams[at] } else { KeptSeams::Unasked });
+        }
+        self.seams = kept;
     }
 
     fn search(&mut self, composite: &dyn CompositeShape<N, D>, within: &Aabb<N, D>) {
@@ -150,6 +183,39 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
     /// The corners of all parts in packets of eight; empty if they are not kept.
     pub(super) fn tiles(&self) -> &[PartPacket<N, D>] {
         &self.tiles
+    }
+
+    /// Asks a surface for the seams of those of its parts that are near, given a bit for each part of each tile, if the
+    /// solid has faces that contacts are made with.
+    pub(super) fn learn_seams(&mut self, between: &Between<'_, N, D>, near: &[u8]) {
+        let [None, Some(parts)] = between.composites() else { return };
+        if !has_faces(between.pair.first) {
+            return;
+        }
+        let Some(surface) = parts.surface_access().filter(|_| self.has_triangles_alone()) else {
+            return;
+        };
+        if near.len() != self.tiles.len() {
+            return;
+        }
+        self.seams.resize(self.parts.len(), KeptSeams::Unasked);
+        for (block, near) in near.iter().enumerate() {
+            for lane in Ones::<LANES>((*near).into()) {
+                let place = block * LANES + lane;
+                if let KeptSeams::Unasked = self.seams[place] {
+                    let found = surface.face_seams(self.parts[place]);
+                    self.seams[place] = found.map_or(KeptSeams::Unknown, KeptSeams::Known);
+                }
+            }
+        }
+    }
+
+    /// What is kept of the seams of a triangle.
+    pub(super) fn seams(&self, place: usize) -> Option<&FaceSeams<N>> {
+        match self.seams.get(place)? {
+            KeptSeams::Known(seams) => Some(seams),
+            _ => None,
+        }
     }
 
     /// All parts are segments that are kept by their corners.

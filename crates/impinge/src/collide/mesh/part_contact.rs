@@ -1,22 +1,20 @@
 //! The contact of each pair of parts, by the normals that the surfaces have.
 
 use crate::tables::ByDimension;
-use core::cell::Cell;
 
 use super::Query;
 use super::normal_filter::{BEHIND, Case, FilteredNormal, faces, filter_normal};
-use super::patch::{Piece, Points};
+use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
 use crate::collide::manifold::{Along, build_along, build_between, build_on_face};
-use crate::collide::packet::PartGap;
-use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
+use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint, RawPoints};
 use crate::convex::Separation;
 use crate::math::{Point, Real, Space, Vector, min};
 use crate::shape::{FeatureId, Kind, SurfaceAccess};
 
 /// Whether a contact of two parts is one of the two shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PartStatus {
+pub(crate) enum PartStatus {
     /// It is one.
     Own,
     /// It is one with the face of a part, whose seams the parts alone would touch at.
@@ -29,7 +27,7 @@ pub(super) enum PartStatus {
 
 /// The contact of two parts that are within reach of each other.
 #[derive(Clone, Debug)]
-pub(super) struct PartContact<N: Real, const D: usize> {
+pub(crate) struct PartContact<N: Real, const D: usize> {
     /// How far the two are apart, each taken alone, and along which normal, from the first shape to
     /// the second in the frame of the first; zero where several say so.
     pub(super) distance: N,
@@ -49,11 +47,14 @@ pub(super) struct PartContact<N: Real, const D: usize> {
 
 /// The memory of one update: the points of all contacts, and the manifold that is being made.
 #[derive(Default)]
-pub(super) struct Arena<N: Real, const D: usize> {
+pub(crate) struct Arena<N: Real, const D: usize> {
     /// The points of all pieces.
-    pub(super) points: Points<N, D>,
+    pub(super) points: RawPoints<N, D>,
     /// What counts as rounding of parts that were passed over.
     pub(super) rounding: N,
+    /// All faces that are touched are fronts of a surface that has its fronts on one side: none hides another, since the
+    /// solid is in front of all.
+    pub(super) are_fronts: bool,
     raw: RawManifold<N, D>,
 }
 
@@ -94,14 +95,14 @@ fn appended<N: Space<D>, const D: usize>(
 /// Where the solid that meets a surface comes from, where it is not just its middle.
 pub(super) type Reference<N, const D: usize> = Option<Point<N, D>>;
 
-/// The contact of two parts, of which it may be known how near they are; `None` if they are beyond
+/// The contact of two parts, of which the separation may be known; `None` if they are beyond
 /// reach or cannot touch.
 pub(super) fn compute<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     query: &Query<'_, N, D>,
-    known: Option<&PartGap<N, D>>,
+    known: Option<&Separation<N, D>>,
     arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
     let (reference, request) = (query.reference, query.request);
@@ -116,10 +117,11 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
         Some(_) => placed.centers()?,
     };
     let meeting = PartMeeting { placed, parts, centers, reference };
-    match known {
-        Some(gap) => of_surfaces(scene, &meeting, gap, request, arena),
-        None => of_separation(scene, &meeting, request, arena),
-    }
+    let found = match known {
+        Some(known) => *known,
+        None => <N::Algorithms>::separation(&placed.pair(), request.prediction)?,
+    };
+    of_surfaces(scene, &meeting, &found, request, arena)
 }
 
 /// Solids side by side: their contacts are those of the whole.
@@ -151,15 +153,14 @@ struct PartMeeting<'a, N: Real, const D: usize> {
 
 impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
     /// What the two surfaces say of how near the two parts are. `over` is the feature of the second part that
-    /// a ball is over, if that is known. `None` if the surfaces ask for features and the separation is not
-    /// known.
+    /// a ball is over, if that is known.
     fn filtered_normals(
         &self,
         scene: &Scene<'_, N, D>,
-        gap: &PartGap<N, D>,
+        gap: &Separation<N, D>,
         tolerance: N,
         over: Option<FeatureId>,
-    ) -> Option<[FilteredNormal<N, D>; 2]> {
+    ) -> [FilteredNormal<N, D>; 2] {
         // Where the other solid comes from, and the part itself, as the shape of the part sees it.
         let ([own1, other2], [other1, own2]) = (self.centers[0], self.centers[1]);
         let other2 = self.reference.unwrap_or(other2);
@@ -172,31 +173,21 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         let can_touch =
             touches(surface1, self.parts[0], &other1) && touches(surface2, self.parts[1], &other2);
         if !can_touch {
-            return Some([FilteredNormal::Nothing; 2]);
+            return [FilteredNormal::Nothing; 2];
         }
         let [is_second1, is_second2] = self.placed.turned([false, true]);
-        let is_owing = Cell::new(false);
-        let feature = |is_second| match &gap.witness {
-            Some(found) => {
-                let pair = self.placed.pair();
-                <N::Algorithms>::witness_feature(&pair, found, tolerance, is_second)
-            }
-            None => {
-                is_owing.set(true);
-                FeatureId::Face(0)
-            }
-        };
-        let known2 = over.or(gap.touched);
+        let pair = self.placed.pair();
+        let feature =
+            |is_second| <N::Algorithms>::witness_feature(&pair, gap, tolerance, is_second);
         let (feature1, feature2) =
-            (|| feature(is_second1), || known2.unwrap_or_else(|| feature(is_second2)));
+            (|| feature(is_second1), || over.unwrap_or_else(|| feature(is_second2)));
         let normal = self.placed.outward(&gap.normal);
         let (part, toward) = (self.parts[0], other1 - own1);
         let case1 = Case { part, feature: &feature1, is_beside: false, outward: normal, toward };
         let (part, toward) = (self.parts[1], other2 - own2);
         let (outward, is_beside) = (-self.placed.seen_by_second(&normal), is_beside(over));
         let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
-        let filtered = [filter_normal(surface1, &case1), filter_normal(surface2, &case2)];
-        (!is_owing.get()).then_some(filtered)
+        [filter_normal(surface1, &case1), filter_normal(surface2, &case2)]
     }
 }
 
@@ -221,22 +212,11 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
     over.is_some_and(|over| !matches!(over, FeatureId::Face(_)))
 }
 
-/// The contact of two parts whose separation is not known yet.
-fn of_separation<N: Space<D>, const D: usize>(
-    scene: &Scene<'_, N, D>,
-    meeting: &PartMeeting<'_, N, D>,
-    request: &ManifoldRequest<N>,
-    arena: &mut Arena<N, D>,
-) -> Option<PartContact<N, D>> {
-    let found = <N::Algorithms>::separation(&meeting.placed.pair(), request.prediction)?;
-    of_surfaces(scene, meeting, &PartGap::of(&found), request, arena)
-}
-
 /// The contact of two parts, of which one at least belongs to a surface.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     meeting: &PartMeeting<'_, N, D>,
-    gap: &PartGap<N, D>,
+    gap: &Separation<N, D>,
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
@@ -246,9 +226,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     }
     let (pair, tolerance) = (placed.pair(), placed.tolerance());
     let over = over(&pair, tolerance);
-    let Some(filtered) = meeting.filtered_normals(scene, gap, tolerance, over) else {
-        return of_separation(scene, meeting, request, arena);
-    };
+    let filtered = meeting.filtered_normals(scene, gap, tolerance, over);
     let normal = placed.outward(&gap.normal);
     let raw = arena.blank();
     let mut status = match settled(placed, &filtered, &normal) {
@@ -261,11 +239,9 @@ fn of_surfaces<N: Space<D>, const D: usize>(
         }
         Settled::Forced(..) if is_beside(over) => PartStatus::Left,
         Settled::Found(normal) => {
-            let touch = Touch { gap, normal: placed.inward(&normal), tolerance };
+            let witness = Separation { normal: placed.inward(&normal), ..*gap };
             let over = over.filter(|over| is_certain(*over, &filtered[1]));
-            if !touch.build(&pair, over, request, raw) {
-                return of_separation(scene, meeting, request, arena);
-            }
+            build_touching(&pair, &witness, over, (tolerance, request), raw);
             PartStatus::Own
         }
         Settled::Forced(face, status) => {
@@ -280,7 +256,7 @@ fn of_surfaces<N: Space<D>, const D: usize>(
             status
         }
     };
-    if overlooks(raw, distance, tolerance) {
+    if overlooks(&raw.points, distance, tolerance) {
         status = PartStatus::Left;
         raw.points.clear();
     }
@@ -289,38 +265,21 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     Some(PartContact { distance, normal, piece, lowest, status, face, tolerance })
 }
 
-/// Two parts that touch at their nearest points, with a normal that the surface has there, in the frame of the
-/// first of the pair.
-struct Touch<'a, N: Real, const D: usize> {
-    gap: &'a PartGap<N, D>,
-    normal: Vector<N, D>,
-    tolerance: N,
-}
-
-impl<N: Space<D>, const D: usize> Touch<'_, N, D> {
-    /// Builds the manifold of the two, `over` being the feature that a ball is over if that is certain;
-    /// answers false if it needs the nearest points, which are not known.
-    fn build(
-        &self,
-        pair: &Pair<'_, N, D>,
-        over: Option<FeatureId>,
-        request: &ManifoldRequest<N>,
-        raw: &mut RawManifold<N, D>,
-    ) -> bool {
-        let Self { gap, normal, tolerance } = *self;
-        if over.is_none() && build_on_face(pair, &normal, gap.distance, tolerance, request, raw) {
-            return true;
-        }
-        let Some(found) = gap.witness else { return false };
-        let witness = Separation { normal, ..found };
-        match over {
-            Some(over) => {
-                raw.normal = normal;
-                raw.points.push(of_ball(&witness, over));
-            }
-            None => build_between(pair, &witness, request, raw),
-        }
-        true
+/// Builds the manifold of two parts that touch at their nearest points, with a normal that the surface has there, `over`
+/// being the feature that a ball is over if that is certain.
+fn build_touching<N: Space<D>, const D: usize>(
+    pair: &Pair<'_, N, D>,
+    witness: &Separation<N, D>,
+    over: Option<FeatureId>,
+    (tolerance, request): (N, &ManifoldRequest<N>),
+    raw: &mut RawManifold<N, D>,
+) {
+    let Separation { normal, distance, .. } = witness;
+    if let Some(over) = over {
+        raw.normal = *normal;
+        raw.points.push(of_ball(witness, over));
+    } else if !build_on_face(pair, normal, *distance, tolerance, request, raw) {
+        build_between(pair, witness, request, raw);
     }
 }
 
@@ -370,12 +329,12 @@ pub(super) fn nearest_points<N: Space<D>, const D: usize>(
 /// The contacts along a face's normal are none, or say that parts that overlap are apart: the face,
 /// cut to where the other part is above it, may end beside the overlap.
 pub(super) fn overlooks<N: Real, const D: usize>(
-    raw: &RawManifold<N, D>,
+    points: &[RawPoint<N, D>],
     distance: N,
     tolerance: N,
 ) -> bool {
     let highest = if distance <= N::ZERO { tolerance } else { N::INFINITY };
-    !raw.points.iter().any(|point| point.distance <= highest)
+    !points.iter().any(|point| point.distance <= highest)
 }
 
 /// What both surfaces together say.

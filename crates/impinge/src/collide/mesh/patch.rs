@@ -38,10 +38,7 @@ pub(crate) struct PatchPoint<N: Real, const D: usize> {
     pub(crate) parts: [u32; 2],
 }
 
-/// The points of many pieces, one after the other.
-pub(crate) type Points<N, const D: usize> = SmallVec<[RawPoint<N, D>; 32]>;
-
-/// What two parts contribute, in the frame of the first shape: some of the [`Points`].
+/// What two parts contribute, in the frame of the first shape: some of the [`RawPoints`](crate::collide::RawPoints).
 #[derive(Clone, Debug)]
 pub(crate) struct Piece<N: Real, const D: usize> {
     /// Unit, from the first shape to the second.

@@ -124,7 +124,11 @@ impl Groups {
         for &(_, lead) in &by_depth {
             let lead = &leads[lead as usize];
             let is_level = |&group: &usize| are_level(merging, &groups[group].lead, lead);
-            let known = cells.near(lead.piece).find(is_level);
+            let known = if cells.is_one() {
+                (0..groups.len()).find(is_level)
+            } else {
+                cells.near(lead.piece).find(is_level)
+            };
             let (group, parts) = (known.unwrap_or(groups.len()), merging.pieces[lead.piece].parts);
             if known.is_none() {
                 cells.put(group, lead.piece);
@@ -153,16 +157,19 @@ fn are_level<N: Real, const D: usize>(
     lead1: &Lead,
     lead2: &Lead,
 ) -> bool {
-    let [normal1, normal2] = [lead1, lead2].mapped(|lead| &merging.pieces[lead.piece].normal);
+    let piece = |lead: &Lead| &merging.pieces[lead.piece];
+    // Written so that NaN differs.
+    let is_same = (piece(lead1).normal - piece(lead2).normal).norm_squared() <= square_of_same();
+    if !is_same {
+        return false;
+    }
     let [point1, point2] =
         [lead1, lead2].mapped(|lead| -> &RawPoint<N, D> { &merging.points[lead.deepest] });
-    // Written so that NaN differs.
-    let is_same = (normal1 - normal2).norm_squared() <= square_of_same();
     let arm = point2.point1 - point1.point1;
     let room = N::lit(SAME) * arm.norm() + N::TWO * merging.tolerance;
-    let rise1 = normal1.dot(&arm);
+    let rise1 = piece(lead1).normal.dot(&arm);
     let rise2 = rise1 + point2.distance - point1.distance;
-    is_same && min(rise1.abs(), rise2.abs()) <= room
+    min(rise1.abs(), rise2.abs()) <= room
 }
 
 fn square_of_same<N: Real>() -> N {
@@ -222,6 +229,11 @@ impl NormalCells {
                 rest > 0 && are_apart(piece, other)
             })
         })
+    }
+
+    /// All pieces are in one cell, and so are all patches.
+    const fn is_one(&self) -> bool {
+        self.of_pieces.is_empty()
     }
 
     /// The patches whose normals may be the same as that of a piece.

@@ -63,13 +63,13 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         // The points of one piece are the corners of an area already.
         if !(pieces.len() == 1 && members.len() <= limit) {
             self.drop_copies(members);
-            *members = self.chosen(members, level, limit, is_line);
+            self.choose(members, level, limit, is_line);
         }
         self.points(members, lowest, out, ids);
     }
 
-    /// At most `limit` members, one of the deepest among them.
-    fn chosen(&self, members: &[Member<N>], level: N, limit: usize, is_line: bool) -> Members<N> {
+    /// Leaves at most `limit` members, one of the deepest among them.
+    fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
         let seen =
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
         let tolerance = self.merging.tolerance;
@@ -81,7 +81,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         } else {
             reduce::spanning(&mut points, limit, tolerance)
         };
-        indices.iter().map(|&index| members[index]).collect()
+        // They are in ascending order.
+        for (at, index) in indices.iter().enumerate() {
+            members[at] = members[*index];
+        }
+        members.truncate(indices.len());
     }
 
     /// Appends the chosen points in the order of their numbers; one of them has the distance of the deepest.

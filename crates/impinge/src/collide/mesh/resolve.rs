@@ -37,7 +37,9 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     contacts: &mut [PartContact<N, D>],
     arena: &mut Arena<N, D>,
 ) {
-    super::hidden::drop_hidden(scene, contacts);
+    if !arena.are_fronts {
+        super::hidden::drop_hidden(scene, contacts);
+    }
     let is_asked = |contact: &PartContact<N, D>| {
         matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond)
     };

@@ -3,24 +3,23 @@
 use crate::tables::ByDimension;
 use core::cell::OnceCell;
 
-use super::gather::Nearby;
 use super::part_cache::PartCache;
-use super::patch::{Piece, Points};
-use crate::collide::packet::{GapVisitor, LANES, TiledParts};
+use super::patch::Piece;
+use crate::collide::packet::LANES;
 use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::parts::slabs::corners;
 use crate::collide::parts::{PairVerdicts, PartPairs};
-use crate::collide::{Pair, RawManifold};
+use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
 
 /// Two shapes, one of them a composite at least.
-pub(super) struct Scene<'a, N: Real, const D: usize> {
+pub(crate) struct Scene<'a, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     /// What holds the parts of each together.
     pub(super) surfaces: [Option<SurfaceAccess<'a, N, D>>; 2],
     /// What is kept of the parts of the second.
-    around: Option<&'a PartCache<N, D>>,
+    around: &'a PartCache<N, D>,
     /// How the parts of a surface lie that a convex solid meets: most lie alike.
     usual: OnceCell<Usual<N, D>>,
 }
@@ -124,7 +123,7 @@ impl<N: Real, const D: usize> PlacedPart<'_, N, D> {
 }
 
 impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
-    pub(super) fn new(between: &'a Between<'a, N, D>, around: Option<&'a PartCache<N, D>>) -> Self {
+    pub(super) fn new(between: &'a Between<'a, N, D>, around: &'a PartCache<N, D>) -> Self {
         let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface_access();
         let surfaces = between.composites().mapped(surface);
         Self { between, surfaces, around, usual: OnceCell::new() }
@@ -132,7 +131,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 
     /// A part of the second shape, from what is kept of it or else from the shape.
     fn part2(&self, composite: &'a dyn CompositeShape<N, D>, part: u32) -> Part<'a, N, D> {
-        self.around.and_then(|around| around.part(part)).unwrap_or_else(|| composite.part(part))
+        self.around.part(part).unwrap_or_else(|| composite.part(part))
     }
 
     /// The first shape is one solid.
@@ -179,29 +178,6 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         if let [_, Some(composite)] = self.between.composites() {
             composite.each_corner(part, &mut visit);
         }
-    }
-
-    /// Calls with what is known of how near a convex solid and each of some parts of a surface are that are kept
-    /// side by side, none beyond a limit; answers false if there is no algorithm for many of them. What is as far as
-    /// the `prediction` but for rounding is not known.
-    pub(super) fn each_gap(
-        &self,
-        nearby: &Nearby<N>,
-        prediction: N,
-        limit: N,
-        visit: GapVisitor<'_, N, D>,
-    ) -> bool {
-        let (Some(around), Some(_)) = (self.around, self.surfaces[1]) else { return false };
-        let first = nearby.parts.first().and_then(|first| around.part(first[1]));
-        let Some(part @ Part { solid: PartSolid::Triangle(_), .. }) = first else { return false };
-        let usual = self.usual.get_or_init(|| self.usual(&part));
-        if !usual.lying.is_turned || nearby.near.len() != around.tiles().len() {
-            return false;
-        }
-        let (tiles, near, origin) = (around.tiles(), nearby.near.as_slice(), usual.local);
-        let parts = TiledParts { tiles, near, origin };
-        let (first, pose12) = (self.between.pair.first, &usual.lying.pose12);
-        <N::Algorithms>::gaps(&parts, first, pose12, prediction, limit, visit)
     }
 
     /// [`Self::pair`] in a place that is used again and again: of parts that lie alike only the part is
@@ -471,7 +447,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         &self,
         raw: &RawManifold<N, D>,
         parts: [u32; 2],
-        points: &mut Points<N, D>,
+        points: &mut RawPoints<N, D>,
     ) -> Piece<N, D> {
         let start = points.len();
         for point in &raw.points {

@@ -48,9 +48,11 @@ fn each_in_general<N: Space<D>, const D: usize>(
     request: &ManifoldRequest<N>,
     visit: &mut Visit<'_, N, D>,
 ) {
-    let reference = middle_of_first(between);
-    let query = Query { between, is_self: false, around: None, reference: &reference, request };
-    let nearby = gather::nearby(between, false, request.prediction, None);
+    let (reference, mut around) = (middle_of_first(between), PartCache::for_once());
+    let nearby = gather::nearby(between, false, request.prediction, &mut around);
+    around.learn_seams(between, &nearby.near);
+    let (around, reference) = (&around, &reference);
+    let query = Query { between, is_self: false, around, reference, request };
     let mut arena = Arena::default();
     let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
     for contact in contacts.iter().filter(|contact| contact.status != PartStatus::Left) {

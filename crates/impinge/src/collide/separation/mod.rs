@@ -61,7 +61,9 @@ pub(crate) use seen::{seen_in_plane, seen_in_space};
 pub(crate) use segments::segment_lanes::{SegmentGap, is_usual, nearest_on_segment};
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
-pub(crate) use triangles::{BallQuestion, NearTriangles, gaps2, gaps3, near_triangles};
+pub(crate) use triangles::{
+    BallQuestion, NearTriangles, TiledTriangles, TriangleGap, gaps3, near_triangles,
+};
 pub(crate) use world::{
     AtIsometry, distance_in_world, in_world, of_ordered, placed, touching_in_world,
     touching_of_ordered,

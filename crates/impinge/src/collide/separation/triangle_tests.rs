@@ -2,9 +2,10 @@
 //! trust in either: a plane that parts two solids bounds their distance from below, and two of their points
 //! from above.
 
+use super::triangles::{TiledTriangles, TriangleGap};
 use super::{gaps3, general, hulls, separation};
 use crate::collide::Pair;
-use crate::collide::packet::{LANES, PartGap, PartPacket, TiledParts};
+use crate::collide::packet::{LANES, PartPacket};
 use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
 use crate::math::noise::Noise;
@@ -221,7 +222,7 @@ fn check_together<N: Real>(
     }
     let mut near = vec![u8::MAX; tiles.len()];
     *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
-    let parts = TiledParts { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
+    let parts = TiledTriangles { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
     let (mut touching, mut plain) = (0, vec![false; count]);
     let mut is_met = vec![false; count];
     let is_known = gaps3(&parts, solid, pose12, limit, limit, &mut |at, gap| {
@@ -244,7 +245,7 @@ fn check_together<N: Real>(
 /// What is plain of a triangle among others is true of its separation; only along its own normal it may be
 /// farther.
 fn check_gap<N: Real>(
-    gap: &PartGap<N, 3>,
+    gap: &TriangleGap<N>,
     triangle: &Triangle<N, 3>,
     solid: Kind<'_, N, 3>,
     pose12: &Pose<N, 3>,

@@ -45,6 +45,14 @@ impl<N: Real> Bend<N> {
         Self { fronts, cosine: fronts[0].dot(&fronts[1]), shape }
     }
 
+    pub(in crate::shape) const fn fronts(&self) -> &[Vector<N, 3>; 2] {
+        &self.fronts
+    }
+
+    pub(in crate::shape) const fn shape(&self) -> BendShape {
+        self.shape
+    }
+
     /// Whether a unit vector that is none of the faces' normals is one that the edge has; `None` where it
     /// is close, or not on the same side of both faces.
     pub(in crate::shape) fn admits(

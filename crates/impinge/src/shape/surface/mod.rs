@@ -2,6 +2,7 @@
 //! sides of chains.
 
 pub(crate) mod bend;
+pub(crate) mod face_seams;
 pub(crate) mod own_surface;
 pub(crate) mod seam;
 pub(crate) mod sidedness;

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use crate::math::{Point, Real, Vector};
-use crate::shape::{FeatureId, Sidedness, Surface};
+use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
 /// A surface of this library. No answer of it changes a contact, only what finding it costs.
 pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
@@ -19,10 +19,24 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         [is_first, !is_first && self.admits(part, feature, second)]
     }
 
-    /// Reads what will be needed of a part that is asked about next: of several parts in a row, what lies
-    /// far apart in memory comes at one time.
-    fn prefetch(&self, part: u32) {
+    /// [`Self::admits_in_turn`] at a corner of a triangle, of normals that are not its own; what is known of the
+    /// triangle is given.
+    fn corner_admits_in_turn(
+        &self,
+        part: u32,
+        corner: usize,
+        known: &FaceSeams<N>,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        let _ = known;
+        self.admits_in_turn(part, FeatureId::Vertex([0, 1, 2][corner]), normals)
+    }
+
+    /// What a triangle in 3D and those around it say of its normals; `None` of others, of one without area, and where
+    /// that does not decide.
+    fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
         let _ = part;
+        None
     }
 
     /// Which sides all segments of a chain in 2D have; `None` of surfaces in 3D.
@@ -89,6 +103,25 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         [is_first, !is_first && self.admits(part, feature, normals[1])]
     }
 
+    /// See [`OwnSurface::corner_admits_in_turn`].
+    pub(crate) fn corner_admits_in_turn(
+        &self,
+        part: u32,
+        corner: usize,
+        known: &FaceSeams<N>,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        match self.own {
+            Some(own) => own.corner_admits_in_turn(part, corner, known, normals),
+            None => self.admits_in_turn(part, FeatureId::Vertex([0, 1, 2][corner]), normals),
+        }
+    }
+
+    /// See [`OwnSurface::face_seams`].
+    pub(crate) fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
+        self.own?.face_seams(part)
+    }
+
     /// See [`Surface::snapped`].
     #[inline]
     pub(crate) fn snapped(&self, part: u32, normal: &Vector<N, D>) -> Option<Vector<N, D>> {
@@ -104,13 +137,6 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
     /// See [`OwnSurface::is_body`].
     pub(crate) fn is_body(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_body(part))
-    }
-
-    /// See [`OwnSurface::prefetch`].
-    pub(crate) fn prefetch(&self, parts: impl Iterator<Item = u32>) {
-        if let Some(own) = self.own {
-            parts.for_each(|part| own.prefetch(part));
-        }
     }
 
     /// See [`OwnSurface::sidedness`].

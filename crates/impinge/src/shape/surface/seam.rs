@@ -39,17 +39,51 @@ pub(in crate::shape) fn is_across<N: Real, const D: usize>(
     unit(edge).is_none_or(|(along, _)| is_flat(along.dot(normal)))
 }
 
-/// A vector rises along a unit vector by far more than what counts as rounding.
-pub(in crate::shape) fn leads_up_clearly<N: Real, const D: usize>(
-    vector: &Vector<N, D>,
-    normal: &Vector<N, D>,
-) -> bool {
-    let rise = vector.dot(normal);
-    rise > N::ZERO && rise * rise > N::lit(CLEAR) * vector.norm_squared()
+/// Sines of so many times what rounding may turn a vector by are none.
+const CLEAR: f64 = 8.0;
+
+/// What the ways from a corner to those around it tell of a normal there, without a look at the faces: most are
+/// refused since one of the ways rises along them, or admitted since all sink.
+pub(in crate::shape) struct CornerWays<'a, N: Real, const D: usize> {
+    normal: &'a Vector<N, D>,
+    has_rising: bool,
+    has_level: bool,
 }
 
-/// Squares of sines above this are no rounding.
-const CLEAR: f64 = 1.0 / (512.0 * 512.0);
+impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
+    pub(in crate::shape) const fn new(normal: &'a Vector<N, D>) -> Self {
+        Self { normal, has_rising: false, has_level: false }
+    }
+
+    /// Adds a way of any length.
+    #[inline]
+    pub(in crate::shape) fn add(&mut self, way: &Vector<N, D>) {
+        let (rise, room) = (way.dot(self.normal), N::lit(CLEAR) * slack());
+        let is_clear = rise * rise > room * room * way.norm_squared();
+        self.has_rising |= is_clear && rise > N::ZERO;
+        self.has_level |= !is_clear;
+    }
+
+    /// A way rises.
+    pub(in crate::shape) const fn is_refused(&self) -> bool {
+        self.has_rising
+    }
+
+    /// Whether the corner has the normal, given all ways; `None` where the faces decide. Of a face at the corner the
+    /// normal is given, and whether another face there is known not to be level with it.
+    pub(in crate::shape) fn admit(
+        &self,
+        (own, is_bent): (&Vector<N, D>, bool),
+        is_one_sided: bool,
+    ) -> Option<bool> {
+        if self.has_rising {
+            return Some(false);
+        }
+        let cosine = own.dot(self.normal);
+        let is_leaning = N::ONE - cosine * cosine > N::lit(2.0 * FLAT_SINE * FLAT_SINE);
+        ((is_leaning || is_bent) && !self.has_level && !is_one_sided).then_some(true)
+    }
+}
 
 /// What is known of a normal at a seam while its pieces are gone through.
 #[derive(Clone, Copy, Debug)]

@@ -6,10 +6,10 @@ use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::{Isometry3, Point, Pose, Real, Vector};
 use crate::shape::{Capsule, ConvexHull, Cuboid, Cylinder, Segment, Shape, Triangle};
 
-type Outline = Vec<[f64; 2]>;
+pub(super) type Outline = Vec<[f64; 2]>;
 
 /// A regular polygon about a place, counter-clockwise.
-fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) -> Outline {
+pub(super) fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) -> Outline {
     let corner = |at: usize| {
         let angle = turn + at as f64 * core::f64::consts::TAU / count as f64;
         let (sine, cosine) = Real::sine_cosine(angle);
@@ -19,7 +19,7 @@ fn regular(count: usize, [x, y]: [f64; 2], radius: f64, turn: f64) -> Outline {
 }
 
 /// The prism over an outline between two heights.
-fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> ConvexHull<N> {
+pub(super) fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> ConvexHull<N> {
     let at = |z: f64| {
         let point = move |&[x, y]: &[f64; 2]| Point::<N, 3>::new(N::lit(x), N::lit(y), N::lit(z));
         outline.iter().map(point)
@@ -28,7 +28,7 @@ fn prism<N: Real>(outline: &Outline, [low, high]: [f64; 2]) -> ConvexHull<N> {
 }
 
 /// What of one convex outline lies in another, by the method of Sutherland and Hodgman.
-fn common(one: &Outline, other: &Outline) -> Outline {
+pub(super) fn common(one: &Outline, other: &Outline) -> Outline {
     let mut kept = one.clone();
     for (at, from) in other.iter().enumerate() {
         let to = other[(at + 1) % other.len()];

@@ -12,10 +12,10 @@ use super::{TriangleQuery, noise};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
 use crate::math::lanes::{
-    bits, cross, dot, either, in_lanes, load, minus, negated, over, spread, times,
+    bits, cross, dot, either, in_lanes, load, minus, negated, over, spread, times, turned_back,
 };
 use crate::math::simd::{Run, Simd, SimdMask};
-use crate::math::{Mapped, Matrix, Real, Wide, filled, max, max_component};
+use crate::math::{Mapped, Matrix, Real, Wide, max, max_component};
 
 /// The sine below which two edges count as parallel, in rounding units.
 const PARALLEL: f64 = 16.0;
@@ -189,7 +189,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         let mut corners = given;
         for corner in &mut corners {
             let arm = times(&minus(corner, &center), shrink);
-            *corner = turned(simd, &query.pose12.rotation, &arm);
+            *corner = turned_back(simd, &query.pose12.rotation, &arm);
         }
         let slack = V::all(simd, slack(N::ONE)) * scale;
         let beyond = V::all(simd, query.limit) + slack;
@@ -243,9 +243,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
             & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
         let mut sides = ways;
         for (side, squared) in sides.iter_mut().zip(squared) {
-            *side = turned(simd, turn, &over(side, squared.sqrt()));
+            *side = turned_back(simd, turn, &over(side, squared.sqrt()));
         }
-        Directions { sides, front: turned(simd, turn, &over(&across, area)), is_wide }
+        Directions { sides, front: turned_back(simd, turn, &over(&across, area)), is_wide }
     }
 
     /// The gaps that the opposites of some unit vectors, and these, leave from the triangles to the solid.
@@ -357,23 +357,4 @@ fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         *size = scale;
     }
     [sizes, shrinks]
-}
-
-/// Vectors in the frame that a rotation leads from.
-#[inline(always)]
-fn turned<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
-    simd: S,
-    turn: &Matrix<N, 3>,
-    v: &[V; 3],
-) -> [V; 3] {
-    filled(
-        #[inline(always)]
-        |axis| {
-            let column: [V; 3] = filled(
-                #[inline(always)]
-                |row| V::all(simd, turn[(row, axis)]),
-            );
-            dot(&column, v)
-        },
-    )
 }

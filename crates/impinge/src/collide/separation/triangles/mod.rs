@@ -12,15 +12,16 @@ mod ball;
 use self::axes::{AxisFeature, TriangleAxes};
 pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
-use crate::collide::packet::{GapVisitor, LANES, PartGap, PartPacket, TiledParts};
+use crate::collide::packet::{LANES, PartPacket};
+use crate::math::ones::Ones;
 use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Kind};
 
 /// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
-const INSIDE: f64 = 1.0 / 32.0;
+const INSIDE: f64 = 1.0 / 256.0;
 /// The least square of the sine of the angle between the two.
-const MIN_SINE: f64 = 1.0 / 64.0;
+const MIN_SINE: f64 = 1.0 / 1024.0;
 /// A triangle with less than this ratio of height to longest side may have its other sides as near.
 const TALL: f64 = 1.0 / 32.0;
 /// One corner is the nearest where the others are farther by so many times what counts as rounding; and a side
@@ -33,16 +34,48 @@ fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
+/// Some of the triangles of many tiles.
+pub(crate) struct TiledTriangles<'a, N: Real> {
+    pub(crate) tiles: &'a [PartPacket<N, 3>],
+    /// For each of the tiles a bit for each triangle that is meant.
+    pub(crate) near: &'a [u8],
+    /// Where the triangles are to be seen from.
+    pub(crate) origin: Vector<N, 3>,
+}
+
+/// How far a triangle and a solid are apart, in the frame of the triangle.
+#[derive(Clone, Copy)]
+pub(crate) struct TriangleGap<N: Real> {
+    pub(crate) distance: N,
+    /// Unit, from the triangle to the solid.
+    pub(crate) normal: Vector<N, 3>,
+    /// The side or corner of the triangle that is nearest; `None` where the normal is that of the triangle.
+    pub(crate) touched: Option<FeatureId>,
+}
+
+/// Is called with the number of a triangle, counted among those that are meant, and what is plain of it.
+pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap<N>>);
+
+impl<N: Real> TiledTriangles<'_, N> {
+    /// The tile and the lane of each triangle that is meant.
+    fn places(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
+        let all = self.tiles.iter().zip(self.near);
+        all.flat_map(move |(tiles, near)| {
+            Ones::<LANES>((*near).into()).map(move |lane| (tiles, lane))
+        })
+    }
+}
+
 /// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
 /// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
 /// that have no kernel here. The limit is the `prediction` and what turning adds to it.
 pub(crate) fn gaps3<N: Real>(
-    parts: &TiledParts<'_, N, 3>,
+    parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
     pose12: &Pose<N, 3>,
     prediction: N,
     limit: N,
-    visit: GapVisitor<'_, N, 3>,
+    visit: GapVisitor<'_, N>,
 ) -> bool {
     let features = LocalFeatures::of(solid);
     let solid = Polyhedral::of(solid, features.as_ref()).filter(|solid| solid.faces() > 3);
@@ -51,21 +84,9 @@ pub(crate) fn gaps3<N: Real>(
     true
 }
 
-/// In 2D triangles are filled.
-pub(crate) fn gaps2<N: Real>(
-    _: &TiledParts<'_, N, 2>,
-    _: Kind<'_, N, 2>,
-    _: &Pose<N, 2>,
-    _: N,
-    _: N,
-    _: GapVisitor<'_, N, 2>,
-) -> bool {
-    false
-}
-
 /// Triangles against one solid.
 struct TriangleQuery<'a, N: Real> {
-    parts: &'a TiledParts<'a, N, 3>,
+    parts: &'a TiledTriangles<'a, N>,
     solid: &'a Polyhedral<'a, N>,
     pose12: &'a Pose<N, 3>,
     prediction: N,
@@ -73,7 +94,7 @@ struct TriangleQuery<'a, N: Real> {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    fn each(&self, visit: GapVisitor<'_, N, 3>) {
+    fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut places, mut first) = (self.parts.places(), 0);
         loop {
             let (mut packet, mut count) = (PartPacket::blank(), 0);
@@ -95,7 +116,7 @@ impl<N: Real> TriangleQuery<'_, N> {
     }
 
     /// What the axis of a triangle says, if that is plain.
-    fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<PartGap<N, 3>> {
+    fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
         let triangle = PlacedTriangle {
             corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
             normal: of_lane(&axes.normals, lane),
@@ -113,7 +134,7 @@ impl<N: Real> TriangleQuery<'_, N> {
             AxisFeature::Edges(edge, side) => Some(triangle.crossing(edge, side)?),
         };
         let normal = self.pose12.vector(&triangle.normal);
-        Some(PartGap { distance: gap * scale, normal, touched, witness: None })
+        Some(TriangleGap { distance: gap * scale, normal, touched })
     }
 }
 

@@ -3,14 +3,15 @@
 use smallvec::SmallVec;
 
 use super::HeightField;
+use super::marks::Diagonal;
 use super::sheet::GridPoint;
-use crate::math::{Point, Real, Vector, max, max_component, perp, unit, unit_or};
+use crate::math::{Mapped, Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::composite::tri_mesh::{inward_of, normal_of};
 use crate::shape::surface::bend::Bend;
 use crate::shape::surface::own_surface::OwnSurface;
-use crate::shape::surface::seam::{Seam, is_across, leads_up_clearly, slack};
+use crate::shape::surface::seam::{CornerWays, Seam, is_across, slack};
 use crate::shape::surface::sidedness::Joining;
-use crate::shape::{FeatureId, Sidedness, Surface};
+use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
 impl<N: Real> Surface<N, 3> for HeightField<N, 3> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
@@ -44,11 +45,45 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
         [is_first, !is_first && self.face_admits(&own, &mut beside, feature, second)]
     }
 
+    fn corner_admits_in_turn(
+        &self,
+        part: u32,
+        corner: usize,
+        known: &FaceSeams<N>,
+        normals: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        if self.keeps_internal_edges {
+            return self.admits_in_turn(part, FeatureId::Vertex([0, 1, 2][corner]), normals);
+        }
+        let (at, mut star) = (self.corners(part)[corner], None);
+        let own = (&known.front, known.is_bent_at(corner));
+        let is_first = self.point_admits_from(at, &mut star, own, normals[0]);
+        [is_first, !is_first && self.point_admits_from(at, &mut star, own, normals[1])]
+    }
+
+    fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
+        let own = FieldFace::of(self, self.corners(part));
+        let has_seams = !self.keeps_internal_edges && own.front != Vector::<N, 3>::zeros();
+        let bend = |side| Fold::at(self, &own, side).bend;
+        // All fronts of a field are up, or all are down.
+        has_seams.then(|| FaceSeams::new(own.front, self.is_one_sided, bend, |_| true))
+    }
+
     /// Points of the grid are at positions of their own unless the field has no extent.
     fn has_plain_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
 }
+
+/// The number of a triangle of a cell, and two of the corners of the cell.
+type FanTriangle = (usize, usize, usize);
+
+/// The triangles at each corner of a cell, whose corners are numbered as they lie around it: the number of a triangle
+/// and its other corners. Of a diagonal forward, then of one backward; see `corners_in`.
+const FANS: [[&[FanTriangle]; 4]; 2] = [
+    [&[(0, 1, 2), (1, 2, 3)], &[(0, 2, 0)], &[(0, 0, 1), (1, 3, 0)], &[(1, 0, 2)]],
+    [&[(0, 1, 3)], &[(0, 3, 0), (1, 2, 3)], &[(1, 3, 1)], &[(0, 0, 1), (1, 1, 2)]],
+];
 
 /// A triangle of a field.
 struct FieldFace<N: Real> {
@@ -134,12 +169,30 @@ impl<N: Real> HeightField<N, 3> {
         rest.map(|(row, column, k)| self.corners_in(row, column, k))
     }
 
-    /// The corners of the triangles around a point of the grid: eight at most.
-    fn around_point(&self, at: GridPoint) -> impl Iterator<Item = [GridPoint; 3]> + '_ {
-        let [row, column] = at;
-        // One cell before and one after, of those that there are.
-        let cells = [[row, column], [row, column + 1], [row + 1, column], [row + 1, column + 1]];
-        self.in_cells(cells.into_iter()).filter(move |corners| corners.contains(&at))
+    /// Calls with the two other corners of each triangle around a point of the grid, counter-clockwise seen from the
+    /// front, until one call answers true: eight triangles at most.
+    fn each_around(&self, at: GridPoint, mut visit: impl FnMut([GridPoint; 2]) -> bool) {
+        let [rows, columns] = self.pyramid.cells();
+        // The cells before and after; in each the number of the corner that the point is.
+        for (row, column, own) in [(1, 1, 2), (1, 0, 1), (0, 1, 3), (0, 0, 0)] {
+            let cell = (at[0].wrapping_sub(row), at[1].wrapping_sub(column));
+            if cell.0 >= rows || cell.1 >= columns {
+                continue;
+            }
+            let corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
+            let corner = |number: usize| {
+                let [row, column] = corners[number];
+                [cell.0 + row, cell.1 + column]
+            };
+            let forward = self.marks.diagonal([cell.0, cell.1], columns) == Diagonal::Forward;
+            for &(k, next, last) in FANS[usize::from(!forward)][own] {
+                let others = [corner(next), corner(last)];
+                let others = if self.is_mirrored() { [others[1], others[0]] } else { others };
+                if !self.is_hole_in(cell.0, cell.1, k) && visit(others) {
+                    return;
+                }
+            }
+        }
     }
 
     /// The triangle on the other side of a side.
@@ -211,44 +264,70 @@ impl<N: Real> HeightField<N, 3> {
         corner: usize,
         normal: &Vector<N, 3>,
     ) -> bool {
-        let point = own.points[corner % 3];
-        let leads_up = |other: &Point<N, 3>| leads_up_clearly(&(other - point), normal);
-        // Most are refused by a side of the triangle that is asked.
-        if own.points.iter().any(leads_up) {
-            return false;
-        }
-        let star = star.get_or_insert_with(|| self.star_of(own.corners[corner % 3]));
-        if star.iter().any(|(points, _)| points.iter().any(leads_up)) {
-            return false;
-        }
-        let mut seam = Seam::of_faces(own.front, normal);
-        for (points, at) in star {
-            seam.add_face(|way| rise_from(points, *at, way), &normal_of(points));
-        }
-        seam.admits(self.is_one_sided)
+        self.point_admits_from(own.corners[corner % 3], star, (&own.front, false), normal)
+    }
+
+    /// Whether a point of the grid has a normal that is not that of the triangle which asks, whose front is given, and
+    /// whether another triangle there is known not to be level with it.
+    fn point_admits_from(
+        &self,
+        at: GridPoint,
+        star: &mut Option<Star<N>>,
+        own: (&Vector<N, 3>, bool),
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        let known = self.ways_around(at, normal).admit(own, self.is_one_sided);
+        known.unwrap_or_else(|| {
+            let star = star.get_or_insert_with(|| self.star_of(at));
+            let mut seam = Seam::of_faces(*own.0, normal);
+            for StarFace { ways, front } in star {
+                seam.add_face(|along| max(rise(&ways[0], along), rise(&ways[1], along)), front);
+            }
+            seam.admits(self.is_one_sided)
+        })
+    }
+
+    /// The sides that leave a point of the grid, until they refuse a normal.
+    fn ways_around<'n>(&self, at: GridPoint, normal: &'n Vector<N, 3>) -> CornerWays<'n, N, 3> {
+        let (mut ways, [row, column]) = (CornerWays::new(normal), at);
+        let point = self.grid.point(row, column);
+        self.each_around(at, |others| {
+            for [row, column] in others {
+                ways.add(&(self.grid.point(row, column) - point));
+            }
+            ways.is_refused()
+        });
+        ways
     }
 
     /// The triangles around a point of the grid.
     fn star_of(&self, at: GridPoint) -> Star<N> {
-        let mut star = Star::new();
-        for corners in self.around_point(at) {
-            let own = corners.iter().position(|corner| *corner == at).unwrap_or(0);
-            star.push((self.points_of(&corners), own));
-        }
+        let (mut star, [row, column]) = (Star::new(), at);
+        let point = self.grid.point(row, column);
+        self.each_around(at, |others| {
+            let [next, last] = others.mapped(|[row, column]| self.grid.point(row, column));
+            let unit_way = |other: &Point<N, 3>| unit_or(&(other - point), Vector::<N, 3>::zeros());
+            let ways = [unit_way(&next), unit_way(&last)];
+            star.push(StarFace { ways, front: normal_of(&[point, next, last]) });
+            false
+        });
         star
     }
 }
 
-/// The corners of the triangles around a point, and which of them it is.
-type Star<N> = SmallVec<[([Point<N, 3>; 3], usize); 8]>;
-
-/// How much the steeper of the two sides of a triangle that leave a corner rises along a vector, at most of
-/// length 1.
-fn rise_from<N: Real>(points: &[Point<N, 3>; 3], at: usize, normal: &Vector<N, 3>) -> N {
-    let others = (0..3).filter(|other| *other != at).map(|other| points[other]);
-    let rises = others.map(|other| unit_or(&(other - points[at]), -normal).dot(normal));
-    rises.fold(-N::ONE, max)
+/// A triangle at a point of the grid: unit, along its sides that leave the point, or zero, and the normal on its front.
+struct StarFace<N: Real> {
+    ways: [Vector<N, 3>; 2],
+    front: Vector<N, 3>,
 }
+
+/// How much a unit vector rises along another one; a way that is none does not.
+fn rise<N: Real>(way: &Vector<N, 3>, along: &Vector<N, 3>) -> N {
+    if *way == Vector::<N, 3>::zeros() { -N::ONE } else { way.dot(along) }
+}
+
+/// The triangles around a point.
+type Star<N> = SmallVec<[StarFace<N>; 8]>;
 
 impl<N: Real> Surface<N, 2> for HeightField<N, 2> {
     fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {

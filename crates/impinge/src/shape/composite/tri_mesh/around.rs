@@ -134,7 +134,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     /// The triangle is so tall for its size that nobody doubts its area; not known of all.
-    fn is_plain(&self, triangle: u32) -> bool {
+    pub(super) fn is_plain(&self, triangle: u32) -> bool {
         self.bends.is_plain(triangle, || is_tall(&self.corners(triangle)))
     }
 

@@ -59,11 +59,6 @@ impl Bends {
         }
     }
 
-    /// How much is kept of a triangle.
-    pub(super) fn kept_of(&self, triangle: u32) -> u16 {
-        self.sides[triangle as usize].load(Ordering::Relaxed)
-    }
-
     /// What is kept of the triangle, or else found now.
     pub(super) fn is_plain(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
         let kept = &self.sides[triangle as usize];

@@ -5,7 +5,7 @@ use super::{TriMesh, surface3};
 use crate::bvh::Triangles;
 use crate::math::{Point, Real, Vector};
 use crate::partitioning::BoxTree;
-use crate::shape::{FeatureId, Part, Polyline};
+use crate::shape::{FaceSeams, FeatureId, Part, Polyline};
 use crate::tables::Here;
 
 /// The algorithms of meshes that differ by dimension.
@@ -29,6 +29,18 @@ pub trait MeshByDimension<N: Real, const D: usize> {
         feature: FeatureId,
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2];
+
+    /// The same at a corner, of normals that are not the triangle's own; with the corner is said whether another triangle
+    /// there is known not to be level with this one.
+    fn mesh_corner_admits_in_turn(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+        corner: (usize, bool),
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2];
+
+    /// How a triangle is bent against those across its sides; `None` in 2D.
+    fn mesh_face_seams(mesh: &TriMesh<N, D>, part: u32) -> Option<FaceSeams<N>>;
 
     /// See [`Surface::snapped`](crate::shape::Surface::snapped).
     fn mesh_snapped(mesh: &TriMesh<N, D>, part: u32, normal: &Vector<N, D>)
@@ -78,6 +90,19 @@ impl<N: Real> MeshByDimension<N, 2> for Here {
     ) -> [bool; 2] {
         let is_first = mesh.admits_in_plane(part, feature, first);
         [is_first, !is_first && mesh.admits_in_plane(part, feature, second)]
+    }
+
+    fn mesh_corner_admits_in_turn(
+        mesh: &TriMesh<N, 2>,
+        part: u32,
+        (corner, _): (usize, bool),
+        normals: [&Vector<N, 2>; 2],
+    ) -> [bool; 2] {
+        Self::mesh_admits_in_turn(mesh, part, FeatureId::Vertex([0, 1, 2][corner]), normals)
+    }
+
+    fn mesh_face_seams(_: &TriMesh<N, 2>, _: u32) -> Option<FaceSeams<N>> {
+        None
     }
 
     fn mesh_snapped(
@@ -131,6 +156,20 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
         normals: [&Vector<N, 3>; 2],
     ) -> [bool; 2] {
         mesh.admits_in_turn_in_space(part, feature, normals)
+    }
+
+    fn mesh_corner_admits_in_turn(
+        mesh: &TriMesh<N, 3>,
+        part: u32,
+        corner: (usize, bool),
+        [first, second]: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        let is_first = mesh.vertex_admits(part, corner, first);
+        [is_first, !is_first && mesh.vertex_admits(part, corner, second)]
+    }
+
+    fn mesh_face_seams(mesh: &TriMesh<N, 3>, part: u32) -> Option<FaceSeams<N>> {
+        mesh.face_seams_in_space(part)
     }
 
     fn mesh_snapped(

@@ -1,7 +1,5 @@
 //! A mesh as a shape: a union of triangles that know their neighbours.
 
-use core::hint::black_box;
-
 use super::MeshByDimension;
 use super::rays::RayBounds;
 use super::{TriMesh, entries};
@@ -11,8 +9,8 @@ use crate::partitioning::BoxTree;
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
-    CompositeShape, EnclosedBody, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid,
-    ScaleError, Shape, ShapeHandle, Surface, SurfaceAccess,
+    CompositeShape, EnclosedBody, FaceSeams, FeatureId, Geometry, Kind, Part, PartSearch,
+    PartSolid, ScaleError, Shape, ShapeHandle, Surface, SurfaceAccess,
 };
 
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
@@ -103,12 +101,18 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
         entries::admits_in_turn(self, part, feature, normals)
     }
 
-    fn prefetch(&self, part: u32) {
-        let beyond = self.topology.all_across(part);
-        let normal = |part: u32| self.normals.get(part as usize).map(|normal| normal[0]);
-        black_box((normal(part), self.bends.kept_of(part), self.triangles[part as usize]));
-        // Where there is no triangle across a side there is none of such a number.
-        black_box(beyond.map(normal));
+    fn corner_admits_in_turn(
+        &self,
+        part: u32,
+        corner: usize,
+        known: &FaceSeams<N>,
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] {
+        entries::corner_admits_in_turn(self, part, (corner, known.is_bent_at(corner)), normals)
+    }
+
+    fn face_seams(&self, part: u32) -> Option<FaceSeams<N>> {
+        entries::face_seams(self, part)
     }
 
     fn is_body(&self, _: u32) -> bool {

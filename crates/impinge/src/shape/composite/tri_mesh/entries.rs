@@ -4,7 +4,7 @@ use super::rays::RayBounds;
 use super::{MeshByDimension, TriMesh};
 use crate::math::{Point, Vector};
 use crate::shape::composite::mesh_error::MeshError;
-use crate::shape::{FeatureId, Part};
+use crate::shape::{FaceSeams, FeatureId, Part};
 use crate::tables::{Here, compiled};
 
 compiled! {
@@ -34,6 +34,18 @@ compiled! {
         feature: FeatureId,
         normals: [&Vector<N, D>; 2],
     ) -> [bool; 2] = <Here as MeshByDimension<N, D>>::mesh_admits_in_turn;
+
+    fn corner_admits_in_turn(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+        corner: (usize, bool),
+        normals: [&Vector<N, D>; 2],
+    ) -> [bool; 2] = <Here as MeshByDimension<N, D>>::mesh_corner_admits_in_turn;
+
+    fn face_seams(
+        mesh: &TriMesh<N, D>,
+        part: u32,
+    ) -> Option<FaceSeams<N>> = <Here as MeshByDimension<N, D>>::mesh_face_seams;
 
     fn snapped(
         mesh: &TriMesh<N, D>,

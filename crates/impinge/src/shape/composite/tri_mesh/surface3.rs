@@ -3,10 +3,10 @@
 use super::TriMesh;
 use super::around::noise;
 use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
-use crate::shape::FeatureId;
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::bend::{Bend, BendShape};
-use crate::shape::surface::seam::{Seam, is_across, leads_up_clearly, slack};
+use crate::shape::surface::seam::{CornerWays, Seam, is_across, slack};
+use crate::shape::{FaceSeams, FeatureId};
 
 /// The unit normal on the side that sees the corners counter-clockwise; zero without area.
 pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector<N, 3> {
@@ -38,7 +38,9 @@ impl<N: Real> TriMesh<N, 3> {
             || match feature {
                 FeatureId::Face(_) => self.normal(part).is_none(),
                 FeatureId::Edge(side) => self.edge_admits(part, side as usize, normal),
-                FeatureId::Vertex(corner) => self.vertex_admits(part, corner as usize, normal),
+                FeatureId::Vertex(corner) => {
+                    self.vertex_admits(part, (corner as usize, false), normal)
+                }
             }
     }
 
@@ -59,13 +61,6 @@ impl<N: Real> TriMesh<N, 3> {
                 };
                 let is_first = admits(normals[0]);
                 [is_first, !is_first && (is_free(normals[1]) || admits(normals[1]))]
-            }
-            FeatureId::Vertex(corner) if !(self.keeps_internal_edges || is_free(normals[0])) => {
-                let (corner, joint) = (corner as usize, self.joint_at(part, corner as usize));
-                let rises = self.rises_around(part, corner, normals);
-                let admits = |at: usize| !rises[at] && self.corner_admits(part, joint, normals[at]);
-                let is_first = admits(0);
-                [is_first, !is_first && (is_free(normals[1]) || admits(1))]
             }
             _ => {
                 let is_first = self.admits_in_space(part, feature, normals[0]);
@@ -153,44 +148,24 @@ impl<N: Real> TriMesh<N, 3> {
         highest
     }
 
-    fn vertex_admits(&self, part: u32, corner: usize, normal: &Vector<N, 3>) -> bool {
-        let joint = self.joint_at(part, corner);
-        // Most are refused by a side of the triangle that is asked.
-        let rises = |triangle: u32, at: usize| {
-            let corners = self.corners(triangle);
-            corners.iter().any(|other| leads_up_clearly(&(other - corners[at]), normal))
-        };
-        let mut around = self.topology.joints.parts(joint).iter();
-        if rises(part, corner) || around.any(|&other| rises(other, self.corner_at(other, joint))) {
-            return false;
+    /// Whether a corner has a normal that is not the triangle's own; whether another triangle there is known not to be level
+    /// with this one is given.
+    pub(super) fn vertex_admits(
+        &self,
+        part: u32,
+        (corner, is_bent): (usize, bool),
+        normal: &Vector<N, 3>,
+    ) -> bool {
+        let (joint, own) = (self.joint_at(part, corner), &self.normals[part as usize]);
+        let around = self.topology.joints.parts(joint);
+        match self.ways_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
+            Some(false) => return false,
+            // Beyond triangles without area there may be others.
+            Some(true) if around.iter().all(|&triangle| self.is_plain(triangle)) => return true,
+            _ => {}
         }
-        self.corner_admits(part, joint, normal)
-    }
-
-    /// Whether a side that leaves a corner clearly rises along each of two normals.
-    fn rises_around(&self, part: u32, corner: usize, normals: [&Vector<N, 3>; 2]) -> [bool; 2] {
-        let joint = self.joint_at(part, corner);
-        let mut rises = [false; 2];
-        let mut look = |triangle: u32, at: usize| {
-            let corners = self.corners(triangle);
-            for turn in [1, 2] {
-                let way = corners[(at + turn) % 3] - corners[at];
-                rises[0] |= leads_up_clearly(&way, normals[0]);
-                rises[1] |= leads_up_clearly(&way, normals[1]);
-            }
-            rises == [true; 2]
-        };
-        if !look(part, corner) {
-            let mut around = self.topology.joints.parts(joint).iter();
-            around.any(|&other| look(other, self.corner_at(other, joint)));
-        }
-        rises
-    }
-
-    /// No side that leaves the joint of a corner rises along the normal, and the faces are not flat there.
-    fn corner_admits(&self, part: u32, joint: u32, normal: &Vector<N, 3>) -> bool {
-        let mut seam = Seam::of_faces(self.normals[part as usize], normal);
-        for &triangle in self.topology.joints.parts(joint) {
+        let mut seam = Seam::of_faces(*own, normal);
+        for &triangle in around {
             let front = &self.normals[triangle as usize];
             seam.add_face(|way| self.rise_from(triangle, joint, way), front);
         }
@@ -198,6 +173,36 @@ impl<N: Real> TriMesh<N, 3> {
             seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
         });
         seam.admits(self.is_one_sided)
+    }
+
+    /// The sides that leave a corner, until they refuse a normal: those of the triangle that is asked come first.
+    fn ways_around<'n>(
+        &self,
+        part: u32,
+        corner: usize,
+        normal: &'n Vector<N, 3>,
+    ) -> CornerWays<'n, N, 3> {
+        let (joint, mut ways) = (self.joint_at(part, corner), CornerWays::new(normal));
+        let mut look = |triangle: u32, at: usize| {
+            let corners = self.corners(triangle);
+            for turn in [1, 2] {
+                ways.add(&(corners[(at + turn) % 3] - corners[at]));
+            }
+            ways.is_refused()
+        };
+        if !look(part, corner) {
+            let mut around = self.topology.joints.parts(joint).iter();
+            around.any(|&other| other != part && look(other, self.corner_at(other, joint)));
+        }
+        ways
+    }
+
+    /// See [`OwnSurface::face_seams`](crate::shape::surface::own_surface::OwnSurface::face_seams).
+    pub(super) fn face_seams_in_space(&self, part: u32) -> Option<FaceSeams<N>> {
+        let front = self.normal(part).filter(|_| !self.keeps_internal_edges)?;
+        let (bend, is_rim) =
+            (|side| self.bend_at(part, side), |side| self.topology.is_border(part, side));
+        Some(FaceSeams::new(front, self.is_one_sided, bend, is_rim))
     }
 }
 

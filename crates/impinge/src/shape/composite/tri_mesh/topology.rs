@@ -104,11 +104,6 @@ impl Topology {
         Some(self.across[triangle as usize][side]).filter(|&across| across < SEVERAL)
     }
 
-    /// The triangles that are alone across the sides; numbers of no triangle where there is none.
-    pub(super) fn all_across(&self, triangle: u32) -> [u32; 3] {
-        self.across[triangle as usize]
-    }
-
     /// More than one triangle is across a side.
     pub(super) fn has_several_across(&self, triangle: u32, side: usize) -> bool {
         self.across[triangle as usize][side] == SEVERAL

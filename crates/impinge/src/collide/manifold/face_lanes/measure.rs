@@ -1,0 +1,339 @@
+//! What a solid and eight triangles show along the normals, and how far inside of the sides of the one the corners of the
+//! other are.
+
+use super::super::frame::ROUNDING_ERRORS;
+use super::FaceSolid;
+use crate::collide::packet::{LANES, PartPacket};
+use crate::math::lanes::{
+    bits, cross, dot, in_lanes, lit, load, minus, norm, spread, times, turned_back,
+};
+use crate::math::simd::{Run, Simd, SimdMask};
+use crate::math::{Real, Vector, Wide};
+use crate::shape::{FACING_SINE_SQUARED, FaceRing};
+
+/// As many corners as a face has here.
+const MAX: usize = FaceRing::<f32>::MAX;
+/// A triangle of less height than the root of this part of its longest side shows nothing clearly.
+const THIN_SQUARED: f64 = 1.0 / 1024.0;
+/// By this part of a number another one is clearly larger.
+const CLEAR: f64 = 1.0 / 1024.0;
+
+/// How far the corners of a ring are inside of the sides of the other, by corner and side, with bits for the lanes in
+/// which that is by more than rounding.
+pub(super) struct Insides<N, const CORNERS: usize, const SIDES: usize> {
+    inside: [[[N; LANES]; SIDES]; CORNERS],
+    within: [[u8; SIDES]; CORNERS],
+    beyond: [[u8; SIDES]; CORNERS],
+    /// The lanes in which a corner is beyond a side, and those in which it lies on the line of one.
+    pub(super) is_beyond: [u8; CORNERS],
+    pub(super) is_on: [u8; CORNERS],
+}
+
+impl<N: Real, const CORNERS: usize, const SIDES: usize> Insides<N, CORNERS, SIDES> {
+    const fn blank() -> Self {
+        let (inside, none) = ([[[N::ZERO; LANES]; SIDES]; CORNERS], [[0; SIDES]; CORNERS]);
+        let blank = [0; CORNERS];
+        Self { inside, within: none, beyond: none, is_beyond: blank, is_on: blank }
+    }
+
+    #[inline(always)]
+    fn put<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        [corner, side]: [usize; 2],
+        inside: V,
+        tolerance: V,
+    ) {
+        inside.store(&mut self.inside[corner][side]);
+        let (within, beyond) = (bits(inside.simd_gt(tolerance)), bits(inside.simd_lt(-tolerance)));
+        (self.within[corner][side], self.beyond[corner][side]) = (within, beyond);
+        if side == 0 {
+            (self.is_beyond[corner], self.is_on[corner]) = (0, 0);
+        }
+        self.is_beyond[corner] |= beyond;
+        self.is_on[corner] |= !(within | beyond);
+    }
+
+    /// The lanes in which a corner lies on the line of a side.
+    pub(super) const fn on(&self, corner: usize, side: usize) -> u8 {
+        !(self.within[corner][side] | self.beyond[corner][side])
+    }
+
+    /// The lanes in which two corners lie on different sides of a line.
+    fn parted(&self, [from, to]: [usize; 2], side: usize) -> u8 {
+        self.within[from][side] & self.beyond[to][side]
+            | self.beyond[from][side] & self.within[to][side]
+    }
+
+    /// Where on the way from one corner to another the line of a side is crossed.
+    pub(super) fn share(&self, [from, to]: [usize; 2], side: usize, lane: usize) -> N {
+        let [from, to] = [self.inside[from][side][lane], self.inside[to][side][lane]];
+        from / (from - to)
+    }
+}
+
+/// A face and eight triangles, measured along the normals.
+pub(in crate::collide) struct FaceClip<N: Real> {
+    pub(super) ring: FaceRing<N>,
+    /// The corners of the triangles, and how far along the normal the face is from them.
+    pub(super) corners: [[[N; LANES]; 3]; 3],
+    pub(super) depths: [[N; LANES]; 3],
+    /// How far along the normal the corners of the face are from the plane of the triangle.
+    pub(super) vertex_depths: [[N; LANES]; MAX],
+    /// The corners of the triangles among the sides of the face, and the other way round.
+    pub(super) in_face: Insides<N, 3, MAX>,
+    pub(super) in_triangle: Insides<N, MAX, 3>,
+    /// Lengths below this are rounding errors.
+    pub(super) tolerance: [N; LANES],
+    pub(super) shown: ShownBits,
+    /// The lanes in which both rings have an extent.
+    pub(super) plain: u8,
+    /// Those in which a side of the triangle, given first, and one of the face cross.
+    pub(super) crossed: [[u8; MAX]; 3],
+}
+
+/// The lanes in which a triangle shows its face, and of its corners and sides those of what it shows.
+#[derive(Clone, Copy, Default)]
+pub(super) struct ShownBits {
+    pub(super) face: u8,
+    /// The face is the back.
+    pub(super) back: u8,
+    pub(super) corners: [u8; 3],
+    pub(super) sides: [u8; 3],
+}
+
+impl<N: Real> FaceClip<N> {
+    pub(in crate::collide) fn blank() -> Self {
+        let zeros = [N::ZERO; LANES];
+        Self {
+            ring: FaceRing::blank(),
+            corners: [[zeros; 3]; 3],
+            depths: [zeros; 3],
+            vertex_depths: [zeros; MAX],
+            in_face: Insides::blank(),
+            in_triangle: Insides::blank(),
+            tolerance: zeros,
+            shown: ShownBits::default(),
+            plain: 0,
+            crossed: [[0; MAX]; 3],
+        }
+    }
+
+    /// Measures some lanes.
+    pub(super) fn measure(
+        &mut self,
+        run: Run,
+        solid: &FaceSolid<'_, N>,
+        triangles: &PartPacket<N, 3>,
+        normals: &[[N; LANES]; 3],
+    ) {
+        in_lanes!(run, simd =>
+            self.measure_in_lanes::<_, N::Lanes<_>>(simd, solid, triangles, normals));
+    }
+
+    #[inline(always)]
+    fn measure_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        solid: &FaceSolid<'_, N>,
+        triangles: &PartPacket<N, 3>,
+        normals: &[[N; LANES]; 3],
+    ) {
+        let origin: [V; 3] = spread(simd, &solid.origin);
+        let seen = |corner: usize| -> [V; 3] {
+            turned_back(simd, solid.turn, &minus(&load(simd, &triangles.corners[corner]), &origin))
+        };
+        let (normal, corners) = (load(simd, normals), [seen(0), seen(1), seen(2)]);
+        let squared = [
+            dot(&corners[0], &corners[0]),
+            dot(&corners[1], &corners[1]),
+            dot(&corners[2], &corners[2]),
+        ];
+        let reach = squared[0].larger(squared[1]).larger(squared[2]).sqrt();
+        let rounding = V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON);
+        let tolerance = rounding * (V::all(simd, solid.reach()) + reach);
+        let seen = SeenTriangles::new(simd, &corners, &normal);
+        let (shown, is_shown) = seen.shown(simd, tolerance);
+        let is_plain = is_shown & self.measure_face(simd, &seen, tolerance);
+        self.measure_triangles(simd, &seen, tolerance);
+        (self.shown, self.plain) = (shown, bits(is_plain));
+        self.find_crossings();
+        tolerance.store(&mut self.tolerance);
+        for (rows, corner) in self.corners.iter_mut().zip(&corners) {
+            for (row, values) in rows.iter_mut().zip(corner) {
+                values.store(row);
+            }
+        }
+    }
+
+    /// Sides cross where each has its ends on different sides of the other.
+    fn find_crossings(&mut self) {
+        let (count, sides) = (self.ring.count, self.sides());
+        for (side, crossed) in self.crossed.iter_mut().enumerate() {
+            for (other, crossed) in crossed.iter_mut().enumerate().take(sides) {
+                let own = self.in_face.parted([side, (side + 1) % 3], other);
+                let others = self.in_triangle.parted([other, (other + 1) % count], side);
+                *crossed = own & others & self.shown.sides[side];
+            }
+        }
+    }
+
+    /// How far inside of the sides of the face the corners of the triangles are, and how far from its plane; answers
+    /// where the sides have an extent.
+    #[inline(always)]
+    fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        seen: &SeenTriangles<V>,
+        tolerance: V,
+    ) -> V::Mask {
+        let (outward, count): ([V; 3], usize) = (spread(simd, &self.ring.normal), self.ring.count);
+        let slope = lit::<S, N, V>(simd, 1.0) / dot(&outward, &seen.normal);
+        let mut is_long = slope.simd_eq(slope);
+        for side in 0..self.sides() {
+            let (from, to) = (self.vertex(side), self.vertex((side + 1) % count));
+            let start: [V; 3] = spread(simd, &from);
+            let across = cross(&spread(simd, &(to - from)), &seen.normal);
+            let length = norm(&across);
+            is_long &= length.simd_gt(tolerance + tolerance);
+            let inward = times(&across, lit::<S, N, V>(simd, 1.0) / length);
+            for corner in 0..3 {
+                let arm = minus(&seen.corners[corner], &start);
+                self.in_face.put([corner, side], dot(&inward, &arm), tolerance);
+                if side == 0 {
+                    (-dot(&outward, &arm) * slope).store(&mut self.depths[corner]);
+                }
+            }
+        }
+        is_long
+    }
+
+    /// How far inside of the sides of the triangles the corners of the face are, and how far from their planes.
+    #[inline(always)]
+    fn measure_triangles<S: Simd, V: Wide<S, Scalar = N>>(
+        &mut self,
+        simd: S,
+        seen: &SeenTriangles<V>,
+        tolerance: V,
+    ) {
+        let slope = lit::<S, N, V>(simd, 1.0) / seen.rise;
+        for at in 0..self.ring.count {
+            let vertex: [V; 3] = spread(simd, &self.vertex(at));
+            for side in 0..3 {
+                let arm = minus(&vertex, &seen.corners[side]);
+                self.in_triangle.put([at, side], dot(&seen.inward[side], &arm), tolerance);
+                if side == 0 {
+                    (dot(&seen.across, &arm) * slope).store(&mut self.vertex_depths[at]);
+                }
+            }
+        }
+    }
+
+    /// The number of sides of what the solid shows: of a corner none, of an edge one.
+    #[inline(always)]
+    pub(super) const fn sides(&self) -> usize {
+        let count = self.ring.count;
+        if count < 3 { count - 1 } else { count }
+    }
+
+    /// A corner of what the solid shows.
+    #[inline(always)]
+    pub(super) fn vertex(&self, at: usize) -> Vector<N, 3> {
+        let [x, y, z] = &self.ring.corners;
+        Vector::<N, 3>::new(x[at], y[at], z[at])
+    }
+}
+
+/// Triangles and the normals that they are seen along.
+struct SeenTriangles<V> {
+    corners: [[V; 3]; 3],
+    normal: [V; 3],
+    /// The sides and their squared lengths, and the product of the first two.
+    sides: [[V; 3]; 3],
+    squared: [V; 3],
+    across: [V; 3],
+    /// Twice the area that is seen; negative from behind.
+    rise: V,
+    /// Unit, across the normal, into the triangle, and the lengths of the sides as they are seen.
+    inward: [[V; 3]; 3],
+    lengths: [V; 3],
+}
+
+impl<V> SeenTriangles<V> {
+    #[inline(always)]
+    fn new<S: Simd, N: Real>(simd: S, corners: &[[V; 3]; 3], normal: &[V; 3]) -> Self
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let [a, b, c] = corners;
+        let sides = [minus(b, a), minus(c, b), minus(a, c)];
+        let squared =
+            [dot(&sides[0], &sides[0]), dot(&sides[1], &sides[1]), dot(&sides[2], &sides[2])];
+        let across = cross(&sides[0], &sides[1]);
+        let rise = dot(&across, normal);
+        let one: V = lit(simd, 1.0);
+        let turn = rise.simd_lt(V::all(simd, N::ZERO)).select(-one, one);
+        let (mut inward, mut lengths) = (sides, squared);
+        for (own, length) in inward.iter_mut().zip(&mut lengths) {
+            let way = cross(normal, own);
+            *length = norm(&way);
+            *own = times(&way, turn / *length);
+        }
+        Self { corners: *corners, normal: *normal, sides, squared, across, rise, inward, lengths }
+    }
+
+    /// What the triangles show along the normals, by the rule of
+    /// [`core_feature`](crate::shape::SupportMap::core_feature), and where that is clear and has an extent.
+    #[inline(always)]
+    fn shown<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (ShownBits, V::Mask)
+    where
+        V: Wide<S, Scalar = N>,
+    {
+        let (zero, limit) = (V::all(simd, N::ZERO), lit::<S, N, V>(simd, FACING_SINE_SQUARED));
+        let less = lit::<S, N, V>(simd, 1.0 - CLEAR);
+        let longest = self.squared[0].larger(self.squared[1]).larger(self.squared[2]);
+        let (area, rise) = (dot(&self.across, &self.across), self.rise * self.rise);
+        let is_wide = area.simd_gt(lit::<S, N, V>(simd, THIN_SQUARED) * longest * longest)
+            & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
+        let upright = lit::<S, N, V>(simd, 1.0 - FACING_SINE_SQUARED) * area;
+        let is_face = is_wide & upright.simd_lt(rise * less);
+        let is_steep = is_wide & rise.simd_lt(upright * less);
+        // The corner that is farthest along the normal, and how steep the sides at it are.
+        let climbs = [
+            dot(&self.sides[0], &self.normal),
+            dot(&self.sides[1], &self.normal),
+            dot(&self.sides[2], &self.normal),
+        ];
+        let second = climbs[0].simd_gt(zero);
+        let third = (climbs[0] + climbs[1]).simd_gt(second.select(climbs[0], zero));
+        let tops = [!second & !third, second & !third, third];
+        let slopes = [
+            climbs[0] * climbs[0] / self.squared[0],
+            climbs[1] * climbs[1] / self.squared[1],
+            climbs[2] * climbs[2] / self.squared[2],
+        ];
+        let at = |of: [V; 3]| tops[0].select(of[0], tops[1].select(of[1], of[2]));
+        let (out, back) = (at(slopes), at([slopes[2], slopes[0], slopes[1]]));
+        let is_back = back.simd_lt(out);
+        let (least, other) = (is_back.select(back, out), is_back.select(out, back));
+        let is_corner = is_steep & limit.simd_lt(least * less);
+        let is_side = is_steep & least.simd_lt(limit * less) & least.simd_lt(other * less);
+        let mut bits_of = ShownBits {
+            face: bits(is_face),
+            back: bits(is_face & self.rise.simd_lt(zero)),
+            ..ShownBits::default()
+        };
+        let mut is_plain = is_face | is_corner | is_side;
+        for side in 0..3 {
+            let is_own = (tops[side] & !is_back) | (tops[(side + 1) % 3] & is_back);
+            let is_shown = is_face | (is_side & is_own);
+            let is_long = self.lengths[side].simd_gt(tolerance + tolerance);
+            is_plain &= is_long | !is_shown;
+            bits_of.sides[side] = bits(is_shown);
+            bits_of.corners[side] |= bits(is_shown | (is_corner & tops[side]));
+            bits_of.corners[(side + 1) % 3] |= bits(is_shown);
+        }
+        // A face without width counts as a segment.
+        let width = (tolerance + tolerance) * longest.sqrt();
+        (bits_of, is_plain & (self.rise.abs().simd_gt(width) | !is_face))
+    }
+}

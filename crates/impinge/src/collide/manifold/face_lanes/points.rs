@@ -1,0 +1,211 @@
+//! The points of one triangle, made of what is measured.
+
+use super::TriangleAsked;
+use super::measure::FaceClip;
+use crate::collide::{RawPoint, RawPoints};
+use crate::math::{Point, Real, Vector, max, min};
+use crate::shape::FeatureId;
+
+impl<N: Real> FaceClip<N> {
+    /// Appends the points of one triangle, and answers their least distance; `None` where the clip of the pair is
+    /// needed.
+    pub(super) fn points_of(
+        &self,
+        lane: usize,
+        asked: &TriangleAsked<N>,
+        prediction: N,
+        points: &mut RawPoints<N, 3>,
+    ) -> Option<N> {
+        let is_plain = self.plain >> lane & 1 == 1;
+        // Two edges may be parallel, two corners coincide.
+        let has_area = self.ring.count > 2 || self.shown.face >> lane & 1 == 1;
+        if !(is_plain && has_area) {
+            return None;
+        }
+        let (tolerance, first) = (self.tolerance[lane], points.len());
+        let mut found = FoundPoints { asked, prediction, tolerance, points, first };
+        let one = LaneClip { clip: self, lane, normal: &asked.normal };
+        let is_clear = one.corners(&mut found).and_then(|()| one.vertices(&mut found)).is_some();
+        if is_clear {
+            one.crossings(&mut found);
+        }
+        let lowest = found.lowest().filter(|_| is_clear);
+        if lowest.is_none() {
+            points.truncate(first);
+        }
+        lowest
+    }
+}
+
+/// The points of one triangle as they are found.
+struct FoundPoints<'a, N: Real> {
+    asked: &'a TriangleAsked<N>,
+    prediction: N,
+    tolerance: N,
+    points: &'a mut RawPoints<N, 3>,
+    /// The number of its first point.
+    first: usize,
+}
+
+impl<N: Real> FoundPoints<'_, N> {
+    /// The least distance, infinite of no points. `None` if the nearest points are known, and none is that near.
+    fn lowest(&mut self) -> Option<N> {
+        let new = &mut self.points[self.first..];
+        let lowest = new.iter().fold(N::INFINITY, |lowest, point| min(point.distance, lowest));
+        let Some(nearest) = self.asked.nearest else { return Some(lowest) };
+        // NaN is not near.
+        let is_reached = lowest <= nearest + self.tolerance;
+        let deepest = new.iter_mut().find(|point| point.distance == lowest)?;
+        deepest.distance = nearest;
+        is_reached.then_some(nearest)
+    }
+
+    /// Adds a point of the triangle, from which the face of the solid is a distance away, if that is asked for.
+    fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
+        let TriangleAsked { normal, nearest, least, .. } = self.asked;
+        let mut distance = max(distance, nearest.unwrap_or(distance));
+        // NaN is not near.
+        let is_near = distance <= self.prediction + self.tolerance;
+        if !is_near || distance < *least - self.tolerance {
+            return;
+        }
+        distance = max(min(distance, self.prediction), *least);
+        let point1 = Point::from(point + normal * distance);
+        // What coincides is found from both.
+        let near = N::lit(4.0) * self.tolerance;
+        let is_same = |old: &RawPoint<N, 3>| {
+            let way = old.point1 - point1;
+            [old.feature1, old.feature2] == [feature1, feature2]
+                && (way - normal * normal.dot(&way)).norm() <= near
+        };
+        if self.points[self.first..].iter().any(is_same) {
+            return;
+        }
+        self.points.push(RawPoint { point1, distance, feature1, feature2, id: 0, code: 0 });
+    }
+}
+
+/// One lane of a clip.
+struct LaneClip<'a, N: Real> {
+    clip: &'a FaceClip<N>,
+    lane: usize,
+    normal: &'a Vector<N, 3>,
+}
+
+impl<N: Real> LaneClip<'_, N> {
+    fn has(&self, bits: u8) -> bool {
+        bits >> self.lane & 1 == 1
+    }
+
+    fn corner(&self, corner: usize) -> Vector<N, 3> {
+        let [x, y, z] = &self.clip.corners[corner];
+        Vector::<N, 3>::new(x[self.lane], y[self.lane], z[self.lane])
+    }
+
+    /// Corners of what the triangle shows in the face; `None` if one lies on the line of the edge that the solid shows.
+    fn corners(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
+        let FaceClip { ring, in_face, shown, depths, .. } = self.clip;
+        if ring.count < 3 {
+            let is_on = (0..3).any(|corner| self.has(in_face.is_on[corner]));
+            return (ring.count < 2 || !is_on).then_some(());
+        }
+        for corner in 0..3 {
+            if !self.has(shown.corners[corner] & !in_face.is_beyond[corner]) {
+                continue;
+            }
+            let (at, id) = (self.corner(corner), FeatureId::Vertex([0, 1, 2][corner]));
+            let features = [self.part_of_face(corner, &at).unwrap_or(ring.id), id];
+            found.push(&at, depths[corner][self.lane], features);
+        }
+        Some(())
+    }
+
+    /// Corners of the face in that of the triangle; `None` if one lies on the line of a side that the triangle shows.
+    fn vertices(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
+        let FaceClip { ring, in_triangle, shown, vertex_depths, .. } = self.clip;
+        let face = FeatureId::Face(u32::from(self.has(shown.back)));
+        for (vertex, depths) in vertex_depths.iter().enumerate().take(ring.count) {
+            if !self.has(shown.face) {
+                let is_on = |side| self.has(in_triangle.on(vertex, side) & shown.sides[side]);
+                if (0..3).any(is_on) {
+                    return None;
+                }
+            } else if !self.has(in_triangle.is_beyond[vertex]) {
+                let (at, distance) = (self.clip.vertex(vertex), depths[self.lane]);
+                let part = self.part_of_triangle(vertex, &at).unwrap_or(face);
+                found.push(&(at - self.normal * distance), distance, [ring.ids[vertex], part]);
+            }
+        }
+        Some(())
+    }
+
+    /// The side or corner of the triangle that a corner of the face lies on.
+    fn part_of_triangle(&self, vertex: usize, at: &Vector<N, 3>) -> Option<FeatureId> {
+        let in_triangle = &self.clip.in_triangle;
+        if !self.has(in_triangle.is_on[vertex]) {
+            return None;
+        }
+        let named = |corner: usize| {
+            let number = [0, 1, 2][corner];
+            (self.corner(corner), FeatureId::Vertex(number), FeatureId::Edge(number))
+        };
+        let sides = (0..3).filter(|side| self.has(in_triangle.on(vertex, *side)));
+        self.part_with(at, sides, |side| [named(side), named((side + 1) % 3)])
+    }
+
+    /// The side or corner of the face that a corner of the triangle faces.
+    fn part_of_face(&self, corner: usize, at: &Vector<N, 3>) -> Option<FeatureId> {
+        let FaceClip { ring, in_face, .. } = self.clip;
+        if !self.has(in_face.is_on[corner]) {
+            return None;
+        }
+        let named = |side: usize| (self.clip.vertex(side), ring.ids[side], ring.sides[side]);
+        let sides = (0..ring.count).filter(|side| self.has(in_face.on(corner, *side)));
+        self.part_with(at, sides, |side| [named(side), named((side + 1) % ring.count)])
+    }
+
+    /// Sides that cross well inside both.
+    fn crossings(&self, found: &mut FoundPoints<'_, N>) {
+        let FaceClip { ring, in_face, in_triangle, crossed, .. } = self.clip;
+        for side in 0..3 {
+            let ends = [side, (side + 1) % 3];
+            for other in (0..self.clip.sides()).filter(|other| self.has(crossed[side][*other])) {
+                let others = [other, (other + 1) % ring.count];
+                let (share, start) = (in_face.share(ends, other, self.lane), self.corner(side));
+                let point = start + (self.corner(ends[1]) - start) * share;
+                let (share, start) =
+                    (in_triangle.share(others, side, self.lane), self.clip.vertex(other));
+                let facing = start + (self.clip.vertex(others[1]) - start) * share;
+                let distance = self.normal.dot(&(facing - point));
+                let id = FeatureId::Edge([0, 1, 2][side]);
+                found.push(&point, distance, [ring.sides[other], id]);
+            }
+        }
+    }
+
+    /// The part of a ring that a place lies on which is on the lines of some of its sides: of the last of them a corner
+    /// or the side itself. Each side is given by its corners, each with its name and that of the side that leaves it.
+    fn part_with(
+        &self,
+        at: &Vector<N, 3>,
+        sides: impl Iterator<Item = usize>,
+        ends: impl Fn(usize) -> [(Vector<N, 3>, FeatureId, FeatureId); 2],
+    ) -> Option<FeatureId> {
+        let room = N::TWO * self.clip.tolerance[self.lane];
+        let flat = |v: Vector<N, 3>| v - self.normal * self.normal.dot(&v);
+        let mut part = None;
+        for side in sides {
+            let [(from, from_id, side_id), (to, to_id, _)] = ends(side);
+            let (way, arm) = (flat(to - from), flat(at - from));
+            let share = arm.dot(&way);
+            if arm.norm() <= room {
+                part = Some(from_id);
+            } else if flat(at - to).norm() <= room {
+                part = Some(to_id);
+            } else if share >= N::ZERO && share <= way.norm_squared() {
+                part = Some(side_id);
+            }
+        }
+        part
+    }
+}

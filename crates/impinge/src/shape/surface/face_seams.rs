@@ -1,0 +1,221 @@
+//! What a triangle of a surface in 3D and those across its sides say of its normals, kept beside its corners.
+//!
+//! ```text
+//!            c
+//!           ╱ ╲
+//!    across╱   ╲across      front: the unit normal of the triangle
+//!         ╱front╲           across: those of the triangles beyond the sides
+//!        a───────b          bends: how the two lie at each side, where that is plain
+//!          across
+//! ```
+
+use crate::math::{Point, Real, Vector};
+use crate::shape::surface::bend::{Bend, BendShape};
+use crate::shape::surface::own_surface::OwnSurface;
+use crate::shape::{FeatureId, Surface, SurfaceAccess};
+
+/// A triangle with an area, and how it is bent against its neighbours.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FaceSeams<N: Real> {
+    /// Unit, in the frame of the surface.
+    pub(in crate::shape) front: Vector<N, 3>,
+    pub(in crate::shape) across: [Vector<N, 3>; 3],
+    /// `None` at a rim, and where only the surface can tell.
+    pub(in crate::shape) bends: [Option<BendShape>; 3],
+    pub(in crate::shape) is_one_sided: bool,
+    /// The triangles across the sides are known to have their fronts on the same side.
+    is_oriented: bool,
+}
+
+impl<N: Real> FaceSeams<N> {
+    /// A triangle by its front and what lies across its sides: how they are bent, with the fronts of both triangles, or
+    /// whether there is nothing.
+    pub(in crate::shape) fn new(
+        front: Vector<N, 3>,
+        is_one_sided: bool,
+        bend: impl Fn(usize) -> Option<Bend<N>>,
+        is_rim: impl Fn(usize) -> bool,
+    ) -> Self {
+        let (mut across, mut bends, mut is_oriented) = ([front; 3], [None; 3], true);
+        for side in 0..3 {
+            match bend(side) {
+                Some(bend) => (across[side], bends[side]) = (bend.fronts()[1], Some(bend.shape())),
+                None => is_oriented &= is_rim(side),
+            }
+        }
+        Self { front, across, bends, is_one_sided, is_oriented }
+    }
+
+    /// A face of the triangle is its front, and the triangles around have theirs on the same side: where all faces that
+    /// are touched are such, none hides another.
+    pub(crate) fn is_front(&self, face: &Vector<N, 3>) -> bool {
+        self.is_oriented && self.front.dot(face) > N::ZERO
+    }
+
+    /// The surface, of which this triangle answers what it knows; `corner` is one of its own.
+    pub(crate) fn in_surface<'a>(
+        &'a self,
+        surface: SurfaceAccess<'a, N, 3>,
+        corner: &'a Point<N, 3>,
+    ) -> KnownFace<'a, N> {
+        KnownFace { seams: self, surface, corner }
+    }
+
+    /// A triangle across one of the sides that meet at a corner is known not to be level with this one.
+    pub(in crate::shape) fn is_bent_at(&self, corner: usize) -> bool {
+        let is_bent = |bend: Option<BendShape>| bend.is_some_and(|bend| bend != BendShape::Flat);
+        is_bent(self.bends[corner]) || is_bent(self.bends[(corner + 2) % 3])
+    }
+
+    /// Whether a unit vector that is not the face's own normal is one that a side has; `None` where only the
+    /// surface can tell.
+    fn side_admits(&self, side: usize, normal: &Vector<N, 3>) -> Option<bool> {
+        let bend = Bend::of(self.bends[side]?, [self.front, self.across[side]]);
+        bend.admits(normal, self.is_one_sided)
+    }
+}
+
+/// One triangle of a surface: the answers of the surface, most without a look at it.
+///
+/// It is asked about normals that differ from the face's own by more than rounding.
+pub(crate) struct KnownFace<'a, N: Real> {
+    seams: &'a FaceSeams<N>,
+    surface: SurfaceAccess<'a, N, 3>,
+    corner: &'a Point<N, 3>,
+}
+
+impl<N: Real> Surface<N, 3> for KnownFace<'_, N> {
+    fn admits(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
+        let known = match feature {
+            FeatureId::Edge(side) => self.seams.side_admits(side as usize % 3, normal),
+            _ => None,
+        };
+        known.unwrap_or_else(|| self.surface.admits(part, feature, normal))
+    }
+
+    fn snapped(&self, _: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
+        let FaceSeams { front, is_one_sided, .. } = *self.seams;
+        let is_front = is_one_sided || front.dot(normal) >= N::ZERO;
+        Some(if is_front { front } else { -front })
+    }
+
+    fn faces(&self, _: u32, center: &Point<N, 3>) -> bool {
+        let FaceSeams { front, is_one_sided, .. } = self.seams;
+        !(*is_one_sided && front.dot(&(center - self.corner)) < N::ZERO)
+    }
+}
+
+impl<N: Real> OwnSurface<N, 3> for KnownFace<'_, N> {
+    fn admits_in_turn(
+        &self,
+        part: u32,
+        feature: FeatureId,
+        normals: [&Vector<N, 3>; 2],
+    ) -> [bool; 2] {
+        match feature {
+            FeatureId::Vertex(corner) => {
+                let (corner, seams) = (corner as usize % 3, self.seams);
+                self.surface.corner_admits_in_turn(part, corner, seams, normals)
+            }
+            _ => {
+                let is_first = self.admits(part, feature, normals[0]);
+                [is_first, !is_first && self.admits(part, feature, normals[1])]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::noise::Noise;
+    use crate::shape::{CompositeShape, Diagonals, HeightField, PartSolid, TriMesh};
+
+    /// A rough sheet of triangles, some of them level.
+    fn heights(noise: &mut Noise) -> Vec<f64> {
+        (0..36).map(|at| if at % 5 < 2 { 0.0 } else { 0.5 * noise.next() }).collect()
+    }
+
+    fn mesh(noise: &mut Noise) -> TriMesh<f64, 3> {
+        let place = |(at, height): (usize, &f64)| {
+            Point::<f64, 3>::new((at % 6) as f64, *height, (at / 6) as f64)
+        };
+        let vertices = heights(noise).iter().enumerate().map(place).collect();
+        let cells = (0..30).filter(|at| at % 6 < 5);
+        let triangles = cells.flat_map(|at| [[at, at + 6, at + 7], [at, at + 7, at + 1]]);
+        TriMesh::new(vertices, triangles.collect())
+    }
+
+    fn field(noise: &mut Noise) -> HeightField<f64, 3> {
+        let size = Vector::<f64, 3>::new(5.0, 1.0, 5.0);
+        let mut field = HeightField::<f64, 3>::new(6, 6, heights(noise), size);
+        field.set_hole(2, 3, true);
+        field
+    }
+
+    /// What a triangle keeps answers as its surface does, about all normals but the triangle's own; counts the answers.
+    fn check(parts: &dyn CompositeShape<f64, 3>, noise: &mut Noise, counts: &mut [usize; 3]) {
+        let surface = parts.surface_access().expect("a surface");
+        for part in 0..parts.num_parts() {
+            let Some(seams) = surface.face_seams(part) else { continue };
+            let PartSolid::Triangle(triangle) = parts.part(part).solid else { panic!("triangles") };
+            let corner = triangle.corners()[0];
+            let known = seams.in_surface(surface, &corner);
+            for at in 0..180_u32 {
+                let aside: Vector<f64, 3> = noise.vector([1.0, 0.3, 0.02][at as usize % 3]);
+                let side = if at % 7 == 0 { -1.0 } else { 1.0 };
+                let far = (seams.front * side + aside).normalize();
+                let near = (seams.front * side + aside * 0.03).normalize();
+                let normals = [&far, &near];
+                let feature = match at / 3 % 2 {
+                    0 => FeatureId::Edge(at / 6 % 3),
+                    _ => FeatureId::Vertex(at / 6 % 3),
+                };
+                let (own, other) = (
+                    known.admits_in_turn(part, feature, normals),
+                    surface.admits_in_turn(part, feature, normals),
+                );
+                assert_eq!(own, other, "part {part}, {feature:?}, {far} {near}");
+                counts[if own[0] { 0 } else { 1 + usize::from(own[1]) }] += 1;
+                assert_eq!(known.snapped(part, &far), surface.snapped(part, &far), "part {part}");
+                let center = corner + far;
+                assert_eq!(known.faces(part, &center), surface.faces(part, &center), "{part}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_triangle_keeps_is_what_its_surface_says() {
+        let (mut noise, mut counts) = (Noise(3), [0; 3]);
+        for _ in 0..4 {
+            let (mesh, field) = (mesh(&mut noise), field(&mut noise));
+            let zigzag = field.clone().with_diagonals(Diagonals::Zigzag);
+            let mirrored = field.try_scaled(&Vector::<f64, 3>::new(-1.0, 2.0, 1.0));
+            let mirrored = mirrored.expect("finite");
+            let all: [Box<dyn CompositeShape<f64, 3>>; 6] = [
+                Box::new(mesh.clone()),
+                Box::new(mesh.one_sided()),
+                Box::new(field.clone()),
+                Box::new(field.one_sided()),
+                Box::new(zigzag),
+                Box::new(mirrored),
+            ];
+            for parts in &all {
+                check(parts.as_ref(), &mut noise, &mut counts);
+            }
+        }
+        assert!(counts.iter().all(|&count| count > 1000), "all of it is met: {counts:?}");
+    }
+
+    #[test]
+    fn seams_that_decide_nothing_are_not_kept() {
+        let mut noise = Noise(4);
+        let kept = mesh(&mut noise).with_internal_edges_kept().one_sided();
+        let surface = kept.surface_access().expect("a one-sided surface");
+        assert!(surface.face_seams(0).is_none(), "all edges count");
+        let [a, b] = [[0.0; 3], [1.0, 0.0, 0.0]].map(Point::<f64, 3>::from);
+        let thin = TriMesh::new(vec![a, b, a + (b - a) * 0.5], vec![[0, 1, 2]]);
+        let surface = thin.surface_access().expect("a surface");
+        assert!(surface.face_seams(0).is_none(), "without area there is no front");
+    }
+}
