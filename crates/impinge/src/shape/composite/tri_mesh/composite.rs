@@ -55,7 +55,7 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
         Some(self)
     }
 
-    fn as_mesh(&self) -> Option<&TriMesh<N, D>> {
+    fn as_mesh(&self) -> Option<&Self> {
         Some(self)
     }
 
