@@ -313,7 +313,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// Visits the objects of two leaf blocks: each of that with fewer near ones with those of the other.
-    fn meet(&mut self, pair: &BlockPair, room: f32) {
+    fn meet(&mut self, pair: &BlockPair, mut room: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
             masks[which] = self.held(which, pair, room).mask;
@@ -327,7 +327,6 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         let block = &other.layers[0].blocks[others as usize];
         for lane in Ones::<LANES>(masks[which]) {
             let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
-            let Some(room) = self.room() else { return };
             let aabb = self.question.object_in_other(which, id);
             let bounds = loosened(&Bounds::enclosing(&aabb), room);
             let near = TurnedBox { bounds, slabs: SmallVec::new() }.held(self.level, block).mask;
@@ -336,6 +335,8 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             let ids = ids.collect::<SmallVec<[u32; LANES]>>();
             if !ids.is_empty() {
                 self.question.visit(which, id, &ids);
+                let Some(shrunk) = self.room() else { return };
+                room = shrunk;
             }
         }
     }
