@@ -1,6 +1,7 @@
 """Triangle meshes: impinge beside Coal, and rays beside trimesh with Embree; answers first, then times.
 
-    python meshes.py [--quick] [--triangles 1000 10000 100000] [--poses 200] [--rays 300000] [--only WORD] [--out FOLDER]
+    python meshes.py [--quick] [--triangles 1000 10000 100000] [--ray-triangles 1000 82000] [--poses 200] [--rays 300000]
+                     [--only WORD] [--out FOLDER]
 
 Writes meshes.md, a table of each question of meshes with meshes and with convex solids, and rays.md. Needs impinge, coal,
 trimesh, embreex and scipy.
@@ -51,17 +52,20 @@ STRAIGHT = np.eye(3)
 def main() -> None:
     parser = arguments(__doc__)
     parser.add_argument("--triangles", type=int, nargs="+", default=[1_000, 10_000, 100_000], help="of each mesh, about")
+    parser.add_argument("--ray-triangles", type=int, nargs="+", default=[1_000, 10_000, 82_000, 100_000, 328_000],
+                        help="of each mesh that rays meet, about")
     parser.add_argument("--poses", type=int, default=200, help="of each case")
     parser.add_argument("--rays", type=int, default=300_000, help="of each kind")
     parser.add_argument("--only", default="", help="only pairs whose name contains this; `rays` for rays alone")
     options = parser.parse_args()
     if options.quick:
         options.triangles, options.poses, options.rays, options.rounds = [1_000], 20, 10_000, 2
+        options.ray_triangles = [1_000]
     options.out.mkdir(parents=True, exist_ok=True)
     line = machine(PACKAGES)
     rows = [row for pair in pairs(options) for row in pair_rows(*pair, options)]
     write_pairs(rows, line, options)
-    write_rays([row for count in options.triangles for row in ray_rows(count, options)], line, options)
+    write_rays([row for count in options.ray_triangles for row in ray_rows(count, options)], line, options)
 
 
 def pairs(options: argparse.Namespace) -> Iterator[tuple[Body, Body]]:

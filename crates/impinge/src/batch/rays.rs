@@ -7,7 +7,7 @@ use super::side::{PreparedSide, common_length, index_in};
 use super::{BatchError, Control, HitColumns, Side};
 use crate::bounding_volume::Ray;
 use crate::math::{Point, Real, Space, Vector};
-use crate::query::cast_at;
+use crate::query::{RayBatch, RayIntersection, cast_at, cast_many_on};
 
 /// Rays of the world as arrays of origins and directions, each against an element of a side: element `i` against ray
 /// `i`, or one of either against all of the other.
@@ -105,7 +105,20 @@ pub(super) fn cast<N: Space<D>, const D: usize>(
 ) -> Result<(), BatchError> {
     out.check(rays.len)?;
     let side = PreparedSide::new(&rays.side);
+    let alone = side.alone();
     Progress::new(control).run(rays.len, out, |range, mut out| {
+        if let Some((shape, pose)) = alone {
+            let local: Vec<_> =
+                range.map(|index| rays.ray(index).inverse_transformed_by(&pose)).collect();
+            let batch = RayBatch { rays: &local, max_time: rays.max_time, solid: rays.solid };
+            return cast_many_on(shape, &batch, &mut |slot, hit| {
+                let turned = |hit: RayIntersection<N, D>| RayIntersection {
+                    normal: pose.vector(&hit.normal),
+                    ..hit
+                };
+                out.put(slot, hit.map(turned).as_ref());
+            });
+        }
         for (slot, index) in range.enumerate() {
             let (shape, pose, ray) = (side.shape(index), side.pose(index), rays.ray(index));
             let hit = cast_at(shape, &pose, &ray, rays.max_time, rays.solid);

@@ -182,6 +182,11 @@ impl<'a, N: Space<D>, const D: usize> PreparedSide<'a, N, D> {
         Self { side: *side, poses: side.poses.len(), shape, only }
     }
 
+    /// The only element, if there is one.
+    pub(super) fn alone(&self) -> Option<(Geometry<'a, N, D>, Pose<N, D>)> {
+        self.shape.zip(self.only.as_ref()).map(|((_, geometry), (pose, _))| (geometry, *pose))
+    }
+
     /// The shape of an element.
     #[inline]
     pub(super) fn shape(&self, element: usize) -> &'a dyn Shape<N, D> {

@@ -95,10 +95,9 @@ impl<const D: usize> Bounds<D> {
     /// The largest magnitude of a coordinate; zero if a face is no finite number.
     #[inline]
     pub(super) fn size(&self) -> f32 {
-        let mut most = 0.0;
-        for face in self.lo.iter().chain(&self.hi) {
-            most = if face.abs() > most { face.abs() } else { most };
-        }
+        let larger = |a: f32, b: f32| if a > b { a } else { b };
+        let most = (0..D)
+            .fold(0.0, |most, axis| larger(larger(self.lo[axis].abs(), self.hi[axis].abs()), most));
         if self.is_finite() { most } else { 0.0 }
     }
 

@@ -144,7 +144,8 @@ impl<S: Simd> WideBlock<S> {
     pub(super) fn least_key(self, keys: &[f32; LANES], mask: u32) -> usize {
         let (first, last) = (mask.trailing_zeros() as usize, 31 - mask.leading_zeros() as usize);
         if mask.count_ones() <= 2 {
-            return if keys[first] <= keys[last] { first } else { last };
+            // In place of a branch, which is a coin toss.
+            return [first, last][usize::from(keys[last] < keys[first])];
         }
         let simd = self.0;
         let wanted = mask32x16::from_bitmask(simd, u64::from(mask));

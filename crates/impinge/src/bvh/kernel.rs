@@ -24,6 +24,13 @@ impl Lanes {
         Self(Level::new())
     }
 
+    /// More than the vectors that these are, if the machine has it.
+    #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+    pub(super) fn avx512(self) -> Option<fearless_simd::Avx512> {
+        let is_best = matches!(self.0, Level::Wide(_));
+        is_best.then(|| fearless_simd::Level::new().as_avx512()).flatten()
+    }
+
     /// No vectors: the definition that the others are tested against.
     #[cfg(test)]
     pub(crate) const fn scalar() -> Self {
@@ -67,7 +74,22 @@ macro_rules! with_kernel {
         }
     };
 }
-pub(super) use with_kernel;
+/// [`with_kernel!`] with AVX-512 where the machine has it, for what gains from masks and wide registers.
+macro_rules! with_widest_kernel {
+    ($lanes:expr, $kernel:ident => $body:expr) => {{
+        #[cfg(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2"))]
+        match $lanes.avx512() {
+            Some(simd) => $crate::math::lanes::vectorized!(simd, {
+                let $kernel = $crate::bvh::kernel::WideBlock(simd);
+                $body
+            }),
+            None => $crate::bvh::kernel::with_kernel!($lanes, $kernel => $body),
+        }
+        #[cfg(not(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "sse2")))]
+        $crate::bvh::kernel::with_kernel!($lanes, $kernel => $body)
+    }};
+}
+pub(super) use {with_kernel, with_widest_kernel};
 
 /// Pairs of numbers, in two arrays so that sixteen can be stored at once.
 ///
@@ -165,6 +187,19 @@ pub(super) trait Kernel: Copy {
         keys: &mut [f32; LANES],
     ) -> u32;
 
+    /// The lanes of [`Self::enter`], and the least of their keys; a key has its lane in the lowest four bits, which makes it
+    /// no later, and that of a lane that is not entered is the largest number.
+    fn enter_nearest<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [u32; LANES],
+    ) -> (u32, u32);
+
+    /// The least of such keys.
+    fn least_lane_key(self, keys: &[u32; LANES]) -> u32;
+
     /// The lanes that may be as near as `limit`, and the squares of their distances, or a little less,
     /// in the units of the gaps. Never without a lane that is; a finite limit leaves out empty lanes.
     fn apart<const D: usize>(
@@ -210,6 +245,26 @@ impl Kernel for Scalar {
         self.enter_block(block, slabs, limit, keys)
     }
 
+    fn enter_nearest<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [u32; LANES],
+    ) -> (u32, u32) {
+        let mut times = [0.0; LANES];
+        let mask = self.enter_block(block, slabs, limit, &mut times);
+        for (lane, key) in (0..).zip(keys.iter_mut()) {
+            let is_entered = mask >> lane & 1 == 1;
+            *key = if is_entered { times[lane as usize].to_bits() & !15 | lane } else { u32::MAX };
+        }
+        (mask, self.least_lane_key(keys))
+    }
+
+    fn least_lane_key(self, keys: &[u32; LANES]) -> u32 {
+        keys.iter().fold(u32::MAX, |least, &key| least.min(key))
+    }
+
     fn apart<const D: usize>(
         self,
         block: &Block<D>,
@@ -247,7 +302,7 @@ fn push_bits(list: &mut TaskList, first: u32, base: u32, mut mask: u32) {
 pub(super) struct WideBlock<S>(pub(super) S);
 
 /// 0 to 15.
-const IOTA: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+pub(super) const IOTA: [u32; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 
 impl<S: Simd> Kernel for WideBlock<S> {
     #[inline(always)]
@@ -283,6 +338,22 @@ impl<S: Simd> Kernel for WideBlock<S> {
         keys: &mut [f32; LANES],
     ) -> u32 {
         self.enter_block(block, slabs, limit, keys)
+    }
+
+    #[inline(always)]
+    fn enter_nearest<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [u32; LANES],
+    ) -> (u32, u32) {
+        self.enter_block_nearest(block, slabs, limit, keys)
+    }
+
+    #[inline(always)]
+    fn least_lane_key(self, keys: &[u32; LANES]) -> u32 {
+        u32x16::load_array_ref(self.0, keys).reduce_min()
     }
 
     #[inline(always)]

@@ -49,6 +49,7 @@ mod renewal;
 mod schedule;
 mod slabs;
 mod still;
+mod stream;
 mod tree;
 mod triangles;
 mod two;
@@ -67,8 +68,9 @@ pub(crate) use near_first::{GROUP, RayProbe};
 pub(crate) use ordered::{Frontier, Keys};
 pub(crate) use ranked::{BoxRanking, visit_ranked};
 pub(crate) use slabs::Slabs;
+pub(crate) use stream::{RAYS, RayVisitor, Walk};
 pub(crate) use tree::{NONE, Tree};
-pub(crate) use triangles::{ShearedLine, Triangles};
+pub(crate) use triangles::{ShearedLine, TriangleAt, Triangles};
 pub(crate) use two::{Toward, TreeMeeting, TreePair, visit_meetings, visit_pairs};
 
 /// Below this many objects nothing runs in parallel: waking a thread costs more than it saves.

@@ -12,11 +12,11 @@ use super::gaps::Gaps;
 use super::kernel::{Kernel, with_kernel};
 use super::slabs::Slabs;
 use super::tree::small;
-use super::triangles::{ShearedLine, Triangles};
+use super::triangles::{ShearedLine, TriangleAt, Triangles};
 use super::{Block, Bounds, LANES, Lanes, NONE, Tree};
 
 /// Layers that a tree may have: 2^32 objects make eight.
-const LAYERS: usize = 8;
+pub(super) const LAYERS: usize = 8;
 
 /// Objects are handed out by so many at most: what is known about them lies anywhere in memory, and is
 /// fetched together faster than one by one.
@@ -296,7 +296,7 @@ impl Tree<3> {
         triangles: &[Triangles],
         probe: &RayProbe,
         limit: f32,
-        mut found: impl FnMut(u32, &Triangles, usize) -> f32,
+        mut found: impl FnMut(TriangleAt<'_>) -> f32,
     ) {
         if !self.is_empty() {
             with_kernel!(self.lanes, kernel => {
@@ -312,7 +312,7 @@ impl Tree<3> {
         triangles: &[Triangles],
         probe: &RayProbe,
         limit: f32,
-        found: &mut impl FnMut(u32, &Triangles, usize) -> f32,
+        found: &mut impl FnMut(TriangleAt<'_>) -> f32,
     ) {
         self.descend(
             kernel,
@@ -328,7 +328,7 @@ impl Tree<3> {
                     mask &= mask - 1;
                     let id = self.ids[block as usize * LANES + lane];
                     if id != NONE {
-                        limit = found(id, own, lane);
+                        limit = found(TriangleAt { id, block: own, lane });
                     }
                 }
                 limit

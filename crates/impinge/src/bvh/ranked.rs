@@ -97,7 +97,10 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
 
     /// Visits an object that may be all that is asked for, if its box is within a distance of the gaps.
     fn guess(&mut self, within: f32) {
-        let likely = self.question.guess_near().and_then(|point| self.tree.slot_near(&point));
+        let likely = self
+            .question
+            .guess_near()
+            .and_then(|point| self.tree.slot_near(&filled(|axis| point[axis].as_f32())));
         let Some(slot) = likely else { return };
         let (block, lane) = (slot / small(LANES), slot % small(LANES));
         let near = self.tree.opened_around(&self.gaps, 0, block, within);

@@ -1,20 +1,32 @@
 //! A box that moves, made ready to be held against blocks: the slab test in `f32`, never too strict.
 
-use super::kernel::{Scalar, WideBlock, low_half};
+use super::kernel::{IOTA, Scalar, WideBlock, low_half};
 use super::{Block, LANES};
 use crate::bounding_volume::Aabb;
-use crate::math::{Real, Vector, filled, max_component};
-use fearless_simd::{Simd, SimdBase, f32x16};
+use crate::math::{Mapped, Real, Vector, filled, max_component};
+use fearless_simd::{Bytes, Select, Simd, SimdBase, SimdMask, f32x16, u32x16};
 
 /// Slower than this, in units of the fastest component, counts as this: on the way past a tree that
 /// leads astray by less than the padding.
 const SLOWEST: f32 = f32::from_bits(27 << 23);
 
 /// Rounding units of `f32` by which the moving box is padded, in units of all coordinates.
-const PADDING: f32 = 4.0;
+const PADDING: f32 = 5.0;
 
 /// Rounding units of `f32` by which quotients may be off.
 const QUOTIENT: f32 = 8.0;
+
+/// A number or a limit, whichever is less; NaN stays.
+#[inline(always)]
+fn at_most(x: f32, limit: f32) -> f32 {
+    if x > limit { limit } else { x }
+}
+
+/// A number or a limit, whichever is more; NaN stays.
+#[inline(always)]
+fn at_least(x: f32, limit: f32) -> f32 {
+    if x < limit { limit } else { x }
+}
 
 /// A moving box as blocks see it. A ray is a box that is a point.
 ///
@@ -33,6 +45,7 @@ pub(crate) struct Slabs<const D: usize> {
 
 impl<const D: usize> Slabs<D> {
     /// The box `moving` with a finite velocity, for boxes with coordinates up to `size`.
+    #[inline(always)]
     pub(crate) fn new<N: Real>(moving: &Aabb<N, D>, velocity: &Vector<N, D>, size: f32) -> Self {
         let speed = max_component(velocity);
         let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
@@ -45,16 +58,17 @@ impl<const D: usize> Slabs<D> {
             }
         }
         let pad = PADDING * f32::EPSILON * reach + f32::MIN_POSITIVE;
-        let low = |axis: usize| moving.mins()[axis].as_f32_below() - pad;
-        let high = |axis: usize| moving.maxs()[axis].as_f32_above() + pad;
-        let is_back = |axis: usize| direction[axis] < 0.0;
+        // All first and selected then: which way a ray goes is a coin toss that no processor foresees.
+        let low = filled(|axis| at_most(moving.mins()[axis].as_f32(), f32::MAX) - pad);
+        let high = filled(|axis| at_least(moving.maxs()[axis].as_f32(), -f32::MAX) + pad);
+        let inverse = filled(|axis| 1.0 / f32::max(direction[axis].abs(), SLOWEST));
+        let chosen = |back: [f32; D], on: [f32; D]| {
+            filled(|axis| if direction[axis] < 0.0 { back[axis] } else { on[axis] })
+        };
         Self {
-            front: filled(|axis| if is_back(axis) { low(axis) } else { high(axis) }),
-            back: filled(|axis| if is_back(axis) { high(axis) } else { low(axis) }),
-            inverse: filled(|axis| {
-                let speed = f32::max(direction[axis].abs(), SLOWEST);
-                if is_back(axis) { -1.0 / speed } else { 1.0 / speed }
-            }),
+            front: chosen(low, high),
+            back: chosen(high, low),
+            inverse: chosen(inverse.mapped(|x: f32| -x), inverse),
             unit: unit.as_f64(),
         }
     }
@@ -121,6 +135,38 @@ impl<S: Simd> WideBlock<S> {
         limit: f32,
         keys: &mut [f32; LANES],
     ) -> u32 {
+        let (enter, leave) = self.times(block, slabs, limit);
+        enter.store_slice(keys);
+        low_half(enter.simd_le(leave).to_bitmask())
+    }
+
+    /// See [`Kernel::enter_nearest`](super::kernel::Kernel::enter_nearest).
+    #[inline(always)]
+    pub(super) fn enter_block_nearest<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+        keys: &mut [u32; LANES],
+    ) -> (u32, u32) {
+        let simd = self.0;
+        let (enter, leave) = self.times(block, slabs, limit);
+        let is_entered = enter.simd_le(leave);
+        let lanes = u32x16::load_array_ref(simd, &IOTA);
+        let with_lane = enter.bitcast::<u32x16<S>>() & u32x16::splat(simd, !15) | lanes;
+        let all = is_entered.select(with_lane, u32x16::splat(simd, u32::MAX));
+        all.store_slice(keys);
+        (low_half(is_entered.to_bitmask()), all.reduce_min())
+    }
+
+    /// When the box enters and leaves those of the block, from zero to `limit`.
+    #[inline(always)]
+    fn times<const D: usize>(
+        self,
+        block: &Block<D>,
+        slabs: &Slabs<D>,
+        limit: f32,
+    ) -> (f32x16<S>, f32x16<S>) {
         let simd = self.0;
         let mut enter = f32x16::splat(simd, 0.0);
         let mut leave = f32x16::splat(simd, limit);
@@ -132,15 +178,14 @@ impl<S: Simd> WideBlock<S> {
             enter = first.max(enter);
             leave = last.min(leave);
         }
-        enter.store_slice(keys);
-        low_half(fearless_simd::SimdMask::to_bitmask(enter.simd_le(leave)))
+        (enter, leave)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::Bounds;
-    use super::super::kernel::{Kernel, Lanes, with_kernel};
+    use super::super::kernel::{Kernel, Lanes, with_kernel, with_widest_kernel};
     use super::*;
     use crate::math::Point;
 
@@ -184,6 +229,28 @@ mod tests {
                 for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
                     assert_eq!(own[lane], keys[lane], "{lanes:?}, lane {lane}");
                 }
+            }
+            let nearest = |lanes: Lanes| {
+                let mut keys = [0; LANES];
+                let limit = tight.limit(limit);
+                let found = with_kernel!(lanes, kernel => {
+                    kernel.enter_nearest(&block, &tight, limit, &mut keys)
+                });
+                let mut widest = [0; LANES];
+                let again = with_widest_kernel!(lanes, kernel => {
+                    kernel.enter_nearest(&block, &tight, limit, &mut widest)
+                });
+                assert_eq!((again, widest), (found, keys), "{lanes:?}");
+                (found, keys)
+            };
+            let ((mask, least), lane_keys) = nearest(Lanes::scalar());
+            assert_eq!(mask, expected, "the same lanes are entered");
+            assert_eq!(lane_keys.iter().min(), Some(&least), "the least is the first");
+            for (lane, key) in (0..).zip(lane_keys).filter(|&(_, key)| key != u32::MAX) {
+                assert!(key & 15 == lane && f32::from_bits(key - lane) <= keys[lane as usize]);
+            }
+            for lanes in Lanes::available() {
+                assert_eq!(nearest(lanes), ((mask, least), lane_keys), "{lanes:?}");
             }
             let (padded, keys) = ask(Lanes::scalar(), &slabs);
             assert_eq!(padded & expected, expected, "padding takes nothing away");

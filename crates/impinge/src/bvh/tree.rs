@@ -5,7 +5,6 @@ use super::order::Load;
 use super::renewal::Renewal;
 use super::schedule::Schedule;
 use super::{Block, Bounds, LANES, Lanes};
-use crate::math::{Point, Real, filled};
 use crate::memory::{Look, clone_fields};
 
 /// No id, or no slot.
@@ -204,10 +203,9 @@ impl<const D: usize> Tree<D> {
 
     /// The slot of an object that is likely to be near a point: in each block the child whose middle is nearest comes next,
     /// so that each layer is seen once. `None` where nothing is finite, or squares of distances are too large for `f32`.
-    pub(super) fn slot_near<N: Real>(&self, point: &Point<N, D>) -> Option<u32> {
-        let place = filled(|axis| point[axis].as_f32());
+    pub(super) fn slot_near(&self, place: &[f32; D]) -> Option<u32> {
         self.layers.iter().rev().try_fold(0, |at, layer| {
-            let lane = layer.blocks[at as usize].nearest_lane(&place)?;
+            let lane = layer.blocks[at as usize].nearest_lane(place)?;
             Some(at * small(LANES) + small(lane))
         })
     }

@@ -48,6 +48,14 @@ impl Triangles {
     }
 }
 
+/// Where a triangle is: its id and its lane of a block.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TriangleAt<'a> {
+    pub(crate) id: u32,
+    pub(crate) block: &'a Triangles,
+    pub(crate) lane: usize,
+}
+
 /// What rounding does to the position of a corner beside the line, in units of `f32`'s rounding and
 /// of how far the corner is from the origin of the line along it and across it.
 ///
@@ -77,6 +85,7 @@ pub(crate) struct ShearedLine {
 impl ShearedLine {
     /// The line of a ray that is finite and has a direction, for corners with coordinates up to `size`.
     /// `around` is a box around its origin that holds what rounding made of it before.
+    #[inline(always)]
     pub(crate) fn new<N: Real>(ray: &Ray<N, 3>, around: &Aabb<N, 3>, size: f32) -> Self {
         let along = ray.dir.iamax();
         let axes = [(along + 1) % 3, (along + 2) % 3, along];

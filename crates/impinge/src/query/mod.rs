@@ -38,7 +38,7 @@ pub use point::{Barycentric, PointLocation, PointProjection, PointQuery};
 pub(crate) use proximity::proximity_at;
 pub use proximity::{Proximity, proximity};
 pub use ray::{RayBatch, RayCast, RayIntersection};
-pub(crate) use ray::{cast_at, cast_on, surely_misses};
+pub(crate) use ray::{cast_at, cast_many_on, cast_on, surely_misses};
 pub(crate) use witness::in_world as witness_in_world;
 pub use witness::{Witness, witness};
 pub(crate) use witness::{witness_at, witness_between};

@@ -35,7 +35,7 @@ pub use composite::height_field::{Diagonal, Diagonals, HeightField};
 pub use composite::mesh_error::MeshError;
 pub use composite::polyline::Polyline;
 pub use composite::tri_mesh::{EdgeNeighbor, TriMesh};
-pub(crate) use composite::tri_mesh::{MeshByDimension, MeshEntries};
+pub(crate) use composite::tri_mesh::{MeshByDimension, MeshEntries, box_of_corners};
 pub use composite::{CompositeShape, Part, PartPath, PartSearch, PartSolid, Surface};
 pub use error::ShapeError;
 pub(crate) use face_ring::FaceRing;

@@ -25,11 +25,13 @@ use crate::convex::Separation;
 use crate::debug_render::{Sketch, sketch2, sketch3};
 use crate::math::{Point, Real, Space, Vector};
 use crate::narrow_phase::{DueContacts, update_lanes2, update_lanes3};
+use crate::query::composite::RayQuestion;
 use crate::query::mass::MassByDimension;
 use crate::query::point::{SurfacePoint, point2, point3};
-use crate::query::ray::{Span, ray2, ray3};
+use crate::query::ray::{Answers, Span, first_that, mesh3, ray2, ray3};
+use crate::query::{RayBatch, RayIntersection};
 use crate::shape::{
-    ConvexHull, ConvexPolygon, FeatureId, Kind, MeshByDimension, ShapeHandle, Triangle,
+    ConvexHull, ConvexPolygon, FeatureId, Kind, MeshByDimension, ShapeHandle, TriMesh, Triangle,
 };
 
 /// The algorithms that differ by dimension; [`Here`] has them, so that scalars keep their own names.
@@ -121,6 +123,23 @@ pub trait ByDimension<N: Real, const D: usize>:
 
     /// When the line of a ray is inside a solid.
     fn ray_span(solid: Kind<'_, N, D>, ray: &Ray<N, D>) -> Option<Span<N, D>>;
+
+    /// The first hit of a ray on a mesh.
+    fn first_on_mesh(
+        mesh: &TriMesh<N, D>,
+        question: &RayQuestion<N, D>,
+    ) -> Option<RayIntersection<N, D>>
+    where
+        N: Space<D>;
+
+    /// Those of many rays; `false` if there is no algorithm for many.
+    fn first_hits_on_mesh(
+        mesh: &TriMesh<N, D>,
+        batch: &RayBatch<'_, N, D>,
+        answer: Answers<'_, N, D>,
+    ) -> bool
+    where
+        N: Space<D>;
 
     /// The point of the boundary of a solid that is nearest to a point.
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D>;
@@ -230,6 +249,23 @@ impl<N: Real> ByDimension<N, 2> for Here {
 
     fn over(triangle: &Triangle<N, 2>, center: &Point<N, 2>, tolerance: N) -> Option<FeatureId> {
         over2(triangle, center, tolerance)
+    }
+
+    fn first_on_mesh(
+        mesh: &TriMesh<N, 2>,
+        question: &RayQuestion<N, 2>,
+    ) -> Option<RayIntersection<N, 2>>
+    where
+        N: Space<2>,
+    {
+        first_that(mesh, question, |_| true)
+    }
+
+    fn first_hits_on_mesh(_: &TriMesh<N, 2>, _: &RayBatch<'_, N, 2>, _: Answers<'_, N, 2>) -> bool
+    where
+        N: Space<2>,
+    {
+        false
     }
 
     fn ray_span(solid: Kind<'_, N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
@@ -347,6 +383,28 @@ impl<N: Real> ByDimension<N, 3> for Here {
 
     fn over(triangle: &Triangle<N, 3>, center: &Point<N, 3>, tolerance: N) -> Option<FeatureId> {
         over3(triangle, center, tolerance)
+    }
+
+    fn first_on_mesh(
+        mesh: &TriMesh<N, 3>,
+        question: &RayQuestion<N, 3>,
+    ) -> Option<RayIntersection<N, 3>>
+    where
+        N: Space<3>,
+    {
+        mesh3::first_on_mesh(mesh, question)
+    }
+
+    fn first_hits_on_mesh(
+        mesh: &TriMesh<N, 3>,
+        batch: &RayBatch<'_, N, 3>,
+        answer: Answers<'_, N, 3>,
+    ) -> bool
+    where
+        N: Space<3>,
+    {
+        mesh3::first_hits_on_mesh(mesh, batch, answer);
+        true
     }
 
     fn ray_span(solid: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {

@@ -14,10 +14,10 @@ use crate::narrow_phase::{
 };
 use crate::query::composite::{self, PartPoint, RayQuestion};
 use crate::query::point::{self, SurfacePoint};
-use crate::query::ray::{self, Span};
+use crate::query::ray::{self, Answers, Span};
 use crate::query::{
     self, ClosestPoints, Contact, ContactManifold, ContactPoint, Flight, Impact, ImpactOptions,
-    ManifoldView, Moving, PointLocation, PointProjection, Proximity, RayIntersection,
+    ManifoldView, Moving, PointLocation, PointProjection, Proximity, RayBatch, RayIntersection,
     TrackedContact, Witness, impact_of_flight, impact_of_pair, time_of_pair,
     witness_in_world as witness_of_placed,
 };
@@ -240,6 +240,13 @@ compiled! {
         max_time: N,
         solid: bool,
     ) -> Option<RayIntersection<N, D>> = ray::cast_on;
+
+    /// The first hits of many rays in the frame of a shape.
+    fn cast_many_on(
+        shape: Geometry<'_, N, D>,
+        batch: &RayBatch<'_, N, D>,
+        answer: Answers<'_, N, D>,
+    ) = ray::cast_many_on;
 
     /// A ray in the frame of a shape that stands at a pose.
     fn ray_within(ray: &Ray<N, D>, pose: &Pose<N, D>) -> Ray<N, D> = Ray::inverse_transformed_by;

@@ -3,37 +3,54 @@
 //! Depth first over pairs of blocks. The box around one block is turned into the frame of the other tree, once, and is
 //! held against the boxes in the other block, all at a time: along the axes of both frames, which part most boxes that
 //! are apart (Gottschalk, Lin and Manocha, "`OBBTree`", 1996, have the directions across two edges as well), and across
-//! its slab. Of two blocks the larger is opened. No queue: what is deepest in the box comes next.
+//! its slab. Of two blocks the larger is opened. No queue: what is deepest in the box comes next. Only where the nearest are
+//! asked for, best first (Hjaltason and Samet, "Incremental distance join algorithms for spatial databases", 1998), after a
+//! descent straight to two objects: their direction, and that between the middles of two blocks, part most that are beside
+//! each other.
 //!
-//! All is done in `f32`, with room for its rounding: what is left out is certainly beyond the reach.
+//! Boxes are held in `f32`, with room for its rounding: what is left out is certainly beyond the reach.
+
+use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
+use super::agenda::{Agenda, BlockPair, STACK};
+use super::near_pairs::Toward;
 use crate::bounding_volume::Aabb;
 use crate::bvh::block_slabs::BlockSlab;
 use crate::bvh::tree::small;
-use crate::bvh::{Block, Bounds, LANES, Tree};
+use crate::bvh::{Block, Bounds, LANES, NONE, Tree};
 use crate::math::lanes::{bits, with_lanes};
 use crate::math::ones::Ones;
 use crate::math::order::sort_few;
 use crate::math::simd::{Level, Simd};
-use crate::math::{Mapped, Pose, Real, Wide, filled, max_component};
+use crate::math::{Mapped, Pose, Real, Wide, filled, max_component, unit};
 
 /// Lanes that are treated at once.
 const HALF: usize = LANES / 2;
 /// Heights lose this to rounding, in units of `f32` of all lengths: 3 for a turn, as many for a sum of products, 2 for
 /// directions that are not quite unit, in up to three axes. The rest is reserve.
 const ROUNDING: f32 = 64.0;
-/// So many pairs of blocks are put off without memory of their own.
-const STACK: usize = 48;
-
 /// How two trees lie to each other, and what is done with pairs of their objects.
 pub(crate) trait TreeMeeting<N: Real, const D: usize> {
     /// The frame of the first (0) or the second (1) tree in that of the other.
     fn pose(&self, which: usize) -> &Pose<N, D>;
 
-    /// Objects that are farther apart are of no interest; `None` ends the search.
+    /// Objects that are farther apart are of no interest; it never grows, and `None` ends the search.
     fn reach(&self) -> Option<N>;
+
+    /// The reach shrinks to what is found: pairs of blocks come by how far they are apart, and not the deepest first.
+    fn is_for_nearest(&self) -> bool {
+        false
+    }
+
+    /// Gets two objects first that are likely to be near; they are visited again.
+    fn guess(&mut self, _objects: [u32; 2]) {}
+
+    /// Unit vectors toward the other tree, in the frame of each, that part the nearest objects so far.
+    fn best(&self) -> Option<Toward<N, D>> {
+        None
+    }
 
     /// A box around an object of the first (0) or the second (1) tree, in the frame of the other, but for rounding; if
     /// there are any near it, it is visited next.
@@ -42,13 +59,6 @@ pub(crate) trait TreeMeeting<N: Real, const D: usize> {
     /// Gets an object of the first (0) or the second (1) tree and all of one block of the other whose boxes are within
     /// its reach.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
-}
-
-/// A block of each tree.
-#[derive(Clone, Copy)]
-struct BlockPair {
-    layers: [u8; 2],
-    blocks: [u32; 2],
 }
 
 /// How the frame of one tree lies in that of the other.
@@ -79,6 +89,9 @@ struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
     level: Level,
     /// Rounding moves a gap by no more than this.
     room: f32,
+    /// The same in the scalar.
+    slack: N,
+    is_for_nearest: bool,
     question: &'q mut dyn TreeMeeting<N, D>,
 }
 
@@ -96,8 +109,17 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
         + max_component(&question.pose(1).translation).as_f32();
     let size = trees[0].size() + trees[1].size() + way;
     let room = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
-    let whole = BlockPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0] };
-    MeetingSearch { trees, turns, level: Level::new(), room, question }.run(whole);
+    let gap = f32::NEG_INFINITY;
+    let whole = BlockPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
+    let slack = N::lit(f64::from(ROUNDING) * f64::from(size)) * N::EPSILON;
+    let (level, is_for_nearest) = (Level::new(), question.is_for_nearest());
+    let mut search = MeetingSearch { trees, turns, level, room, slack, is_for_nearest, question };
+    if is_for_nearest {
+        search.guess(whole);
+        search.run(whole, BinaryHeap::new());
+    } else {
+        search.run(whole, SmallVec::<[BlockPair; STACK]>::new());
+    }
 }
 
 impl<const D: usize> Turn<D> {
@@ -186,22 +208,71 @@ impl<const D: usize> TurnedBox<D> {
 }
 
 impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
-    fn run(&mut self, whole: BlockPair) {
-        let mut stack = SmallVec::<[BlockPair; STACK]>::new();
-        stack.push(whole);
-        while let Some(pair) = stack.pop() {
-            let Some(reach) = self.question.reach() else { return };
-            let room = self.room + reach.as_f32_above();
+    fn run(&mut self, whole: BlockPair, mut agenda: impl Agenda) {
+        agenda.put(whole);
+        while let Some(pair) = agenda.take() {
+            let Some(room) = self.room() else { return };
+            if pair.gap > room || (self.is_for_nearest && self.is_beyond(&pair)) {
+                continue;
+            }
             match pair.layers {
                 [0, 0] => self.meet(&pair, room),
-                [_, 0] => self.open(0, &pair, room, &mut stack),
-                [0, _] => self.open(1, &pair, room, &mut stack),
+                [_, 0] => self.open(0, &pair, room, &mut agenda),
+                [0, _] => self.open(1, &pair, room, &mut agenda),
                 _ => {
                     let [one, other] =
                         [0, 1].mapped(|which| self.bounds(which, &pair).half_surface());
-                    self.open(usize::from(other > one), &pair, room, &mut stack);
+                    self.open(usize::from(other > one), &pair, room, &mut agenda);
                 }
             }
+        }
+    }
+
+    /// What is in two blocks is beyond the reach along the direction that parts the nearest objects so far, or along that
+    /// between the middles of their boxes. In the scalar, which tells more than `f32` about what is far away.
+    fn is_beyond(&self, pair: &BlockPair) -> bool {
+        let Some((best, reach)) = self.question.best().zip(self.question.reach()) else {
+            return false;
+        };
+        let limit = reach + self.slack;
+        if self.gap_along(&best, pair) > limit {
+            return true;
+        }
+        let poses = [0, 1].mapped(|which| self.question.pose(which));
+        let [one, other] = [0, 1].mapped(|which| self.bounds(which, pair).as_aabb().center());
+        unit(&(poses[1].point(&other) - one)).is_some_and(|(along, _)| {
+            self.gap_along(&[along, poses[0].vector(&-along)], pair) > limit
+        })
+    }
+
+    /// The gap along a unit vector of the frame of each tree toward the other.
+    fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
+        let reaches = [0, 1].mapped(|which| {
+            let block = self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which]);
+            block.reach(&toward[which])
+        });
+        toward[0].dot(&self.question.pose(1).translation) - reaches[0] - reaches[1]
+    }
+
+    /// The reach and what rounding does; `None` to end the search.
+    fn room(&self) -> Option<f32> {
+        self.question.reach().map(|reach| self.room + reach.as_f32_above())
+    }
+
+    /// Hands out an object of each tree: where a descent ends toward the middle of the other's leaf block, the first toward
+    /// all of the other tree.
+    fn guess(&mut self, whole: BlockPair) {
+        let (mut pair, mut found) = (whole, [NONE; 2]);
+        for which in [0, 1, 0, 1] {
+            let turn = &self.turns[1 - which];
+            let turned = turn.vector(&self.bounds(1 - which, &pair).center());
+            let middle = filled(|row| turned[row] + turn.shift[row]);
+            let Some(slot) = self.trees[which].slot_near(&middle) else { return };
+            (pair.layers[which], pair.blocks[which]) = (0, slot / small(LANES));
+            found[which] = self.trees[which].ids[slot as usize];
+        }
+        if !found.contains(&NONE) {
+            self.question.guess(found);
         }
     }
 
@@ -220,13 +291,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// Puts off the blocks below one of two, each with the other, so that the deepest comes next.
-    fn open(
-        &self,
-        which: usize,
-        pair: &BlockPair,
-        room: f32,
-        stack: &mut SmallVec<[BlockPair; STACK]>,
-    ) {
+    fn open(&self, which: usize, pair: &BlockPair, room: f32, agenda: &mut impl Agenda) {
         let Held { mask, gaps } = self.held(which, pair, room);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
         let mut near = SmallVec::<[(f32, u32); LANES]>::new();
@@ -238,15 +303,17 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             }
         }
         sort_few(&mut near, |one, other| one.0 > other.0);
-        for (_, block) in near {
+        for (gap, block) in near {
             let mut below = *pair;
             (below.layers[which], below.blocks[which]) = (layer, block);
-            stack.push(below);
+            // Less by what the sum loses.
+            below.gap = gap + room - room.abs() * ROUNDING * f32::EPSILON;
+            agenda.put(below);
         }
     }
 
     /// Visits the objects of two leaf blocks: each of that with fewer near ones with those of the other.
-    fn meet(&mut self, pair: &BlockPair, room: f32) {
+    fn meet(&mut self, pair: &BlockPair, mut room: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
             masks[which] = self.held(which, pair, room).mask;
@@ -268,9 +335,8 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             let ids = ids.collect::<SmallVec<[u32; LANES]>>();
             if !ids.is_empty() {
                 self.question.visit(which, id, &ids);
-                if self.question.reach().is_none() {
-                    return;
-                }
+                let Some(shrunk) = self.room() else { return };
+                room = shrunk;
             }
         }
     }

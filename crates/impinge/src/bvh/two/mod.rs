@@ -1,6 +1,7 @@
 //! Two trees, each in a frame of its own: near pairs of their objects, near ones first ([`near_pairs`]), and pairs that may
 //! touch, in no order ([`meeting`]).
 
+mod agenda;
 mod meeting;
 mod near_pairs;
 

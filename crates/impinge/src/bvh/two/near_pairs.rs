@@ -18,7 +18,7 @@ use crate::bvh::gaps::Gaps;
 use crate::bvh::near_first::Open;
 use crate::bvh::tree::small;
 use crate::bvh::{Bounds, LANES, NONE, Tree};
-use crate::math::{Mapped, Point, Real, Vector, max, unit};
+use crate::math::{Mapped, Point, Real, Vector, filled, max, unit};
 
 /// Entries made room for at the start: enough for most searches.
 const EXPECTED: usize = 64;
@@ -135,7 +135,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
             let (tree, middle) = (self.trees[which], self.other_box(which, &pair).center());
-            if let Some(slot) = tree.slot_near(&middle) {
+            if let Some(slot) = tree.slot_near(&filled(|axis| middle[axis].as_f32())) {
                 (pair.layers[which], pair.blocks[which]) = (0, slot / small(LANES));
                 found[which] = tree.ids[slot as usize];
             }

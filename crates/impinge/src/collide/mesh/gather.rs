@@ -8,7 +8,7 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::{aabb_of, enclosing, loosened};
-use crate::collide::parts::each_meeting;
+use crate::collide::parts::{MeetingVisitor, Meetings, each_meeting};
 use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, min};
 use crate::shape::{CompositeShape, Part};
@@ -122,6 +122,19 @@ pub(super) fn candidates<N: Space<D>, const D: usize>(
     found
 }
 
+/// Keeps all pairs.
+struct NearPairs<'a, N> {
+    reach: N,
+    found: &'a mut PartPairs,
+}
+
+impl<N: Real, const D: usize> MeetingVisitor<N, D> for NearPairs<'_, N> {
+    fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
+        self.found.push(parts);
+        Some(self.reach)
+    }
+}
+
 /// The parts of two composites that may be within `reach`: by their trees, which tell by the parts as well. Where they
 /// have none, the parts of one are looked up in the other: of the one with fewer parts those that are near the other.
 fn of_two<N: Space<D>, const D: usize>(
@@ -134,13 +147,11 @@ fn of_two<N: Space<D>, const D: usize>(
     if between.are_boxes_beyond(loosened(reach)) {
         return;
     }
-    let is_searched = each_meeting(between, reach, false, &mut |parts| {
-        found.push(parts);
-        true
-    });
-    if is_searched {
+    let mut near = NearPairs { reach, found };
+    if each_meeting(between, reach, Meetings::Each, &mut near) {
         return;
     }
+    let NearPairs { found, .. } = near;
     let poses = [&between.pose21, &between.pair.pose12];
     let is_first = parts1.num_parts() <= parts2.num_parts();
     let (fewer, more) = if is_first { (parts1, parts2) } else { (parts2, parts1) };

@@ -56,14 +56,15 @@ pub(crate) fn enclosing<N: Real, const D: usize>(
 /// A box around a point that holds all that rounding makes of it; `None` if it is not finite.
 ///
 /// `bounds` is a box around all that it is held against.
+#[inline(always)]
 pub(crate) fn around_point<N: Real, const D: usize>(
     point: &Point<N, D>,
     bounds: &Aabb<N, D>,
 ) -> Option<Aabb<N, D>> {
-    let at = Aabb::try_new(*point, *point).ok().filter(Aabb::is_bounded)?;
-    let scale = extent(bounds) + extent(&at);
-    let grown = at.loosened(rounding(scale));
-    Aabb::try_new(*grown.mins(), *grown.maxs()).ok()
+    let at = Aabb::at(*point);
+    // Neither infinite nor NaN, so that the box is one.
+    let is_finite = (0..D).all(|axis| point[axis].is_finite_number());
+    is_finite.then(|| at.loosened(rounding(extent(bounds) + extent(&at))))
 }
 
 /// The largest of the finite coordinates of a box.

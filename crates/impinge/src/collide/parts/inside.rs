@@ -11,7 +11,8 @@ use smallvec::SmallVec;
 
 use super::between::Between;
 use super::bounds::loosened;
-use super::separation::{PairVisitor, PartSeparation, Wanted, visit_near_pairs};
+use super::nearest::Wanted;
+use super::separation::{PairVisitor, PartSeparation, visit_near_pairs};
 use crate::collide::separation::separation as of_convex;
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max, max_component};

@@ -6,43 +6,70 @@
 //! [`pair_lanes`]: super::pair_lanes
 
 use super::between::Between;
+use super::bounds::extent;
 use super::pair_lanes::PartPairs;
 use super::slabs::corners;
+use super::solid_bounds::gap_slack;
 use crate::bounding_volume::Aabb;
-use crate::bvh::{TreeMeeting, visit_meetings};
+use crate::bvh::{Toward, TreeMeeting, visit_meetings};
 use crate::collide::packet::LANES;
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::CompositeShape;
 use crate::tables::ByDimension;
 
-/// What is done with pairs of parts; answers whether more are asked for.
-type MeetingVisitor<'v> = &'v mut dyn FnMut([u32; 2]) -> bool;
+/// What is done with pairs of parts.
+pub(crate) trait MeetingVisitor<N: Real, const D: usize> {
+    /// Looks at two parts; answers the reach from now on, which never grows, and `None` to end the search.
+    fn visit(&mut self, parts: [u32; 2]) -> Option<N>;
 
-/// Calls `visit` with the pairs of parts that may be within `reach`, as long as it answers true; answers false of
-/// composites that are not searched by trees. Where it is likely to end the search, pairs are not kept back for others.
+    /// The unit vector from the first composite to the second between the best parts so far, in the frame of the first.
+    fn normal(&self) -> Option<Vector<N, D>> {
+        None
+    }
+}
+
+/// Which pairs of parts are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Meetings {
+    /// All within reach, each once.
+    Each,
+    /// Few, since one of them is likely to end the search: none is kept back for others.
+    Any,
+    /// Few, since the reach shrinks to what is found: a pair that is likely to be near comes first, and may come twice.
+    Nearest,
+}
+
+/// Visits the pairs of parts that may be within `reach`; answers false of composites that are not searched by
+/// trees, or too far away.
 ///
 /// Cost: O(n + k) for k pairs whose boxes are within reach of n blocks that are, as long as boxes are good ones.
 pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
-    is_ending: bool,
-    visit: MeetingVisitor<'_>,
+    wanted: Meetings,
+    visitor: &mut dyn MeetingVisitor<N, D>,
 ) -> bool {
     let [Some(parts1), Some(parts2)] = between.composites() else { return false };
     let trees = [parts1, parts2].mapped(|parts| parts.search().as_tree()?.packed_whole());
     let [Some(tree1), Some(tree2)] = trees else { return false };
     let ways =
         [&between.pair.pose12, &between.pose21].mapped(|pose| max_component(&pose.translation));
+    // So far away boxes of `f32` say nothing.
+    if ways.iter().any(|way| !way.as_f32().is_finite()) {
+        return false;
+    }
+    let sizes = [parts1, parts2].mapped(|parts| extent(&parts.search().bounds()));
+    let size = sizes[0] + sizes[1] + max(ways[0], ways[1]);
     let mut meeting = PartMeetings {
         between,
         parts: [parts1, parts2],
-        reach,
-        is_ending,
+        reach: Some(reach),
+        slack: if wanted == Meetings::Nearest { gap_slack(size) } else { N::ZERO },
+        wanted,
         own: None,
         kept: [[0; 2]; LANES],
         pairs: PartPairs::new(max(ways[0], ways[1])),
-        goes_on: true,
-        visit,
+        visitor,
     };
     visit_meetings([tree1, tree2], &mut meeting);
     meeting.flush();
@@ -52,32 +79,36 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
 struct PartMeetings<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
-    reach: N,
-    is_ending: bool,
+    reach: Option<N>,
+    /// Boxes may be farther apart than the nearest parts by this much.
+    slack: N,
+    wanted: Meetings,
     /// The corners of the part that is looked at, in the frame of the other composite, if it is given by them.
     own: Option<[Vector<N, D>; 3]>,
     /// The numbers of the pairs that are kept back.
     kept: [[u32; 2]; LANES],
     pairs: PartPairs<N, D>,
-    goes_on: bool,
-    visit: MeetingVisitor<'q>,
+    visitor: &'q mut dyn MeetingVisitor<N, D>,
 }
 
 impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
     fn found(&mut self, pair: [u32; 2]) {
-        self.goes_on = self.goes_on && (self.visit)(pair);
+        self.reach = self.reach.and_then(|_| self.visitor.visit(pair));
     }
 
     /// Visits the pairs that are kept back, but for those that are certainly beyond reach.
     fn flush(&mut self) {
-        if self.pairs.count == 0 {
-            return;
-        }
-        let beyond = <N::Algorithms>::part_pairs(&self.pairs, self.reach).beyond;
-        for lane in 0..self.pairs.count {
-            if beyond >> lane & 1 == 0 {
-                self.found(self.kept[lane]);
+        let (mut looked_at, mut within) = (0, None);
+        while let Some(reach) = self.reach.filter(|_| looked_at < self.pairs.count) {
+            // Again only where the reach has shrunk.
+            if within.is_none_or(|(known, _)| reach < known) {
+                let beyond = <N::Algorithms>::part_pairs(&self.pairs, reach).beyond;
+                within = Some((reach, !beyond));
             }
+            if within.is_some_and(|(_, lanes)| lanes >> looked_at & 1 == 1) {
+                self.found(self.kept[looked_at]);
+            }
+            looked_at += 1;
         }
         self.pairs.count = 0;
     }
@@ -101,7 +132,20 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
     }
 
     fn reach(&self) -> Option<N> {
-        self.goes_on.then_some(self.reach)
+        self.reach.map(|reach| reach + self.slack)
+    }
+
+    fn is_for_nearest(&self) -> bool {
+        self.wanted == Meetings::Nearest
+    }
+
+    fn guess(&mut self, parts: [u32; 2]) {
+        self.found(parts);
+    }
+
+    fn best(&self) -> Option<Toward<N, D>> {
+        let normal = self.visitor.normal()?;
+        Some([normal, self.pose(0).vector(&-normal)])
     }
 
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D> {
@@ -126,7 +170,7 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
                 _ => self.found(pair),
             }
         }
-        if self.is_ending {
+        if self.wanted == Meetings::Any {
             self.flush();
         }
     }

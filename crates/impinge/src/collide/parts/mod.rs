@@ -10,6 +10,7 @@ pub(crate) mod between;
 pub(crate) mod bounds;
 mod inside;
 mod meeting;
+mod nearest;
 mod pair_lanes;
 mod separation;
 mod slab_lanes;
@@ -21,11 +22,10 @@ mod tests;
 
 pub(crate) use between::{Between, PartPair};
 pub(crate) use inside::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
-pub(crate) use meeting::each_meeting;
+pub(crate) use meeting::{MeetingVisitor, Meetings, each_meeting};
+pub(crate) use nearest::{Wanted, nearest_between};
 pub(crate) use pair_lanes::{PairVerdicts, PartPairs, part_pairs2, part_pairs3};
-pub(crate) use separation::{
-    PairVisitor, PartSeparation, Wanted, nearest_between, separation, visit_near_pairs,
-};
+pub(crate) use separation::{PairVisitor, PartSeparation, separation, visit_near_pairs};
 pub(crate) use slab_lanes::{part_gaps2, part_gaps3};
 pub(crate) use slabs::AxisSlabs;
 pub(crate) use sweep::PartSweep;

@@ -7,7 +7,7 @@
 
 use super::slabs::rounding_unit;
 use crate::collide::packet::{LANES, PartPacket};
-use crate::math::lanes::{bits, cross, dot, in_lanes, load, minus};
+use crate::math::lanes::{bits, cross, dot, in_lanes, load, minus, plus};
 use crate::math::simd::{Level, Run, Simd};
 use crate::math::{Real, Wide};
 
@@ -92,6 +92,10 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let [normal, other_normal] = [cross(&own[0], &own[1]), cross(&others[0], &others[1])];
     held.along(&normal);
     held.along(&other_normal);
+    if limit > N::ZERO {
+        // Far pairs beside each other, which the directions that decide about an overlap hardly part.
+        held.between_middles();
+    }
     if bits(held.beyond) == u8::MAX {
         return held.verdicts(false);
     }
@@ -177,6 +181,16 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         self.beyond |= gap.simd_gt(self.limits[0] * length) & is_length;
         // Also false for NaN.
         self.within &= gap.simd_le(self.limits[1] * length);
+    }
+
+    /// Takes the gap along the way from the middle of one to that of the other into account, which tells nothing about an
+    /// overlap.
+    #[inline(always)]
+    fn between_middles(&mut self) {
+        let ([a, b, c], [d, e, f]) = (&self.one, &self.other);
+        let within = self.within;
+        self.along(&minus(&plus(&plus(d, e), f), &plus(&plus(a, b), c)));
+        self.within = within;
     }
 
     /// A direction across two vectors with this product of squares is exact.

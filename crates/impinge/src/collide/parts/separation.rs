@@ -6,8 +6,7 @@ use smallvec::SmallVec;
 
 use super::between::{Between, by_number};
 use super::bounds::{extent, loosened};
-use super::inside::with_inside;
-use super::meeting::each_meeting;
+use super::nearest::{Wanted, nearest_between};
 use super::slabs::{AxisSlabs, corners, range};
 use super::solid_bounds::{SolidBounds, gap_slack};
 use super::sweep::PartSweep;
@@ -15,9 +14,8 @@ use crate::bounding_volume::Aabb;
 use crate::bvh::{BoxRanking, NONE, Toward, TreePair, visit_pairs, visit_ranked};
 use crate::collide::Pair;
 use crate::collide::packet::{LANES, PartPacket};
-use crate::collide::separation::separation as of_convex;
 use crate::convex::Separation;
-use crate::math::{Mapped, Point, Real, Space, Vector, max, max_component, min, unit};
+use crate::math::{Mapped, Point, Real, Space, Vector, max, max_component, unit};
 use crate::partitioning::BoxTree;
 use crate::shape::{CompositeShape, Kind};
 
@@ -29,15 +27,6 @@ pub(crate) struct PartSeparation<N: Real, const D: usize> {
     pub(crate) local: Separation<N, D>,
     /// The part of the first and of the second; 0 of a solid that is no composite.
     pub(crate) parts: [u32; 2],
-}
-
-/// Which of the pairs of parts is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    /// The nearest, or where parts overlap the deepest; of several the first by numbers.
-    Deepest,
-    /// The nearest, or any that touches or overlaps: enough to know the distance.
-    Touching,
 }
 
 /// The entry of the pair table.
@@ -77,28 +66,6 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
     }
 
     fn visit(&mut self, parts: [u32; 2]);
-}
-
-/// The separation of the two parts that [`Wanted`] asks for; `None` if none are within the limit. Parts that are
-/// likely to be these can be asked `first`: they bound the search. See [`visit_near_pairs`] for the cost.
-pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
-    between: &Between<'_, N, D>,
-    limit: N,
-    wanted: Wanted,
-    first: Option<[u32; 2]>,
-) -> Option<PartSeparation<N, D>> {
-    let mut nearest = NearestPart { between, limit, wanted, best: None };
-    if let Some(parts) = first {
-        nearest.visit(parts);
-    }
-    let is_settled = wanted == Wanted::Touching && nearest.settles_touching();
-    if !is_settled {
-        visit_near_pairs(between, &mut nearest);
-    }
-    if between.has_bodies() {
-        return with_inside(between, limit, wanted, nearest.best);
-    }
-    nearest.best
 }
 
 /// Visits the pairs of parts of two shapes that are within the limit of a visitor, near ones first.
@@ -412,59 +379,6 @@ impl<N: Space<D>, const D: usize> BoxRanking<N, D> for RankedParts<'_, '_, N, D>
 
     fn visit(&mut self, id: u32) {
         self.visitor.visit(if self.which == 0 { [0, id] } else { [id, 0] });
-    }
-}
-
-/// The best pair of parts so far.
-struct NearestPart<'a, N: Real, const D: usize> {
-    between: &'a Between<'a, N, D>,
-    limit: N,
-    wanted: Wanted,
-    best: Option<PartSeparation<N, D>>,
-}
-
-impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
-    /// Looks for parts of two composites that touch, for which it is enough to see that boxes overlap; answers whether
-    /// nothing more is asked.
-    fn settles_touching(&mut self) -> bool {
-        let (between, reach) = (self.between, min(self.limit, N::ZERO));
-        let is_searched = each_meeting(between, reach, true, &mut |parts| {
-            self.visit(parts);
-            self.bound() >= N::ZERO
-        });
-        is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
-    }
-}
-
-impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
-    fn limit(&self) -> N {
-        self.best.map_or(self.limit, |best| best.separation.distance)
-    }
-
-    fn bound(&self) -> N {
-        let limit = self.limit();
-        let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;
-        if is_known { -N::ONE } else { loosened(max(limit, N::ZERO)) }
-    }
-
-    fn normal(&self) -> Option<Vector<N, D>> {
-        self.best.map(|best| best.separation.normal)
-    }
-
-    fn ends_at_touch(&self) -> bool {
-        self.wanted == Wanted::Touching
-    }
-
-    fn visit(&mut self, parts: [u32; 2]) {
-        if self.best.is_some_and(|best| best.parts == parts) {
-            return;
-        }
-        let placed = self.between.parts(parts);
-        let Some(found) = of_convex(&placed.pair(), self.limit()) else { return };
-        let found = PartSeparation { separation: placed.in_first(&found), local: found, parts };
-        if self.best.is_none_or(|best| found.is_before(&best)) {
-            self.best = Some(found);
-        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The searches and their bounds against all parts, one by one.
 
-use super::separation::nearest_between;
+use super::nearest::nearest_between;
 use super::solid_bounds::SolidBounds;
 use super::{Between, PartSeparation, Wanted};
 use crate::bounding_volume::{Aabb, BoundingVolume};

@@ -59,16 +59,16 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
         }
     }
 
-    /// [`Self::each`]; with the feature `parallel` on several threads, chunk by chunk.
+    /// Asks for the answers chunk by chunk; with the feature `parallel` on several threads.
     #[track_caller]
-    pub(super) fn each_in_chunks(
+    pub(super) fn each_chunk(
         &self,
         hits: &mut [Option<RayIntersection<N, D>>],
-        answer: impl Fn(&Ray<N, D>) -> Option<RayIntersection<N, D>> + Sync,
+        answer: impl Fn(&Self, &mut [Option<RayIntersection<N, D>>]) + Sync,
     ) {
         self.check(hits.len());
         let work = |range: Range<usize>, hits: &mut [_]| {
-            Self { rays: &self.rays[range], ..*self }.each(hits, &answer);
+            answer(&Self { rays: &self.rays[range], ..*self }, hits);
             ControlFlow::Continue(())
         };
         _ = each_chunk(0..self.rays.len(), hits, &work);

@@ -12,6 +12,7 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod ellipsoid;
+pub(crate) mod mesh3;
 mod passing;
 mod plane;
 mod polytope;
@@ -26,7 +27,7 @@ mod triangle2;
 mod triangle3;
 mod volume;
 
-use crate::tables::entries;
+use crate::tables::{ByDimension, entries};
 pub use batch::RayBatch;
 use passing::may_hold;
 pub(crate) use passing::surely_misses;
@@ -313,8 +314,9 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         batch: &RayBatch<'_, N, D>,
         hits: &mut [Option<RayIntersection<N, D>>],
     ) {
-        let RayBatch { max_time, solid, .. } = *batch;
-        batch.each_in_chunks(hits, |ray| self.cast_local_ray_until(ray, max_time, solid));
+        batch.each_chunk(hits, |batch, hits| {
+            entries::cast_many_on(self.geometry(), batch, &mut |number, hit| hits[number] = hit);
+        });
     }
 
     fn local_ray_hits(
@@ -398,7 +400,11 @@ pub(crate) fn cast_on<N: Space<D>, const D: usize>(
 ) -> Option<RayIntersection<N, D>> {
     let kind = geometry.0;
     if let Kind::Composite(parts) = kind {
-        return first_that(parts, &RayQuestion { ray: *ray, max_time, solid }, |_| true);
+        let question = RayQuestion { ray: *ray, max_time, solid };
+        return match parts.as_mesh() {
+            Some(mesh) => <N::Algorithms>::first_on_mesh(mesh, &question),
+            None => first_that(parts, &question, |_| true),
+        };
     }
     let surface_point = |point: &_| entries::surface_point(kind, point).projection(point);
     let project = |point: &_| may_hold(kind, point).then(|| surface_point(point));
@@ -406,9 +412,29 @@ pub(crate) fn cast_on<N: Space<D>, const D: usize>(
     hit.filter(|hit| hit.toi <= max_time)
 }
 
+/// What is done with the answer about the ray of a number.
+pub(crate) type Answers<'a, N, const D: usize> =
+    &'a mut dyn FnMut(usize, Option<RayIntersection<N, D>>);
+
+/// [`cast_on`] for each ray of a batch, in no particular order.
+pub(crate) fn cast_many_on<N: Space<D>, const D: usize>(
+    geometry: Geometry<'_, N, D>,
+    batch: &RayBatch<'_, N, D>,
+    answer: Answers<'_, N, D>,
+) {
+    let mesh = geometry.as_composite().and_then(CompositeShape::as_mesh);
+    if mesh.is_some_and(|mesh| <N::Algorithms>::first_hits_on_mesh(mesh, batch, answer)) {
+        return;
+    }
+    let RayBatch { rays, max_time, solid } = *batch;
+    for (number, ray) in rays.iter().enumerate() {
+        answer(number, cast_on(geometry, ray, max_time, solid));
+    }
+}
+
 /// The first hit on a part that counts.
 #[inline]
-fn first_that<N: Space<D>, const D: usize>(
+pub(crate) fn first_that<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     question: &RayQuestion<N, D>,
     counts: impl Fn(&RayIntersection<N, D>) -> bool,

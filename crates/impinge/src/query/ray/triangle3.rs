@@ -3,30 +3,88 @@
 use super::segment::{RayNames, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
-use crate::math::{Mapped, Point, Real, Vector, cross, cross2, unit, unit_or};
+use crate::math::{
+    Mapped, Point, Real, Vector, cross, cross2, filled, max_component, unit, unit_or,
+};
 use crate::shape::{FeatureId, Triangle};
 
 /// Through the inside, else along the triangle: there the sides answer, each within rounding.
 ///
 /// The same for both sides of the triangle, and for corners in one line.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
-    let sheared = triangle.corners().map(|corner| Sheared::of(&corner, ray));
-    match through(&sheared) {
+    let corners = triangle.corners();
+    match through(&Shear::along(ray).of(corners)) {
         Through::Hit(t) => {
-            let crossing = crossing(triangle, ray, t);
+            let crossing = crossing(corners, &ray.dir, t);
             Some(Span::thin(crossing, crossing))
         }
         Through::Miss => None,
         Through::EdgeOn => (0..3).fold(None, |span, side| {
             let next = (side + 1) % 3;
-            let ends = [&triangle.corners()[side as usize], &triangle.corners()[next as usize]];
+            let ends = [&corners[side as usize], &corners[next as usize]];
             let names = RayNames { ends: [side, next], between: FeatureId::Edge(side) };
             Span::union_of(span, segment_span(ends, names, ray))
         }),
     }
 }
 
+/// A ray that is held against many triangles one by one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TriangleRay<N: Real> {
+    shear: Shear<N>,
+    /// The power of two that its direction is divided by, as for all spans.
+    unit: N,
+}
+
+/// Where a ray passes through a triangle, on the inside: when along the line, and when in units of the ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InnerHit<N: Real> {
+    t: N,
+    pub(super) toi: N,
+}
+
+impl<N: Real> TriangleRay<N> {
+    /// A finite ray; `None` without a direction.
+    #[inline(always)]
+    pub(super) fn new(ray: &Ray<N, 3>) -> Option<Self> {
+        let speed = max_component(&ray.dir);
+        if speed == N::ZERO {
+            return None;
+        }
+        let unit = speed.power_of_two_below();
+        Some(Self { shear: Shear::along(&Ray::new(ray.origin, ray.dir / unit)), unit })
+    }
+
+    /// The answer of [`span`] to most triangles that are hit; `None` where more has to be looked at.
+    #[inline(always)]
+    pub(super) fn inner_hit(&self, corners: &[Point<N, 3>; 3]) -> Option<InnerHit<N>> {
+        match through(&self.shear.of(corners)) {
+            Through::Hit(t) if t >= N::ZERO => {
+                let toi = (N::ZERO + t) / self.unit;
+                toi.is_finite_number().then_some(InnerHit { t, toi })
+            }
+            _ => None,
+        }
+    }
+
+    /// The surface at an inner hit.
+    pub(super) fn surface(&self, corners: &[Point<N, 3>; 3], hit: &InnerHit<N>) -> Crossing<N, 3> {
+        crossing(corners, &self.shear.dir, hit.t)
+    }
+}
+
+/// Space sheared so that a ray runs along its largest axis (Woop, Benthin and Wald, "Watertight Ray/Triangle
+/// Intersection", 2013).
+#[derive(Clone, Copy, Debug)]
+struct Shear<N: Real> {
+    origin: Point<N, 3>,
+    dir: Vector<N, 3>,
+    /// Two axes across the ray, and its largest one.
+    axes: [usize; 3],
+}
+
 /// A corner in the frame of the ray: `flat` across it and `t` along it.
+#[derive(Clone, Copy)]
 struct Sheared<N: Real> {
     flat: Vector<N, 2>,
     t: N,
@@ -34,20 +92,28 @@ struct Sheared<N: Real> {
     size: N,
 }
 
-impl<N: Real> Sheared<N> {
-    /// Shears space so that the ray runs along its largest axis (Woop, Benthin and Wald,
-    /// "Watertight Ray/Triangle Intersection", 2013).
-    ///
-    /// The corner alone decides the answer, so that triangles that share it agree on where it is.
-    fn of(corner: &Point<N, 3>, ray: &Ray<N, 3>) -> Self {
+impl<N: Real> Shear<N> {
+    #[inline]
+    fn along(ray: &Ray<N, 3>) -> Self {
         let along = ray.dir.iamax();
-        let (x, y) = ((along + 1) % 3, (along + 2) % 3);
-        let to_corner = corner - ray.origin;
-        let t = to_corner[along] / ray.dir[along];
-        let (run_x, run_y) = (ray.dir[x] * t, ray.dir[y] * t);
-        let flat = Vector::<N, 2>::new(to_corner[x] - run_x, to_corner[y] - run_y);
-        let size = to_corner[x].abs() + run_x.abs() + to_corner[y].abs() + run_y.abs();
-        Self { flat, t, size }
+        Self { origin: ray.origin, dir: ray.dir, axes: [(along + 1) % 3, (along + 2) % 3, along] }
+    }
+
+    /// The corner alone decides where it is, so that triangles that share it agree.
+    #[inline(always)]
+    fn of(&self, corners: &[Point<N, 3>; 3]) -> [Sheared<N>; 3] {
+        let [x, y, along] = self.axes;
+        corners.mapped(
+            #[inline(always)]
+            |corner| {
+                let to_corner = corner - self.origin;
+                let t = to_corner[along] / self.dir[along];
+                let (run_x, run_y) = (self.dir[x] * t, self.dir[y] * t);
+                let flat = Vector::<N, 2>::new(to_corner[x] - run_x, to_corner[y] - run_y);
+                let size = to_corner[x].abs() + run_x.abs() + to_corner[y].abs() + run_y.abs();
+                Sheared { flat, t, size }
+            },
+        )
     }
 }
 
@@ -60,13 +126,16 @@ enum Through<N: Real> {
 
 /// The signs of the three areas around the ray decide. Swapping the ends of a side negates its area
 /// to the bit, so triangles that share a side leave no gap; an area of zero belongs to both.
+#[inline(always)]
 fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
     let [a, b, c] = corners;
     let areas = [cross2(&b.flat, &c.flat), cross2(&c.flat, &a.flat), cross2(&a.flat, &b.flat)];
     let total = areas[0] + areas[1] + areas[2];
-    let all_left = areas.iter().all(|&area| area >= N::ZERO);
-    let all_right = areas.iter().all(|&area| area <= N::ZERO);
-    if (all_left || all_right) && total != N::ZERO {
+    // In one go: which sign decides is a coin toss that no processor foresees.
+    let all = |is: [bool; 3]| is[0] & is[1] & is[2];
+    let all_left = all(filled(|side| areas[side] >= N::ZERO));
+    let all_right = all(filled(|side| areas[side] <= N::ZERO));
+    if (all_left | all_right) & (total != N::ZERO) {
         let [wa, wb, wc] = areas.mapped(|area| area / total);
         return Through::Hit(a.t * wa + b.t * wb + c.t * wc);
     }
@@ -76,13 +145,13 @@ fn through<N: Real>(corners: &[Sheared<N>; 3]) -> Through<N> {
 }
 
 /// The normal faces the ray; the face is the one that it comes to.
-fn crossing<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>, t: N) -> Crossing<N, 3> {
-    let [a, b, c] = triangle.corners();
+fn crossing<N: Real>(corners: &[Point<N, 3>; 3], dir: &Vector<N, 3>, t: N) -> Crossing<N, 3> {
+    let [a, b, c] = corners;
     let normal = cross(&(b - a), &(c - a));
-    let from_front = normal.dot(&ray.dir) <= N::ZERO;
+    let from_front = normal.dot(dir) <= N::ZERO;
     let facing = if from_front { normal } else { -normal };
     let normal = unit(&facing).map(|(normal, _)| normal);
-    let against = || unit_or(&-ray.dir, Vector::<N, 3>::zeros());
+    let against = || unit_or(&-dir, Vector::<N, 3>::zeros());
     let face = if from_front { 0 } else { 1 };
     Crossing::new(t, normal.unwrap_or_else(against), FeatureId::Face(face))
 }

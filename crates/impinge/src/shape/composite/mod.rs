@@ -21,6 +21,7 @@ use smallvec::SmallVec;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::partitioning::BoxTree;
+use crate::shape::TriMesh;
 use crate::shape::{EnclosedBody, FeatureId, Geometry, Segment, Shape, SurfaceAccess, Triangle};
 
 /// The way to a part: the index of the child, of its child, … of the part in the last.
@@ -117,6 +118,12 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// The composite as a shape of the library, of which it is told what it encloses; `None` for one of the user's.
     #[doc(hidden)]
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
+        None
+    }
+
+    /// The composite as a mesh.
+    #[doc(hidden)]
+    fn as_mesh(&self) -> Option<&TriMesh<N, D>> {
         None
     }
 

@@ -173,7 +173,7 @@ fn corners_of<N: Real, const D: usize>(
 }
 
 /// The box of a triangle, as the tree has it.
-pub(super) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
+pub(crate) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Aabb<N, D> {
     Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }
 

@@ -201,6 +201,6 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
         bounds: &RayBounds<'_, N, 3>,
         visit: &mut dyn FnMut(u32, Part<'_, N, 3>) -> N,
     ) {
-        mesh.triangles_along(bounds, visit);
+        mesh.parts_on_ray(bounds, visit);
     }
 }

@@ -53,6 +53,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
         Some(self)
     }
 
+    fn as_mesh(&self) -> Option<&Self> {
+        Some(self)
+    }
+
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {
         if self.is_solid() {
             visit(&EnclosedBody::within(self));

@@ -13,6 +13,7 @@ mod surface3;
 mod topology;
 
 pub(in crate::shape) use around::inward_of;
+pub(crate) use build::box_of_corners;
 pub(crate) use by_dimension::MeshByDimension;
 pub(in crate::shape) use composite::{aabb_at, sphere_around};
 pub(crate) use entries::MeshEntries;
@@ -181,7 +182,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self
     }
 
-    fn corners(&self, triangle: u32) -> [Point<N, D>; 3] {
+    pub(crate) fn corners(&self, triangle: u32) -> [Point<N, D>; 3] {
         self.triangles[triangle as usize].mapped(|vertex| self.vertices[vertex as usize])
     }
 

@@ -1,10 +1,12 @@
 //! Rays among the triangles of a mesh: sixteen at once are sorted out by their signs.
 
+use core::hint::black_box;
+
 use super::TriMesh;
 use super::build::box_of_corners;
 use crate::bounding_volume::{Aabb, Ray};
-use crate::bvh::{NONE, RayProbe, ShearedLine, Slabs, Triangles};
-use crate::math::{Point, Pose, Real, Space, min};
+use crate::bvh::{NONE, RayProbe, RayVisitor, ShearedLine, Slabs, TriangleAt, Triangles, Walk};
+use crate::math::{Mapped, Point, Pose, Real, Space, min};
 use crate::partitioning::BoxTree;
 use crate::shape::{Part, PartSearch, PartSolid, Triangle};
 
@@ -49,15 +51,12 @@ impl<N: Real> TriMesh<N, 3> {
         tree.packed().leaves().iter().map(block).collect()
     }
 
-    /// Finds the parts by their boxes, block by block, and by the signs of their areas around the ray.
+    /// Finds the parts by their boxes, block by block, and by the signs of their areas around the ray; of a ray without a
+    /// direction by their boxes alone.
     ///
     /// The box of a part is looked at last: where areas underflow their signs say nothing, nor do those
     /// of the test that decides.
-    pub(super) fn triangles_along(
-        &self,
-        bounds: &RayBounds<'_, N, 3>,
-        visit: HitVisitor<'_, N, 3>,
-    ) {
+    pub(super) fn parts_on_ray(&self, bounds: &RayBounds<'_, N, 3>, visit: HitVisitor<'_, N, 3>) {
         let RayBounds { ray, around, limit } = *bounds;
         if ray.dir.iter().all(|&x| x == N::ZERO) {
             return self.boxes_along(bounds, visit);
@@ -72,24 +71,65 @@ impl<N: Real> TriMesh<N, 3> {
         };
         let unbounded = self.tree.unbounded().iter();
         let limit = unbounded.fold(limit, |_, &index| propose(index, &self.corners(index)));
-        let tree = self.tree.packed();
-        let size = tree.size();
-        let slabs = Slabs::new(around, &ray.dir, size);
-        let probe = RayProbe { slabs, line: ShearedLine::new(ray, around, size) };
-        tree.visit_triangles(&self.packed, &probe, slabs.limit(limit), |index, block, lane| {
-            slabs.limit(propose(index, &self.corners_in(index, block, lane)))
+        let probe = self.ray_probe(ray, around);
+        self.visit_triangles(&probe, probe.slabs.limit(limit), |index, corners| {
+            probe.slabs.limit(propose(index, corners))
         });
     }
 
-    /// The corners of a triangle: from the block at hand where it holds them exactly.
-    #[inline]
-    fn corners_in(&self, index: u32, block: &Triangles, lane: usize) -> [Point<N, 3>; 3] {
-        let is_single = N::EPSILON.as_f64() >= f64::from(f32::EPSILON);
-        if !is_single {
-            return self.corners(index);
-        }
-        block.lane(lane).map(|corner| Point::from(corner.map(|x| N::lit(f64::from(x)))))
+    /// What blocks are asked about a ray with a direction; `around` is as in [`RayBounds`].
+    #[inline(always)]
+    pub(crate) fn ray_probe(&self, ray: &Ray<N, 3>, around: &Aabb<N, 3>) -> RayProbe {
+        let size = self.tree.packed().size();
+        let slabs = Slabs::new(around, &ray.dir, size);
+        RayProbe { slabs, line: ShearedLine::new(ray, around, size) }
     }
+
+    /// Calls `visit` with the triangles that the ray may cross by a limit, which it returns anew, in the units of the
+    /// probe; without those that no tree holds.
+    #[inline(always)]
+    pub(crate) fn visit_triangles(
+        &self,
+        probe: &RayProbe,
+        limit: f32,
+        mut visit: impl FnMut(u32, &[Point<N, 3>; 3]) -> f32,
+    ) {
+        let tree = self.tree.packed();
+        tree.visit_triangles(&self.packed, probe, limit, |at| visit(at.id, &self.corners_in(&at)));
+    }
+
+    /// [`Self::visit_triangles`] of many rays.
+    pub(crate) fn visit_triangles_of_many(
+        &self,
+        walks: &mut [Walk],
+        visitor: &mut impl RayVisitor,
+    ) {
+        let tree = self.tree.packed();
+        if !tree.is_empty() {
+            tree.visit_triangles_of_many(&self.packed, walks, visitor);
+        }
+    }
+
+    /// Reads the corners of a triangle, if there is one and [`Self::corners_in`] will.
+    #[inline(always)]
+    pub(crate) fn touch_corners(&self, index: u32) {
+        let triangle = self.triangles.get(index as usize).filter(|_| !holds_all::<N>());
+        black_box(triangle.map(|corners| corners.mapped(|at| self.vertices[at as usize][0])));
+    }
+
+    /// The corners of a triangle: from the block at hand where it holds them exactly.
+    #[inline(always)]
+    pub(crate) fn corners_in(&self, at: &TriangleAt<'_>) -> [Point<N, 3>; 3] {
+        if !holds_all::<N>() {
+            return self.corners(at.id);
+        }
+        at.block.lane(at.lane).map(|corner| Point::from(corner.map(|x| N::lit(f64::from(x)))))
+    }
+}
+
+/// Blocks hold corners of this scalar exactly.
+fn holds_all<N: Real>() -> bool {
+    N::EPSILON.as_f64() >= f64::from(f32::EPSILON)
 }
 
 fn triangle_part<'a, N: Real, const D: usize>(corners: &[Point<N, D>; 3]) -> Part<'a, N, D> {

@@ -1,0 +1,77 @@
+//! Which of the pairs of blocks that are put off comes next.
+
+use core::cmp::{Ordering, Reverse};
+use std::collections::BinaryHeap;
+
+use smallvec::SmallVec;
+
+/// So many pairs of blocks are put off without memory of their own.
+pub(super) const STACK: usize = 48;
+
+/// A block of each tree.
+#[derive(Clone, Copy)]
+pub(super) struct BlockPair {
+    pub(super) layers: [u8; 2],
+    pub(super) blocks: [u32; 2],
+    /// What is in them is not nearer, but for what rounding does; no number of an unlimited reach.
+    pub(super) gap: f32,
+}
+
+/// The pairs of blocks that are put off.
+pub(super) trait Agenda {
+    fn put(&mut self, pair: BlockPair);
+    fn take(&mut self) -> Option<BlockPair>;
+}
+
+/// The last that was put off.
+impl Agenda for SmallVec<[BlockPair; STACK]> {
+    fn put(&mut self, pair: BlockPair) {
+        self.push(pair);
+    }
+
+    fn take(&mut self) -> Option<BlockPair> {
+        self.pop()
+    }
+}
+
+/// The least gap, and of several the lowest blocks.
+impl Agenda for BinaryHeap<Reverse<RankedPair>> {
+    fn put(&mut self, pair: BlockPair) {
+        // Those of numbers that are not negative order as the numbers do.
+        let gap = if pair.gap > 0.0 { pair.gap.to_bits() } else { 0 };
+        let layers = pair.layers.map(u32::from);
+        let rank = (gap, layers[0] + layers[1], pair.blocks);
+        self.push(Reverse(RankedPair { rank, pair }));
+    }
+
+    fn take(&mut self) -> Option<BlockPair> {
+        self.pop().map(|Reverse(RankedPair { pair, .. })| pair)
+    }
+}
+
+/// A pair of blocks by its gap, the layers of both and their numbers.
+#[derive(Clone, Copy)]
+pub(super) struct RankedPair {
+    rank: (u32, u32, [u32; 2]),
+    pair: BlockPair,
+}
+
+impl PartialEq for RankedPair {
+    fn eq(&self, other: &Self) -> bool {
+        self.rank == other.rank
+    }
+}
+
+impl Eq for RankedPair {}
+
+impl PartialOrd for RankedPair {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for RankedPair {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.rank.cmp(&other.rank)
+    }
+}

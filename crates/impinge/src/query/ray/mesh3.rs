@@ -1,0 +1,281 @@
+//! First hits of rays on a mesh in 3D: most triangles that are hit are hit clearly, on the inside.
+//!
+//! The answers are those of [`each_hit`](crate::query::composite::each_hit), to the bit. What differs is that the normal
+//! is computed once, at the end, that all is compiled in one piece, and that many rays go together.
+
+use super::triangle3::{InnerHit, TriangleRay};
+use super::{Answers, RayBatch, RayCast, RayIntersection, first_that};
+use crate::bounding_volume::{Aabb, Ray};
+use crate::bvh::{RAYS, RayVisitor, Slabs, TriangleAt, Walk};
+use crate::collide::parts::bounds::{around_point, loosened};
+use crate::math::{Point, Pose, Real, Space, Vector, filled, max, min};
+use crate::query::composite::RayQuestion;
+use crate::shape::{CompositeShape, TriMesh, Triangle, box_of_corners};
+
+/// The first hit of one ray.
+pub(crate) fn first_on_mesh<N: Space<3>>(
+    mesh: &TriMesh<N, 3>,
+    question: &RayQuestion<N, 3>,
+) -> Option<RayIntersection<N, 3>> {
+    let RayQuestion { ray, max_time, solid } = question;
+    // In place: a cast that is moved is read before it is written through.
+    let mut cast = Cast::new(mesh, ray, *max_time, *solid);
+    let Some(cast) = &mut cast else {
+        return first_that(mesh, question, |_| true);
+    };
+    let probe = mesh.ray_probe(ray, &cast.around);
+    mesh.visit_triangles(&probe, probe.slabs.limit(cast.limit()), |index, corners| {
+        cast.propose(index, corners);
+        probe.slabs.limit(cast.limit())
+    });
+    cast.first()
+}
+
+/// The first hit of each ray, in no particular order.
+pub(crate) fn first_hits_on_mesh<N: Space<3>>(
+    mesh: &TriMesh<N, 3>,
+    batch: &RayBatch<'_, N, 3>,
+    answer: Answers<'_, N, 3>,
+) {
+    let RayBatch { rays, max_time, solid } = *batch;
+    let (mut casts, mut walks) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
+    let mut numbers = Vec::with_capacity(RAYS);
+    for (number, ray) in rays.iter().enumerate() {
+        if let Some(cast) = Cast::new(mesh, ray, max_time, solid) {
+            let probe = mesh.ray_probe(ray, &cast.around);
+            walks.push(Walk::new(probe, probe.slabs.limit(cast.limit())));
+            casts.push(cast);
+            numbers.push(number);
+        } else {
+            let question = RayQuestion { ray: *ray, max_time, solid };
+            answer(number, first_that(mesh, &question, |_| true));
+        }
+        if casts.len() == RAYS || number + 1 == rays.len() {
+            mesh.visit_triangles_of_many(&mut walks, &mut Casts { mesh, casts: &mut casts });
+            casts.iter().zip(&numbers).for_each(|(cast, &number)| answer(number, cast.first()));
+            casts.clear();
+            walks.clear();
+            numbers.clear();
+        }
+    }
+}
+
+/// Rays that go together.
+struct Casts<'a, 'b, N: Real> {
+    mesh: &'b TriMesh<N, 3>,
+    casts: &'b mut [Cast<'a, N>],
+}
+
+impl<N: Space<3>> RayVisitor for Casts<'_, '_, N> {
+    #[inline(always)]
+    fn touch(&self, id: u32) {
+        self.mesh.touch_corners(id);
+    }
+
+    #[inline(always)]
+    fn visit(&mut self, ray: usize, slabs: &Slabs<3>, at: TriangleAt<'_>) -> f32 {
+        let cast = &mut self.casts[ray];
+        cast.propose(at.id, &self.mesh.corners_in(&at));
+        slabs.limit(cast.limit())
+    }
+}
+
+/// A ray on its way through a mesh.
+struct Cast<'a, N: Real> {
+    ray: &'a Ray<N, 3>,
+    solid: bool,
+    own: TriangleRay<N>,
+    /// Around its origin, with all that rounding makes of the place; and half of that.
+    around: Aabb<N, 3>,
+    blur: N,
+    /// The time of the first hit so far, or the longest that there may be.
+    latest: N,
+    first: Option<Met<N>>,
+}
+
+/// A triangle that is hit.
+#[derive(Clone, Copy)]
+struct Met<N: Real> {
+    corners: [Point<N, 3>; 3],
+    part: u32,
+    /// None where the cast at a single triangle has to tell.
+    inner: Option<InnerHit<N>>,
+}
+
+impl<'a, N: Space<3>> Cast<'a, N> {
+    /// A ray that has not started; `None` where the mesh is a body to the question, and for rays without a direction or
+    /// that are not finite.
+    #[inline(always)]
+    fn new(mesh: &TriMesh<N, 3>, ray: &'a Ray<N, 3>, max_time: N, solid: bool) -> Option<Self> {
+        let is_finite = filled(|axis| ray.dir[axis].is_finite_number()) == [true; 3];
+        let asks = is_finite && max_time >= N::ZERO;
+        if !asks || (solid && mesh.has_bodies()) {
+            return None;
+        }
+        let own = TriangleRay::new(ray)?;
+        let around = around_point(&ray.origin, mesh.tree().bounds()?)?;
+        let blur = (around.maxs()[0] - around.mins()[0]) * N::lit(0.25);
+        let mut cast = Self { ray, solid, own, around, blur, latest: max_time, first: None };
+        for &index in mesh.tree().unbounded() {
+            cast.propose(index, &mesh.corners(index));
+        }
+        Some(cast)
+    }
+
+    /// What boxes may be as far as.
+    #[inline(always)]
+    fn limit(&self) -> N {
+        loosened(self.latest)
+    }
+
+    /// Looks at a triangle.
+    #[inline(always)]
+    fn propose(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
+        let Some(inner) = self.own.inner_hit(corners) else {
+            return self.propose_rim(part, corners);
+        };
+        let is_met = inner.toi <= self.latest
+            && (self.is_surely_within(corners, inner.toi) || self.enters_box(corners));
+        if is_met {
+            self.put(inner.toi, Met { corners: *corners, part, inner: Some(inner) });
+        }
+    }
+
+    /// A triangle that is not clearly hit on the inside: seldom at all.
+    #[cold]
+    fn propose_rim(&mut self, part: u32, corners: &[Point<N, 3>; 3]) {
+        let hit = self.enters_box(corners).then(|| self.cast_alone(corners)).flatten();
+        if let Some(hit) = hit.filter(|hit| hit.toi <= self.latest) {
+            self.put(hit.toi, Met { corners: *corners, part, inner: None });
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, toi: N, met: Met<N>) {
+        let is_first = self.first.is_none_or(|first| toi < self.latest || met.part < first.part);
+        if is_first {
+            (self.first, self.latest) = (Some(met), toi);
+        }
+    }
+
+    /// The box of the triangle is entered in time: asked last, since where areas underflow their signs say nothing.
+    fn enters_box(&self, corners: &[Point<N, 3>; 3]) -> bool {
+        let enter = box_of_corners(corners).sweep_interval(&self.around, &self.ray.dir);
+        enter.is_some_and(|(enter, _)| enter <= self.limit())
+    }
+
+    /// The same without a division, or no answer: at the time of the hit the ray is inside the box, or beside it by less
+    /// than half of what `around` allows for. That is eight rounding units of the coordinates; the place is off by three at
+    /// most, and the times in [`Self::enters_box`] by two.
+    #[inline(always)]
+    fn is_surely_within(&self, corners: &[Point<N, 3>; 3], toi: N) -> bool {
+        let (ray, [a, b, c]) = (self.ray, corners);
+        let mut is_within =
+            (self.blur > N::MIN_POSITIVE) & (toi > N::MIN_POSITIVE / N::EPSILON * N::TWO);
+        for axis in 0..3 {
+            let at = ray.origin[axis] + ray.dir[axis] * toi;
+            let low = min(min(a[axis], b[axis]), c[axis]) - self.blur;
+            let high = max(max(a[axis], b[axis]), c[axis]) + self.blur;
+            is_within &= (low <= at) & (at <= high);
+        }
+        is_within
+    }
+
+    /// The answer, after all that may be hit.
+    fn first(&self) -> Option<RayIntersection<N, 3>> {
+        let Met { corners, part, inner } = self.first?;
+        let Some(inner) = inner else {
+            return Some(RayIntersection { part, ..self.cast_alone(&corners)? });
+        };
+        let surface = self.own.surface(&corners, &inner);
+        let (normal, feature) = (as_part(&surface.normal), surface.feature);
+        Some(RayIntersection { toi: inner.toi, normal, feature, part })
+    }
+
+    /// The hit on a triangle on its own.
+    fn cast_alone(&self, corners: &[Point<N, 3>; 3]) -> Option<RayIntersection<N, 3>> {
+        let ray = self.ray.inverse_transformed_by(&Pose::identity());
+        let hit = Triangle::of_finite(*corners).cast_local_ray(&ray, self.solid)?;
+        Some(RayIntersection { normal: as_part(&hit.normal), ..hit })
+    }
+}
+
+/// A direction as that of any part is turned into the frame of its composite: sums give zeros their sign.
+fn as_part<N: Real>(normal: &Vector<N, 3>) -> Vector<N, 3> {
+    Pose::<N, 3>::identity().vector(normal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn number(state: &mut u64) -> f64 {
+        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963);
+        let any = (*state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0;
+        // Every second one is a quarter, so that rays meet corners, sides and faces edge on.
+        if *state >> 20 & 1 == 0 { (any * 4.0).round() / 4.0 } else { any }
+    }
+
+    fn numbers<N: Real>(state: &mut u64, scale: f64) -> [N; 3] {
+        [(); 3].map(|()| N::lit(number(state) * scale))
+    }
+
+    /// Triangles at random, and pieces of a grid that share corners.
+    fn soup<N: Space<3>>(state: &mut u64, count: u32, scale: f64) -> TriMesh<N, 3> {
+        let vertices = (0..count + 2).map(|_| Point::from(numbers(state, scale))).collect();
+        TriMesh::new(vertices, (0..count).map(|index| [index, index + 1, index + 2]).collect())
+    }
+
+    fn bits<N: Real>(hit: Option<&RayIntersection<N, 3>>) -> Option<(u64, [u64; 3], u32, String)> {
+        hit.map(|hit| {
+            let normal = [0, 1, 2].map(|axis| hit.normal[axis].bits());
+            (hit.toi.bits(), normal, hit.part, format!("{:?}", hit.feature))
+        })
+    }
+
+    /// The answers about single rays and many are those of the parts one by one.
+    fn agrees<N: Space<3>>(scale: f64, speed: f64) {
+        let (state, mut hits) = (&mut 5, 0);
+        for count in [1, 12, 300, 5000] {
+            let mesh = soup::<N>(state, count, scale);
+            let mut rays: Vec<_> = (0..200)
+                .map(|_| {
+                    let away = if number(state) > 0.0 { 1.0 } else { 40.0 };
+                    let origin = Point::from(numbers::<N>(state, scale * away));
+                    let end = mesh.vertices()[0] + Vector::<N, 3>::from(numbers(state, scale));
+                    let towards = (end - origin) * N::lit(speed);
+                    let random = Vector::from(numbers(state, speed));
+                    Ray::new(origin, if number(state) > 0.0 { towards } else { random })
+                })
+                .collect();
+            rays.push(Ray::new(mesh.vertices()[1], Vector::<N, 3>::zeros()));
+            rays.push(Ray::new(Point::origin(), Vector::<N, 3>::repeat(N::INFINITY)));
+            for (solid, max_time) in [(true, N::INFINITY), (false, N::lit(1.5)), (true, -N::ONE)] {
+                let batch = RayBatch { rays: &rays, max_time, solid };
+                let mut many = vec![None; rays.len()];
+                first_hits_on_mesh(&mesh, &batch, &mut |ray, hit| many[ray] = hit);
+                for (ray, hit) in rays.iter().zip(&many) {
+                    let question = RayQuestion { ray: *ray, max_time, solid };
+                    let parts = first_that(&mesh, &question, |_| true);
+                    assert_eq!(bits(hit.as_ref()), bits(parts.as_ref()), "{ray:?}, many");
+                    let one = first_on_mesh(&mesh, &question);
+                    assert_eq!(bits(one.as_ref()), bits(parts.as_ref()), "{ray:?}, one");
+                    hits += usize::from(parts.is_some());
+                }
+            }
+        }
+        assert!(hits > 100 || scale != 1.0, "{hits} hits");
+    }
+
+    #[test]
+    fn all_ways_have_the_same_bits() {
+        for (scale, speed) in [(1.0, 1.0), (1e18, 1.0), (1e-18, 1e6), (1.0, 1e-30), (1e12, 1e12)] {
+            agrees::<f32>(scale, speed);
+            agrees::<f64>(scale, speed);
+        }
+        agrees::<f32>(1e-36, 1.0);
+        agrees::<f32>(1e-20, 1e-20);
+        agrees::<f64>(1e-160, 1e-150);
+        agrees::<f64>(1e150, 1e150);
+    }
+}
