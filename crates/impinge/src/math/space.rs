@@ -34,6 +34,10 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     /// Where an isometry takes the origin.
     fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
 
+    /// The numbers of an isometry in a row, filled up with zeros.
+    #[doc(hidden)]
+    fn numbers(isometry: &Self::Isometry) -> [Self; 7];
+
     /// The isometry that a pose describes, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
 
@@ -78,6 +82,12 @@ impl<N: Real> Space<2> for N {
         isometry.translation.vector
     }
 
+    #[inline]
+    fn numbers(isometry: &Isometry2<N>) -> [N; 7] {
+        let (t, r) = (&isometry.translation.vector, &isometry.rotation);
+        [t.x, t.y, r.re, r.im, N::ZERO, N::ZERO, N::ZERO]
+    }
+
     fn isometry(pose: &Pose<N, 2>) -> Isometry2<N> {
         let rotation = Rotation2::from_matrix_unchecked(pose.rotation);
         let rotation = UnitComplex::from_rotation_matrix(&rotation);
@@ -114,6 +124,12 @@ impl<N: Real> Space<3> for N {
     #[inline]
     fn translation(isometry: &Isometry3<N>) -> Vector<N, 3> {
         isometry.translation.vector
+    }
+
+    #[inline]
+    fn numbers(isometry: &Isometry3<N>) -> [N; 7] {
+        let (t, r) = (&isometry.translation.vector, &isometry.rotation.coords);
+        [t.x, t.y, t.z, r.x, r.y, r.z, r.w]
     }
 
     fn isometry(pose: &Pose<N, 3>) -> Isometry3<N> {

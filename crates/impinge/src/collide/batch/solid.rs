@@ -7,7 +7,7 @@ use crate::shape::{Ball, Capsule, Cuboid, Geometry, Kind, Segment};
 
 /// A solid that closed forms treat, by value: what is kept with a pair so that its update need not
 /// look for the shapes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Solid<N: Real, const D: usize> {
     Ball(Ball<N>),
     Segment(Segment<N, D>),

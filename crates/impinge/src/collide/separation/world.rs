@@ -165,7 +165,12 @@ pub(crate) struct AtIsometry<'i, 'a, N: Space<D>, const D: usize> {
 impl<'i, 'a, N: Space<D>, const D: usize> AtIsometry<'i, 'a, N, D> {
     #[inline]
     pub(crate) fn new(isometry: IsometryRef<'i, N, D>, shape: &'a dyn Shape<N, D>) -> Self {
-        Self { isometry, shape: shape.geometry() }
+        Self::of((isometry, shape.geometry()))
+    }
+
+    #[inline]
+    pub(crate) fn of((isometry, shape): (IsometryRef<'i, N, D>, Geometry<'a, N, D>)) -> Self {
+        Self { isometry, shape }
     }
 }
 

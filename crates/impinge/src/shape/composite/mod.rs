@@ -21,7 +21,9 @@ use smallvec::SmallVec;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::partitioning::BoxTree;
-use crate::shape::{EnclosedBody, FeatureId, Geometry, Segment, Shape, SurfaceAccess, Triangle};
+use crate::shape::{
+    EnclosedBody, FeatureId, Geometry, Revision, Segment, Shape, SurfaceAccess, Triangle,
+};
 
 /// The way to a part: the index of the child, of its child, … of the part in the last.
 pub type PartPath = SmallVec<[u32; 4]>;
@@ -117,6 +119,12 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// The composite as a shape of the library, of which it is told what it encloses; `None` for one of the user's.
     #[doc(hidden)]
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
+        None
+    }
+
+    /// Names the state of a composite of the library; `None` for one of the user's, which may change unnoticed.
+    #[doc(hidden)]
+    fn revision(&self) -> Option<Revision> {
         None
     }
 

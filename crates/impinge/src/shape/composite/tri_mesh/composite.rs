@@ -11,7 +11,7 @@ use crate::partitioning::BoxTree;
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
-    CompositeShape, EnclosedBody, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid,
+    CompositeShape, EnclosedBody, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Revision,
     ScaleError, Shape, ShapeHandle, Surface, SurfaceAccess,
 };
 
@@ -53,6 +53,11 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
 
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         Some(self)
+    }
+
+    fn revision(&self) -> Option<Revision> {
+        let options = [self.is_one_sided, self.is_solid, self.keeps_internal_edges];
+        Some(self.revision.with(&options))
     }
 
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {

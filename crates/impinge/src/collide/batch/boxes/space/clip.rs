@@ -53,19 +53,19 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
 }
 
 /// The clipping of eight pairs under way.
-pub(super) struct Clip<'a, S, N: Real, V, M> {
+pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,
     /// What is shown of the rectangle, and of the parallelogram.
     shown: [ShownFaces<M>; 2],
     admission: Admission<V>,
-    slots: &'a mut Slots<N, 3, SLOTS>,
+    slots: &'a mut Slots<N, 3, SLOTS, L>,
     corners: &'a mut Corners,
     /// One of the faces leans too far in some lane.
     is_partial: bool,
 }
 
-impl<'a, S, N, V, M> Clip<'a, S, N, V, M>
+impl<'a, S, N, V, M, const L: usize> Clip<'a, S, N, V, M, L>
 where
     S: Simd,
     N: Real,
@@ -77,7 +77,7 @@ where
         simd: S,
         faces: &'a FacesInLanes<V, M>,
         limits: &Limits<V>,
-        slots: &'a mut Slots<N, 3, SLOTS>,
+        slots: &'a mut Slots<N, 3, SLOTS, L>,
         corners: &'a mut Corners,
         is_partial: bool,
     ) -> Self {
