@@ -74,7 +74,8 @@ impl<N: Real> Space<2> for N {
 
     #[inline]
     fn unturned(isometry: &Isometry2<N>) -> Pose<N, 2> {
-        Pose::unturned(isometry)
+        let numbers = [isometry.rotation.re, isometry.rotation.im];
+        Pose::from_translation(isometry.translation.vector).unless_broken(&numbers)
     }
 
     #[inline]
@@ -118,7 +119,8 @@ impl<N: Real> Space<3> for N {
 
     #[inline]
     fn unturned(isometry: &Isometry3<N>) -> Pose<N, 3> {
-        Pose::unturned(isometry)
+        let numbers = isometry.rotation.coords.as_slice();
+        Pose::from_translation(isometry.translation.vector).unless_broken(numbers)
     }
 
     #[inline]

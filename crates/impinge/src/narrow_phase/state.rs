@@ -13,6 +13,7 @@ use crate::collide::{
 };
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::memory::clone_fields;
+use crate::query::composite::{Touched, touched};
 use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 use crate::tables::ByDimension;
@@ -79,11 +80,8 @@ pub(crate) fn has_composite<N: Real, const D: usize>(
     is_composite(shape1) || is_composite(shape2)
 }
 
-/// The contacts of a pair, kept from update to update.
-pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
-    /// As users see them.
-    type Manifolds: Default;
-
+/// The contact points of a pair.
+pub(crate) trait KeptPoints<N: Real, const D: usize> {
     /// How many contact points there are.
     fn len(&self) -> usize;
 
@@ -92,6 +90,12 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
 
     /// Calls with the normal, the distance and the first point of each contact, as they are kept.
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>));
+}
+
+/// The contacts of a pair, kept from update to update.
+pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Default {
+    /// As users see them.
+    type Manifolds: Default;
 
     /// Computes the contacts for new poses; points that moved keep their ids.
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
@@ -142,7 +146,11 @@ impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
     ) -> [usize; 2] {
         let swapped = is_swapped(poses[0], Geometry(kind1), poses[1], Geometry(kind2));
         let [first, second] = [usize::from(swapped), usize::from(!swapped)];
-        self.turn(swapped, |raw| raw.flip(&Pose::relative(poses[first], poses[second])));
+        self.turn(swapped, |raw| {
+            if !raw.points.is_empty() {
+                raw.flip(&Pose::relative(poses[first], poses[second]));
+            }
+        });
         [first, second]
     }
 }
@@ -164,9 +172,7 @@ impl<C> InOrder<C> {
     }
 }
 
-impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
-    type Manifolds = ContactManifold<N, D>;
-
+impl<N: Real, const D: usize> KeptPoints<N, D> for ContactState<N, D> {
     fn len(&self) -> usize {
         self.kept.contacts.points.len()
     }
@@ -180,6 +186,10 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         let RawManifold { normal, points, .. } = &mut self.kept.contacts;
         points.iter_mut().for_each(|point| each(normal, &mut point.distance, &point.point1));
     }
+}
+
+impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
+    type Manifolds = ContactManifold<N, D>;
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         if posed.are_beyond(request.prediction) {
@@ -230,23 +240,22 @@ impl<N: Real, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
-    /// Computes the contacts of two solids of which nothing else is known; points that moved keep their ids.
-    pub(crate) fn update_alone(
+    /// Computes the contacts of two solids of which nothing else is known but, perhaps, copies; points that moved keep
+    /// their ids.
+    pub(super) fn update_alone(
         &mut self,
-        [one, other]: &[Placed<'_, N, D>; 2],
+        ([pose1, pose2], [one, other]): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
+        copies: [Option<&Solid<N, D>>; 2],
         request: &ManifoldRequest<N>,
     ) {
-        let (poses, kinds) = ([&one.pose, &other.pose], [one.shape.0, other.shape.0]);
+        let (poses, kinds) = ([pose1, pose2], [one.0, other.0]);
         let [first, second] = self.kept.order(poses, kinds);
         let (poses, raw) = ([poses[first], poses[second]], &mut self.kept.contacts);
-        let solids = kinds.map(|kind| Solid::of(Geometry(kind)));
-        if let (Some(one), Some(other)) = (&solids[first], &solids[second])
-            && <N::Algorithms>::update_pair(
-                &PairQuestion { poses, solids: [one, other], request },
-                raw,
-            )
-        {
-            return;
+        if let [Some(one), Some(other)] = [copies[first], copies[second]] {
+            let question = PairQuestion { poses, solids: [one, other], request };
+            if <N::Algorithms>::update_pair(&question, raw) {
+                return;
+            }
         }
         let pair = Pair::new([Geometry(kinds[first]), Geometry(kinds[second])], poses);
         <N::Algorithms>::contacts_of_separation(&pair, request, raw);
@@ -344,6 +353,32 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
         self.contacts.update(&Between::of_ordered(&ordered), is_self, request);
     }
 
+    /// Calls with what each contact lies on, in their order; the solids are those of the last update.
+    pub(super) fn each_touched(
+        &self,
+        placed: &[Placed<'_, N, D>; 2],
+        mut each: impl FnMut(&Touched<'_, N, D>),
+    ) {
+        let pair = in_order(placed, self.swapped);
+        for patch in self.contacts.patches() {
+            patch.points.iter().for_each(|point| touched(&pair, patch, point, &mut each));
+        }
+    }
+
+    /// The contacts as users see them: of each, in their order, `next` tells what it lies on.
+    pub(super) fn manifolds_on<'a>(
+        &self,
+        poses: &[Pose<N, D>; 2],
+        pair: u64,
+        next: impl FnMut() -> Option<Touched<'a, N, D>>,
+        old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> {
+        let is_swapped = self.swapped;
+        let [pose1, pose2] = [&poses[usize::from(is_swapped)], &poses[usize::from(!is_swapped)]];
+        let placement = Placement { pose1, pair, is_swapped };
+        self.contacts.manifolds_on([pose1, pose2], &placement, next, old)
+    }
+
     /// As [`ContactState::view`], of one patch of several; `None` behind the last.
     #[inline]
     pub(super) fn view<'a>(
@@ -359,9 +394,7 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
-    type Manifolds = Vec<ContactManifold<N, D>>;
-
+impl<N: Real, const D: usize> KeptPoints<N, D> for CompositeState<N, D> {
     fn len(&self) -> usize {
         self.contacts.len()
     }
@@ -373,6 +406,10 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
         self.contacts.each_point(each);
     }
+}
+
+impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
+    type Manifolds = Vec<ContactManifold<N, D>>;
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         self.update_between(&posed.placed(), posed.is_self, request);

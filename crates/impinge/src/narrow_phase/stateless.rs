@@ -1,9 +1,10 @@
 //! The manifolds of two placed shapes, without a world and without memory.
 
 use super::generator::{PairContacts, conforming_points};
+use super::state::KeptPoints;
 use super::traits::ContactPrediction;
-use crate::collide::{AtIsometry, ManifoldRequest, Placed};
-use crate::math::{AbstractRotation, Isometry, IsometryRef, Space};
+use crate::collide::{AtIsometry, ManifoldRequest, Placed, Solid};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Mapped, Space};
 use crate::query::ContactManifold;
 use crate::shape::Shape;
 use crate::tables::entries;
@@ -80,6 +81,9 @@ pub(crate) fn manifolds_of_placed<N: Space<D>, const D: usize>(
 ) -> Vec<ContactManifold<N, D>> {
     let has_composite = placed.iter().any(|placed| placed.shape.as_composite().is_some());
     let mut contacts = PairContacts::new(has_composite);
-    contacts.update(placed, request);
+    let [one, other] = placed;
+    let (poses, shapes) = ([one.pose, other.pose], [one.shape, other.shape]);
+    let [one, other] = shapes.mapped(Solid::of);
+    contacts.update((&poses, shapes), [one.as_ref(), other.as_ref()], request);
     if contacts.len() == 0 { Vec::new() } else { contacts.manifolds(placed, 0, Vec::new()) }
 }

@@ -7,7 +7,7 @@ use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
 use super::group::PairKey;
 use super::lanes::{CompositeGroup, ContactGroup, Lane, PairLanes};
-use super::state::KeptContacts;
+use super::state::KeptPoints;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
 use crate::math::Space;

@@ -118,6 +118,12 @@ compiled! {
         ids: &mut IdAllocator,
     ) = PairManifoldGenerator::refresh;
 
+    /// Its manifolds as users see them, in the memory of `old`.
+    fn read_generator(
+        generator: &PairManifoldGenerator<N, D>,
+        old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> = PairManifoldGenerator::read;
+
     /// The manifolds of two placed shapes, computed from nothing.
     fn manifolds_of_placed(
         placed: &[Placed<'_, N, D>; 2],

@@ -158,6 +158,13 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
                 old.distance = self.gap[lane];
                 raw.normal = vector(&self.normal, lane);
             }
+            [] if !is_two => {
+                let id = raw.ids.next();
+                let ([feature1, feature2], distance) = (features, self.gap[lane]);
+                let point1 = Point::from(point1);
+                raw.points.push(RawPoint { point1, distance, feature1, feature2, id, code: 0 });
+                raw.normal = vector(&self.normal, lane);
+            }
             _ => self.choose::<F>(lane, 1 + usize::from(is_two), raw),
         }
         true

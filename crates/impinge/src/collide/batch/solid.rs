@@ -7,7 +7,7 @@ use crate::shape::{Ball, Capsule, Cuboid, Geometry, Kind, Segment};
 
 /// A solid that closed forms treat, by value: what is kept with a pair so that its update need not
 /// look for the shapes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum Solid<N: Real, const D: usize> {
     Ball(Ball<N>),
     Segment(Segment<N, D>),
@@ -25,6 +25,18 @@ impl<N: Real, const D: usize> Solid<N, D> {
             Kind::Cuboid(cuboid) => Self::Cuboid(*cuboid),
             _ => return None,
         })
+    }
+
+    /// It has the kind and the numbers of a shape.
+    #[inline]
+    pub(crate) fn is(&self, geometry: Geometry<'_, N, D>) -> bool {
+        match (self, geometry.0) {
+            (Self::Ball(own), Kind::Ball(ball)) => own == ball,
+            (Self::Segment(own), Kind::Segment(segment)) => own == segment,
+            (Self::Capsule(own), Kind::Capsule(capsule)) => own == capsule,
+            (Self::Cuboid(own), Kind::Cuboid(cuboid)) => own == cuboid,
+            _ => false,
+        }
     }
 
     /// It is a segment, perhaps inflated.

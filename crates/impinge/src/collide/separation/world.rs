@@ -1,7 +1,6 @@
 //! The separation of two solids in the world, in the order in which they are given.
 
 use crate::collide::far::Apart;
-use crate::collide::far::are_beyond;
 use crate::collide::pair::{Ordered, Placed, Placing};
 use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::convex::Separation;
@@ -146,12 +145,8 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     ) -> Option<[Self; 2]> {
         let shapes = [one.shape(), other.shape()];
         let between = other.translation() - one.translation();
-        let apart = Apart { shapes, between };
-        let known = apart.is_known_beyond(limit);
-        if known.unwrap_or_else(|| are_beyond(&apart, limit)) {
-            return None;
-        }
-        Some([one.placed(), other.placed()])
+        let is_beyond = (Apart { shapes, between }).is_certainly_beyond(limit);
+        (!is_beyond).then(|| [one.placed(), other.placed()])
     }
 }
 

@@ -6,7 +6,8 @@
 use std::sync::Arc;
 
 use crate::collide::Solid;
-use crate::math::{Real, Space};
+use crate::math::{Mapped, Pose, Real, Space};
+use crate::query::composite::Touched;
 use crate::shape::{
     Cone, Cylinder, Ellipsoid, Geometry, Kind, Plane, Polytope, Revision, Rounded, TaperedCapsule,
     Triangle,
@@ -57,7 +58,7 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
     /// A shape answers all questions as the kept one does.
     pub(super) fn is(&self, shape: Geometry<'_, N, D>) -> bool {
         match (self, shape.0) {
-            (Self::Solid(kept), _) => Solid::of(shape).as_ref() == Some(kept),
+            (Self::Solid(kept), _) => kept.is(shape),
             (Self::Triangle(kept), Kind::Triangle(triangle)) => kept == triangle,
             (Self::Polytope(kept), Kind::Polytope(polytope)) => Arc::ptr_eq(kept, polytope.twin()),
             (Self::Revolved(Revolved::Cylinder(kept)), Kind::Cylinder(cylinder, _)) => {
@@ -72,6 +73,14 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
                 composite.revision() == Some(*kept)
             }
             _ => false,
+        }
+    }
+
+    /// The copy of a solid that a few numbers describe.
+    pub(super) const fn solid(&self) -> Option<&Solid<N, D>> {
+        match self {
+            Self::Solid(solid) => Some(solid),
+            _ => None,
         }
     }
 
@@ -91,5 +100,48 @@ impl<N: Real, const D: usize> KeptShape<N, D> {
             Self::Plane(plane) => Kind::Plane(plane),
             Self::Composite(_) => return None,
         }))
+    }
+}
+
+/// What a contact of a composite lies on.
+#[derive(Clone, Debug)]
+pub(super) struct KeptTouch<N: Real, const D: usize> {
+    /// The parts and their poses; `None` for a shape that is its own part.
+    parts: [Option<(KeptShape<N, D>, Pose<N, D>)>; 2],
+    turns_with_second: Option<bool>,
+}
+
+impl<N: Space<D>, const D: usize> KeptTouch<N, D> {
+    /// `None` where a part is a solid of the user's own; `are_whole` tells the shapes that are their own parts.
+    pub(super) fn of(touched: &Touched<'_, N, D>, are_whole: [bool; 2]) -> Option<Self> {
+        let Touched { solids, poses, turns_with_second, .. } = touched;
+        let mut parts = [None, None];
+        for which in 0..2 {
+            if !are_whole[which] {
+                parts[which] = Some((KeptShape::of(Geometry(solids[which]))?, poses[which]));
+            }
+        }
+        Some(Self { parts, turns_with_second: *turns_with_second })
+    }
+
+    /// What the contact lies on; `None` if a shape that is its own part is not kept.
+    pub(super) fn touched<'a>(
+        &'a self,
+        wholes: [Option<Geometry<'a, N, D>>; 2],
+    ) -> Option<Touched<'a, N, D>> {
+        let [one, other] =
+            [(&self.parts[0], wholes[0]), (&self.parts[1], wholes[1])].mapped(|(part, whole)| {
+                match part {
+                    Some((solid, pose)) => Some((solid.geometry()?, *pose, true)),
+                    None => whole.map(|shape| (shape, Pose::identity(), shape.turns())),
+                }
+            });
+        let ((solid1, pose1, turns1), (solid2, pose2, turns2)) = (one?, other?);
+        Some(Touched {
+            solids: [solid1.0, solid2.0],
+            poses: [pose1, pose2],
+            turns: [turns1, turns2],
+            turns_with_second: self.turns_with_second,
+        })
     }
 }

@@ -157,6 +157,15 @@ fn a_copy_goes_on_by_itself() {
 }
 
 #[test]
+fn a_composite_leaves_nothing_to_solids_that_are_far_apart() {
+    let (mut asker, ball, line) = (Asker::new(), Ball::new(1.0), wall(-0.75));
+    assert_eq!(asker.depths(&ball, &line, 1.5), [0.25]);
+    assert!(asker.depths(&ball, &ball, 9.0).is_empty(), "two balls instead");
+    assert_eq!(asker.generator.num_contacts(), 0);
+    assert_eq!(asker.depths(&ball, &line, 1.5), [0.25], "the line again");
+}
+
+#[test]
 fn no_two_contacts_share_an_id_whatever_the_shapes_were() {
     let (mut asker, ball, line) = (Asker::new(), Ball::new(1.0), wall(-0.75));
     let ids = |asker: &mut Asker, shape: &dyn Shape<f64, 2>| -> Vec<_> {

@@ -212,6 +212,11 @@ where
         let (before, after) = (from.0[axis] - at, to.0[axis] - at);
         let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
         let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
+        if M::LEN == 1 && !(leaves | enters).any_true() {
+            // Most sides of a lone pair do not cross; among eight pairs some do.
+            (self.slots.valid[slot], self.slots.level[slot]) = (0, 0);
+            return;
+        }
         let along = before / (before - after);
         let flat = [from.0[0] + side.0[0] * along, from.0[1] + side.0[1] * along];
         let is_within = flat[1 - axis].abs().simd_lt(across[1 - axis] - tolerance);
