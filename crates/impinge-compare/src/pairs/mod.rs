@@ -26,14 +26,16 @@
 //!
 //! Single calls are given both placements, in the world; parry's manifold is given the second one in
 //! the frame of the first, and making it is part of the time. "impinge" is that call; its manifold is
-//! one in the world's frame, with all that belongs to a contact. "impinge world" is the batch: a world
+//! kept as it is found, and made in the world's frame, with all that belongs to a contact, when it is read, which no
+//! time covers. "impinge world" is the batch: a world
 //! of all 256 pairs, far from one another, is told the placements of the second solids and updated, and
 //! the time is a 256th of that. It includes the broad phase, whose boxes are so loose that
 //! all pairs stay pairs in all regimes; it does not include reading the manifolds, which are as the
 //! narrow phase keeps them until they are read. "impinge narrow phase" is the part of the same updates that
 //! the narrow phase takes. "impinge reusing" is a world in which pairs keep their contacts while they have
 //! moved by less than a twentieth of the prediction (warm solids alone are asked), as parry's do within
-//! a degree and a thousandth; all else computes everything anew.
+//! a degree and a thousandth; "impinge alone reusing" is a `PairManifoldGenerator` that does so; all else computes
+//! everything anew.
 //!
 //! Manifolds are *cold* if nothing that was kept is of use: alone, each call begins with a new generator
 //! (or an empty list of manifolds); in a world, all second solids jump between two sets of placements
@@ -143,6 +145,7 @@ fn contest_in_plane(pair: &Pair<2>, regime: Regime) -> Option<Vec<Box<dyn Conten
     let poses = poses(pair, regime, &ours::judge::<Turn, 2>(pair))?;
     let mut contenders: Vec<Box<dyn Contender>> = vec![
         Box::new(ours::Alone::<Turn, 2>::new(pair, &poses)),
+        Box::new(ours::Alone::<Turn, 2>::reusing(pair, &poses)),
         Box::new(ours::World::<Turn, 2>::new(pair, &poses)),
         Box::new(ours::World::<Turn, 2>::reusing(pair, &poses)),
     ];
@@ -156,6 +159,7 @@ fn contest_in_space(pair: &Pair<3>, regime: Regime) -> Option<Vec<Box<dyn Conten
     let poses = poses(pair, regime, &ours::judge::<Turn, 3>(pair))?;
     let mut contenders: Vec<Box<dyn Contender>> = vec![
         Box::new(ours::Alone::<Turn, 3>::new(pair, &poses)),
+        Box::new(ours::Alone::<Turn, 3>::reusing(pair, &poses)),
         Box::new(ours::World::<Turn, 3>::new(pair, &poses)),
         Box::new(ours::World::<Turn, 3>::reusing(pair, &poses)),
     ];

@@ -18,7 +18,7 @@ use super::form::{Form, up};
 use super::placement::Placement;
 use super::question::{Answer, Contender, LONGEST_TIME, PREDICTION, Question, Stand, stand};
 use super::regime::{Pair, Poses};
-use super::target::{PART, REUSING_PART};
+use super::target::{ALONE, ALONE_REUSING, PART, REUSING_PART};
 use crate::measure::Times;
 
 /// How far boxes are loosened: all pairs stay pairs, whatever their regime.
@@ -164,6 +164,9 @@ where
 /// The queries, and the manifolds of a pair alone.
 pub struct Alone<R: Dimension<D>, const D: usize> {
     data: Data<R, D>,
+    /// A generator that holds nothing.
+    fresh: PairManifoldGenerator<f32, D>,
+    is_reusing: bool,
     generators: Vec<PairManifoldGenerator<f32, D>>,
     ids: IdAllocator,
     answers: Vec<Answer>,
@@ -175,8 +178,21 @@ where
     f32: Space<D, Isometry = Isometry<f32, R, D>>,
 {
     pub fn new(pair: &Pair<D>, poses: &Poses<D>) -> Self {
-        let (data, answers) = (Data::new(pair, poses), Vec::new());
-        Self { data, generators: Vec::new(), ids: IdAllocator::new(), answers, round: 0 }
+        Self {
+            data: Data::new(pair, poses),
+            fresh: PairManifoldGenerator::default(),
+            is_reusing: false,
+            generators: Vec::new(),
+            ids: IdAllocator::new(),
+            answers: Vec::new(),
+            round: 0,
+        }
+    }
+
+    /// The same, where pairs that have hardly moved keep their contacts.
+    pub fn reusing(pair: &Pair<D>, poses: &Poses<D>) -> Self {
+        let fresh = PairManifoldGenerator::default().reusing(TOLERANCE);
+        Self { fresh, is_reusing: true, ..Self::new(pair, poses) }
     }
 
     fn ask_all(
@@ -227,15 +243,15 @@ where
     f32: Space<D, Isometry = Isometry<f32, R, D>>,
 {
     fn name(&self) -> &'static str {
-        "impinge"
+        if self.is_reusing { ALONE_REUSING } else { ALONE }
     }
 
-    fn treats(&self, _: Question) -> bool {
-        true
+    fn treats(&self, question: Question) -> bool {
+        !self.is_reusing || question == Question::ManifoldWarm
     }
 
     fn reset(&mut self, _: Question) {
-        self.generators = vec![PairManifoldGenerator::default(); self.data.first.len()];
+        self.generators = vec![self.fresh.clone(); self.data.first.len()];
         self.round = 0;
     }
 

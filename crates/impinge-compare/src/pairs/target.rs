@@ -16,6 +16,12 @@ pub const PART: &str = "impinge narrow phase";
 /// The same where pairs that have hardly moved keep their contacts.
 pub const REUSING_PART: &str = "impinge reusing narrow phase";
 
+/// Generators of pairs alone, and single queries.
+pub const ALONE: &str = "impinge";
+
+/// Generators of pairs alone that keep contacts so.
+pub const ALONE_REUSING: &str = "impinge alone reusing";
+
 /// A case by its beginning, a question, and the most nanoseconds per pair of the world's update.
 const TARGETS: &[(&str, Question, f64)] = &[
     ("3D ball, ball,", Question::ManifoldWarm, 8.0),
@@ -92,8 +98,12 @@ impl Verdicts {
             self.speeds.entry(name).or_default().push(times[1] / time);
         };
         note(question.name().to_owned(), times[0]);
-        if let Some(reusing) = named(REUSING_PART) {
-            note(format!("{}, contacts kept", question.name()), reusing.times.median());
+        let others =
+            [(REUSING_PART, "contacts kept"), (ALONE, "alone"), (ALONE_REUSING, "alone, kept")];
+        for (name, what) in others.into_iter().filter(|_| question.is_manifold()) {
+            if let Some(row) = named(name) {
+                note(format!("{}, {what}", question.name()), row.times.median());
+            }
         }
     }
 

@@ -44,6 +44,12 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
         (!self.has_balls()).then_some(false)
     }
 
+    /// [`Self::is_known_beyond`] where that says something, else [`Self::is_beyond`].
+    #[inline]
+    pub(crate) fn is_certainly_beyond(&self, limit: N) -> bool {
+        self.is_known_beyond(limit).unwrap_or_else(|| are_beyond(self, limit))
+    }
+
     /// The shapes are certainly farther apart than `limit`; a negative limit and NaN count as zero.
     ///
     /// `false` says nothing; it is the answer for half-spaces, composites and support maps of users, of

@@ -23,12 +23,12 @@ pub(crate) mod separation;
 mod size;
 
 pub(crate) use batch::{
-    ConvexPair, KeptPairs, PairQuestion, Solid, distances2, distances3, separations2, separations3,
-    update_pairs2, update_pairs3,
+    ConvexPair, KeptPairs, PairQuestion, Solid, contacts_in_lanes, distances2, distances3,
+    separations2, separations3, update_pair2, update_pair3, update_pairs2, update_pairs3,
 };
 pub(crate) use manifold::{
-    OnFace, between2, build3, contacts2, contacts3, on_face2, on_face3, tangents2, tangents3,
-    witness_feature2, witness_feature3, witness_features2, witness_features3,
+    OnFace, between2, build3, contacts_of_separation2, contacts_of_separation3, on_face2, on_face3,
+    tangents2, tangents3, witness_feature2, witness_feature3, witness_features2, witness_features3,
 };
 pub(crate) use mesh::{CompositeContacts, each_contact_within, own_distance};
 pub(crate) use pair::{Pair, Placed, Placing, canonical};

@@ -27,14 +27,21 @@ impl<'a, N: Real, const D: usize> Pair<'a, N, D> {
         [first, second]: [Geometry<'a, N, D>; 2],
         [pose1, pose2]: [&Pose<N, D>; 2],
     ) -> Self {
-        let pose12 = if first.turns() {
-            Pose::relative(pose1, pose2)
-        } else {
-            let translation = pose2.translation - pose1.translation;
-            Pose { rotation: pose2.rotation, translation }
-        };
+        let pose12 = pose_between(first.turns(), [pose1, pose2]);
         Self { first: first.0, second: second.0, pose12 }
     }
+}
+
+/// The pose of a solid in the frame of the first one, which turns or not.
+#[inline]
+pub(crate) fn pose_between<N: Real, const D: usize>(
+    first_turns: bool,
+    [pose1, pose2]: [&Pose<N, D>; 2],
+) -> Pose<N, D> {
+    if first_turns {
+        return Pose::relative(pose1, pose2);
+    }
+    Pose { rotation: pose2.rotation, translation: pose2.translation - pose1.translation }
 }
 
 /// A solid where it stands in the world. The rotation of a ball counts as none.

@@ -9,7 +9,7 @@ use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::FeatureId;
 
 /// Which points a manifold shall hold.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ManifoldRequest<N: Real> {
     /// Points farther apart than this are left out; zero or more.
     pub(crate) prediction: N,

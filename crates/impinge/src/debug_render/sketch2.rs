@@ -3,7 +3,7 @@
 use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, cross2, perp, unit};
 use crate::procedural::plane;
-use crate::shape::{Ball, Kind, RoundedSolid, SupportMap};
+use crate::shape::{Ball, Kind, Rounded, SupportMap};
 
 /// Adds a convex solid in 2D.
 pub(crate) fn sketch2<N: Real>(solid: Kind<'_, N, 2>, sketch: &mut Sketch<N, 2>) {
@@ -41,7 +41,7 @@ fn sampled<N: Real>(map: &dyn SupportMap<N, 2>, parts: u32) -> Vec<Point<N, 2>> 
 }
 
 /// The outline of a rounded solid: of a polygon with its sides in full, of others by support points.
-fn rounded<N: Real>(solid: &dyn RoundedSolid<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
+fn rounded<N: Real>(solid: &Rounded<N, 2>, parts: u32) -> Vec<Point<N, 2>> {
     let inner = solid.inner().0;
     match inner {
         Kind::Segment(_) | Kind::Triangle(_) | Kind::Cuboid(_) | Kind::Polytope(_) => {

@@ -5,8 +5,8 @@ use super::sketch::Sketch;
 use crate::math::{Point, Real, Vector, orthonormal_basis, unit_or};
 use crate::procedural::{TriangleSurface, plane, space};
 use crate::shape::{
-    Ball, Cone, ConvexPolyhedron, Cuboid, Cylinder, Feature, FeatureId, Kind, RoundedSolid,
-    SupportMap, TaperedCapsule,
+    Ball, Cone, ConvexPolyhedron, Cuboid, Cylinder, Feature, FeatureId, Kind, Rounded, SupportMap,
+    TaperedCapsule,
 };
 
 /// Adds a convex solid in 3D.
@@ -158,7 +158,7 @@ fn faces<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, count: usize) -> Vec<Featu
 }
 
 /// What is rounded and has flat faces, exactly; of other solids, and flat boxes, circles of support points.
-fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &dyn RoundedSolid<N, 3>) {
+fn rounded<N: Real>(sketch: &mut Sketch<N, 3>, solid: &Rounded<N, 3>) {
     let faces = match solid.inner().0 {
         Kind::Cuboid(cuboid) => faces(cuboid, 6),
         Kind::Triangle(triangle) => faces(triangle, 2),

@@ -111,20 +111,20 @@ impl<N: Real, const D: usize> Pose<N, D> {
         e[0] = N::ONE;
         // Every number of a rotation is a factor of something in every turned axis.
         let turned = isometry.rotation.transform_vector(&e);
-        Self::from_translation(isometry.translation.vector).unless_broken(&turned)
+        Self::from_translation(isometry.translation.vector).unless_broken(turned.as_slice())
     }
 
     /// This pose of what looks the same however it is turned, as [`Self::unturned`].
     #[must_use]
     pub(crate) fn without_rotation(&self) -> Self {
-        let sums = self.rotation.column_sum();
-        Self::from_translation(self.translation).unless_broken(&sums)
+        Self::from_translation(self.translation).unless_broken(self.rotation.as_slice())
     }
 
-    /// With a translation that is not finite, if a vector is not.
+    /// With a translation that is not finite, if some of the numbers of the rotation are not.
     #[inline]
-    fn unless_broken(self, vector: &Vector<N, D>) -> Self {
-        let is_finite = (vector * N::ZERO).sum() == N::ZERO;
+    pub(super) fn unless_broken(self, numbers: &[N]) -> Self {
+        // An infinity or NaN times zero is NaN, which no sum loses.
+        let is_finite = numbers.iter().fold(N::ZERO, |sum, &x| sum + x * N::ZERO) == N::ZERO;
         let nowhere = Vector::<N, D>::repeat(N::INFINITY);
         Self { translation: if is_finite { self.translation } else { nowhere }, ..self }
     }

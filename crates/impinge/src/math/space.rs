@@ -34,6 +34,10 @@ pub trait Space<const D: usize>: Real + Compiled<D> {
     /// Where an isometry takes the origin.
     fn translation(isometry: &Self::Isometry) -> Vector<Self, D>;
 
+    /// The numbers of an isometry in a row, filled up with zeros.
+    #[doc(hidden)]
+    fn numbers(isometry: &Self::Isometry) -> [Self; 7];
+
     /// The isometry that a pose describes, up to rounding.
     fn isometry(pose: &Pose<Self, D>) -> Self::Isometry;
 
@@ -70,12 +74,19 @@ impl<N: Real> Space<2> for N {
 
     #[inline]
     fn unturned(isometry: &Isometry2<N>) -> Pose<N, 2> {
-        Pose::unturned(isometry)
+        let numbers = [isometry.rotation.re, isometry.rotation.im];
+        Pose::from_translation(isometry.translation.vector).unless_broken(&numbers)
     }
 
     #[inline]
     fn translation(isometry: &Isometry2<N>) -> Vector<N, 2> {
         isometry.translation.vector
+    }
+
+    #[inline]
+    fn numbers(isometry: &Isometry2<N>) -> [N; 7] {
+        let (t, r) = (&isometry.translation.vector, &isometry.rotation);
+        [t.x, t.y, r.re, r.im, N::ZERO, N::ZERO, N::ZERO]
     }
 
     fn isometry(pose: &Pose<N, 2>) -> Isometry2<N> {
@@ -108,12 +119,19 @@ impl<N: Real> Space<3> for N {
 
     #[inline]
     fn unturned(isometry: &Isometry3<N>) -> Pose<N, 3> {
-        Pose::unturned(isometry)
+        let numbers = isometry.rotation.coords.as_slice();
+        Pose::from_translation(isometry.translation.vector).unless_broken(numbers)
     }
 
     #[inline]
     fn translation(isometry: &Isometry3<N>) -> Vector<N, 3> {
         isometry.translation.vector
+    }
+
+    #[inline]
+    fn numbers(isometry: &Isometry3<N>) -> [N; 7] {
+        let (t, r) = (&isometry.translation.vector, &isometry.rotation.coords);
+        [t.x, t.y, t.z, r.x, r.y, r.z, r.w]
     }
 
     fn isometry(pose: &Pose<N, 3>) -> Isometry3<N> {

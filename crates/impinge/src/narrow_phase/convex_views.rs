@@ -5,7 +5,7 @@ use core::{iter, slice};
 
 use super::ObjectTable;
 use super::lanes::ContactGroup;
-use super::state::KeptContacts;
+use super::state::KeptPoints;
 use super::view::{BuiltIn, View};
 use crate::math::Space;
 

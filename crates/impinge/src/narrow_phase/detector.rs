@@ -1,8 +1,7 @@
 //! The library's own proximity algorithm as an object, for use alone.
 
-use super::state::{Posed, poses_within};
 use super::traits::{ProximityAlgorithm, ProximityDetector, ProximityDispatcher};
-use crate::math::Space;
+use crate::math::{IsometryRef, Space};
 use crate::query::Proximity;
 use crate::shape::Shape;
 use crate::tables::entries;
@@ -52,13 +51,8 @@ impl<N: Space<D>, const D: usize> ProximityDetector<N, D> for PairProximityDetec
         b: &dyn Shape<N, D>,
         margin: N,
     ) -> bool {
-        self.proximity = match poses_within([ma, mb], [a, b], margin) {
-            None => Proximity::Disjoint,
-            Some([pose1, pose2]) => {
-                let posed = Posed::new([&pose1, &pose2], [a, b]);
-                entries::proximity(&posed, margin)
-            }
-        };
+        let (at1, at2) = (IsometryRef::Own(ma), IsometryRef::Own(mb));
+        self.proximity = entries::proximity_at(at1, a, at2, b, margin);
         true
     }
 

@@ -35,7 +35,7 @@ pub(crate) fn posed<N: Space<D>, const D: usize>(
         shape1: table.shape(first).as_ref(),
         pose2: table.pose(second),
         shape2: table.shape(second).as_ref(),
-        bounds: Some([table.bounds(first), table.bounds(second)]),
+        bounds: [table.bounds(first), table.bounds(second)],
         is_self: first == second,
     }
 }
@@ -83,9 +83,15 @@ impl<M: Default> Default for ContactView<M> {
     }
 }
 
+impl<M: Clone + Default> Clone for ContactView<M> {
+    fn clone(&self) -> Self {
+        Self { manifolds: self.manifolds.clone(), old: Mutex::default() }
+    }
+}
+
 impl<M: Default> ContactView<M> {
     /// Forgets the manifolds, but keeps their memory.
-    fn expire(&mut self) {
+    pub(super) fn expire(&mut self) {
         if let Some(manifolds) = self.manifolds.take() {
             *self.old.get_mut().unwrap_or_else(PoisonError::into_inner) = manifolds;
         }

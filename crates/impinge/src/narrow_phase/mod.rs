@@ -33,8 +33,8 @@ pub use default_narrow_phase::DefaultNarrowPhase;
 pub use detector::{DefaultProximityDispatcher, PairProximityDetector};
 pub(crate) use due::{DueContacts, update_lanes2, update_lanes3};
 pub use events::{ContactEvent, Events, ProximityEvent};
-pub(crate) use generator::conforming_points;
 pub use generator::{DefaultContactDispatcher, PairManifoldGenerator};
+pub(crate) use generator::{Revolved, conforming_points};
 pub use handle::{CollisionObjectHandle, Interaction};
 pub use ids::IdAllocator;
 pub(crate) use objects::ObjectRow;
@@ -42,9 +42,9 @@ pub use objects::ObjectTable;
 pub use query_type::{ContactQuery, GeometricQueryType, ProximityQuery};
 pub(crate) use query_type::{PackedQuery, PairQuery};
 pub use reuse::ReuseError;
-pub(crate) use state::{CompositeState, ContactState, KeptContacts, Posed, proximity_of};
+pub(crate) use state::{CompositeState, ContactState, KeptContacts};
 pub use stateless::contact_manifolds;
-pub(crate) use stateless::contact_manifolds_at;
+pub(crate) use stateless::{contact_manifolds_at, manifolds_of_placed};
 pub use traits::{
     ContactAlgorithm, ContactDispatcher, ContactManifoldGenerator, ContactPrediction,
     ProximityAlgorithm, ProximityDetector, ProximityDispatcher,

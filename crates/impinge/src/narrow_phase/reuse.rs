@@ -17,7 +17,7 @@ use smallvec::SmallVec;
 use super::ObjectTable;
 use super::entry::{ContactEntry, ContactView};
 use super::group::{PairKey, Rows};
-use super::state::KeptContacts;
+use super::state::{KeptContacts, KeptPoints};
 use crate::math::{Mapped, Pose, Real, Space, max, min};
 
 /// A tolerance of motion is negative, infinite or NaN.
@@ -77,7 +77,55 @@ impl<N: Real, const D: usize> Default for Reference<N, D> {
     }
 }
 
-impl<N: Real, const D: usize> Reference<N, D> {
+impl<N: Space<D>, const D: usize> Reference<N, D> {
+    /// Moves the contacts of a pair along, if it has moved so little that this will do; `pose21` is how its solids lie
+    /// now.
+    ///
+    /// Nobody may miss a contact of solids that overlap: where less than the tolerance is predicted, no
+    /// motion beyond that counts as little.
+    #[inline]
+    pub(super) fn keeps<S: KeptPoints<N, D>>(
+        &mut self,
+        state: &mut S,
+        pose21: impl FnOnce() -> Pose<N, D>,
+        [tolerance, prediction]: [N; 2],
+    ) -> bool {
+        if self.pause > 0 {
+            self.pause -= 1;
+            return false;
+        }
+        if !self.reach.is_finite_number() {
+            return false;
+        }
+        let pose21 = pose21();
+        let (motion, limit) = (self.motion(&pose21), min(tolerance, prediction));
+        if motion > limit * N::lit(FAST) {
+            self.pause = PAUSE;
+        }
+        motion < limit && self.measure(&pose21, state, prediction)
+    }
+
+    /// Holds the contacts, which were computed just now, and how the solids lie; `reaches` are those of the solids, the
+    /// one in whose frame contacts are kept first.
+    #[inline]
+    pub(super) fn note<S: KeptPoints<N, D>>(
+        &mut self,
+        state: &mut S,
+        pose21: impl FnOnce() -> Pose<N, D>,
+        reaches: impl FnOnce() -> [N; 2],
+    ) {
+        if self.pause > 0 {
+            return;
+        }
+        self.pose21 = pose21();
+        // Solids meet where both of them are: of one without end, or larger, only what is near the other
+        // counts.
+        let [own, others] = reaches();
+        self.reach = min(own, self.pose21.translation.norm() + others);
+        self.distances.clear();
+        state.each_point(|_, distance, _| self.distances.push(*distance));
+    }
+
     /// How far a point of the first solid has come from where it was, beside the second, at most; no
     /// number or infinite if that is not known.
     fn motion(&self, pose21: &Pose<N, D>) -> N {
@@ -94,7 +142,7 @@ impl<N: Real, const D: usize> Reference<N, D> {
     /// and the one opposite, by d n, were at R' p + t' and R' (p + d n) + t'. Of the second one's way to the
     /// first as it is now, (R' − R) p + (t' − t) + d R' n, the part along R n is the distance: only
     /// differences that are small, so that little is lost far away from the origin.
-    fn measure<S: KeptContacts<N, D>>(&self, pose21: &Pose<N, D>, state: &mut S, limit: N) -> bool {
+    fn measure<S: KeptPoints<N, D>>(&self, pose21: &Pose<N, D>, state: &mut S, limit: N) -> bool {
         let turned = self.pose21.rotation - pose21.rotation;
         let moved = self.pose21.translation - pose21.translation;
         let (mut index, mut is_near) = (0, false);
@@ -135,30 +183,16 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     }
 
     /// [`Self::keeps`] of pairs that have references.
-    ///
-    /// Nobody may miss a contact of solids that overlap: where less than the tolerance is predicted, no
-    /// motion beyond that counts as little.
     fn moves_along<S: KeptContacts<N, D>>(
         &self,
         rows: &mut KeptRows<'_, N, S, S::Manifolds, D>,
         place: usize,
     ) -> bool {
-        let (key, reference) = (rows.keys[place], &mut rows.references[place]);
-        if reference.pause > 0 {
-            reference.pause -= 1;
-            return false;
-        }
-        if !reference.reach.is_finite_number() {
-            return false;
-        }
-        let entry = &mut rows.states[place];
-        let pose21 = self.pose21(key, entry.state.is_swapped());
-        let prediction = entry.request.prediction;
-        let (motion, limit) = (reference.motion(&pose21), min(self.tolerance, prediction));
-        if motion > limit * N::lit(FAST) {
-            reference.pause = PAUSE;
-        }
-        let is_kept = motion < limit && reference.measure(&pose21, &mut entry.state, prediction);
+        let (key, entry) = (rows.keys[place], &mut rows.states[place]);
+        let (is_swapped, limits) =
+            (entry.state.is_swapped(), [self.tolerance, entry.request.prediction]);
+        let pose21 = || self.pose21(key, is_swapped);
+        let is_kept = rows.references[place].keeps(&mut entry.state, pose21, limits);
         if is_kept {
             ContactView::expire_any(rows.views.get_mut(place));
         }
@@ -174,18 +208,10 @@ impl<N: Space<D>, const D: usize> Reuse<'_, N, D> {
     ) {
         let (key, state) = (rows.keys[place], &mut rows.states[place].state);
         let Some(reference) = rows.references.get_mut(place) else { return };
-        if reference.pause > 0 {
-            return;
-        }
         let is_swapped = state.is_swapped();
-        reference.pose21 = self.pose21(key, is_swapped);
-        // Solids meet where both of them are: of one without end, or larger, only what is near the other
-        // counts.
-        let objects = home_first(key, is_swapped);
-        let [own, others] = objects.mapped(|object| self.table.bounds(object).reach());
-        reference.reach = min(own, reference.pose21.translation.norm() + others);
-        reference.distances.clear();
-        state.each_point(|_, distance, _| reference.distances.push(*distance));
+        let reaches =
+            || home_first(key, is_swapped).mapped(|object| self.table.bounds(object).reach());
+        reference.note(state, || self.pose21(key, is_swapped), reaches);
     }
 
     /// The pose of the solid in whose frame contacts are kept in that of the other.

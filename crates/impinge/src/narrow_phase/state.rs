@@ -4,9 +4,8 @@
 
 use super::ObjectTable;
 use super::group::PairKey;
-use crate::collide::far::are_beyond;
-use crate::collide::far::{Apart, ReachBounds};
-use crate::collide::pair::is_swapped;
+use crate::collide::far::ReachBounds;
+use crate::collide::pair::{Ordered, is_swapped};
 use crate::collide::parts::Between;
 use crate::collide::{
     CompositeContacts, ManifoldRequest, Pair, PairQuestion, Placed, RawManifold, Solid, canonical,
@@ -14,6 +13,7 @@ use crate::collide::{
 };
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector};
 use crate::memory::clone_fields;
+use crate::query::composite::{Touched, touched};
 use crate::query::{ContactManifold, ManifoldView, PairRef, Placement, Proximity, materialise};
 use crate::shape::{Geometry, Kind, Shape};
 use crate::tables::ByDimension;
@@ -26,36 +26,20 @@ pub(crate) struct Posed<'a, N: Real, const D: usize> {
     pub(crate) shape1: &'a dyn Shape<N, D>,
     pub(crate) pose2: &'a Pose<N, D>,
     pub(crate) shape2: &'a dyn Shape<N, D>,
-    /// What holds the shapes, if that is known without asking them.
-    pub(crate) bounds: Option<[&'a ReachBounds<N, D>; 2]>,
+    /// What holds the shapes.
+    pub(crate) bounds: [&'a ReachBounds<N, D>; 2],
     /// Both are one object, which is tested against itself.
     pub(crate) is_self: bool,
 }
 
 impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
-    /// Two solids of which nothing more is known.
-    pub(super) const fn new(
-        [pose1, pose2]: [&'a Pose<N, D>; 2],
-        [shape1, shape2]: [&'a dyn Shape<N, D>; 2],
-    ) -> Self {
-        Self { pose1, shape1, pose2, shape2, bounds: None, is_self: false }
-    }
-
     /// The pair in the order in which every query computes it.
     fn canonical(&self) -> (Pair<'a, N, D>, bool) {
         canonical(self.pose1, self.shape1.geometry(), self.pose2, self.shape2.geometry())
     }
 
-    /// The pair in the order in which its contacts are kept.
-    fn in_order(&self, is_swapped: bool) -> Pair<'a, N, D> {
-        let solids = [(self.pose1, self.shape1), (self.pose2, self.shape2)];
-        let [(first, shape1), (second, shape2)] =
-            [solids[usize::from(is_swapped)], solids[usize::from(!is_swapped)]];
-        Pair::new([shape1.geometry(), shape2.geometry()], [first, second])
-    }
-
     /// The two solids, each for itself.
-    fn placed(&self) -> [Placed<'a, N, D>; 2] {
+    pub(super) fn placed(&self) -> [Placed<'a, N, D>; 2] {
         [(self.pose1, self.shape1), (self.pose2, self.shape2)]
             .mapped(|(pose, shape)| Placed { pose: *pose, shape: shape.geometry() })
     }
@@ -63,20 +47,13 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     /// The solids are certainly farther apart than `limit`.
     fn are_beyond(&self, limit: N) -> bool {
         let between = self.pose2.translation - self.pose1.translation;
-        self.bounds.is_some_and(|[one, other]| one.is_clear_of(other, &between, limit))
+        self.bounds[0].is_clear_of(self.bounds[1], &between, limit)
     }
 
     /// As [`Self::are_beyond`], by boxes, for the poses of a pair in canonical order.
     fn have_boxes_beyond(&self, pose12: &Pose<N, D>, is_swapped: bool, limit: N) -> bool {
-        self.bounds.is_some_and(|[one, other]| {
-            let [first, second] = if is_swapped { [other, one] } else { [one, other] };
-            first.has_box_clear_of(second, pose12, limit)
-        })
-    }
-
-    /// The two poses.
-    const fn poses(&self) -> [&'a Pose<N, D>; 2] {
-        [self.pose1, self.pose2]
+        let [first, second] = [usize::from(is_swapped), usize::from(!is_swapped)];
+        self.bounds[first].has_box_clear_of(self.bounds[second], pose12, limit)
     }
 
     /// A composite is among them.
@@ -85,17 +62,13 @@ impl<'a, N: Real, const D: usize> Posed<'a, N, D> {
     }
 }
 
-/// The poses of two shapes; `None` if the shapes are certainly farther apart than `limit`, which is
-/// found before anything is rotated.
-pub(super) fn poses_within<N: Space<D>, const D: usize>(
-    [isometry1, isometry2]: [&N::Isometry; 2],
-    shapes: [&dyn Shape<N, D>; 2],
-    limit: N,
-) -> Option<[Pose<N, D>; 2]> {
-    let shapes = [shapes[0].geometry(), shapes[1].geometry()];
-    let between = N::translation(isometry2) - N::translation(isometry1);
-    let is_beyond = are_beyond(&Apart { shapes, between }, limit);
-    (!is_beyond).then(|| [shapes[0].pose_at(isometry1), shapes[1].pose_at(isometry2)])
+/// Two placed solids as a pair, in the order in which its contacts are kept.
+fn in_order<'a, N: Real, const D: usize>(
+    placed: &[Placed<'a, N, D>; 2],
+    is_swapped: bool,
+) -> Pair<'a, N, D> {
+    let [first, second] = [&placed[usize::from(is_swapped)], &placed[usize::from(!is_swapped)]];
+    Pair::new([first.shape, second.shape], [&first.pose, &second.pose])
 }
 
 /// One of two shapes at least is a composite.
@@ -107,11 +80,8 @@ pub(crate) fn has_composite<N: Real, const D: usize>(
     is_composite(shape1) || is_composite(shape2)
 }
 
-/// The contacts of a pair, kept from update to update.
-pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
-    /// As users see them.
-    type Manifolds: Default;
-
+/// The contact points of a pair.
+pub(crate) trait KeptPoints<N: Real, const D: usize> {
     /// How many contact points there are.
     fn len(&self) -> usize;
 
@@ -120,15 +90,21 @@ pub(crate) trait KeptContacts<N: Real, const D: usize>: Default {
 
     /// Calls with the normal, the distance and the first point of each contact, as they are kept.
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>));
+}
+
+/// The contacts of a pair, kept from update to update.
+pub(crate) trait KeptContacts<N: Real, const D: usize>: KeptPoints<N, D> + Default {
+    /// As users see them.
+    type Manifolds: Default;
 
     /// Computes the contacts for new poses; points that moved keep their ids.
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>);
 
-    /// The contacts as users see them; `posed` is that of the last update and `pair_number` names
+    /// The contacts as users see them; the solids are those of the last update and `pair_number` names
     /// the pair; `old` gives its memory.
     fn manifolds(
         &self,
-        posed: &Posed<'_, N, D>,
+        placed: &[Placed<'_, N, D>; 2],
         pair_number: u64,
         old: Self::Manifolds,
     ) -> Self::Manifolds;
@@ -170,7 +146,11 @@ impl<N: Real, const D: usize> InOrder<RawManifold<N, D>> {
     ) -> [usize; 2] {
         let swapped = is_swapped(poses[0], Geometry(kind1), poses[1], Geometry(kind2));
         let [first, second] = [usize::from(swapped), usize::from(!swapped)];
-        self.turn(swapped, |raw| raw.flip(&Pose::relative(poses[first], poses[second])));
+        self.turn(swapped, |raw| {
+            if !raw.points.is_empty() {
+                raw.flip(&Pose::relative(poses[first], poses[second]));
+            }
+        });
         [first, second]
     }
 }
@@ -192,9 +172,7 @@ impl<C> InOrder<C> {
     }
 }
 
-impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
-    type Manifolds = ContactManifold<N, D>;
-
+impl<N: Real, const D: usize> KeptPoints<N, D> for ContactState<N, D> {
     fn len(&self) -> usize {
         self.kept.contacts.points.len()
     }
@@ -208,6 +186,10 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
         let RawManifold { normal, points, .. } = &mut self.kept.contacts;
         points.iter_mut().for_each(|point| each(normal, &mut point.distance, &point.point1));
     }
+}
+
+impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
+    type Manifolds = ContactManifold<N, D>;
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
         if posed.are_beyond(request.prediction) {
@@ -226,16 +208,16 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for ContactState<N, D> {
 
     fn manifolds(
         &self,
-        posed: &Posed<'_, N, D>,
+        placed: &[Placed<'_, N, D>; 2],
         pair_number: u64,
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> {
-        let raw = &self.kept.contacts;
+        let (raw, is_swapped) = self.kept();
         if raw.points.is_empty() {
             return ContactManifold::default();
         }
-        let pair = posed.in_order(self.kept.swapped);
-        let placement = Placement::new(posed.poses(), pair_number, self.kept.swapped);
+        let pair = in_order(placed, is_swapped);
+        let placement = Placement::of_pair(placed, pair_number, is_swapped);
         materialise(&pair, raw, &placement, old)
     }
 }
@@ -258,6 +240,27 @@ impl<N: Real, const D: usize> ContactState<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> ContactState<N, D> {
+    /// Computes the contacts of two solids of which nothing else is known but, perhaps, copies; points that moved keep
+    /// their ids.
+    pub(super) fn update_alone(
+        &mut self,
+        ([pose1, pose2], [one, other]): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
+        copies: [Option<&Solid<N, D>>; 2],
+        request: &ManifoldRequest<N>,
+    ) {
+        let (poses, kinds) = ([pose1, pose2], [one.0, other.0]);
+        let [first, second] = self.kept.order(poses, kinds);
+        let (poses, raw) = ([poses[first], poses[second]], &mut self.kept.contacts);
+        if let [Some(one), Some(other)] = [copies[first], copies[second]] {
+            let question = PairQuestion { poses, solids: [one, other], request };
+            if <N::Algorithms>::update_pair(&question, raw) {
+                return;
+            }
+        }
+        let pair = Pair::new([Geometry(kinds[first]), Geometry(kinds[second])], poses);
+        <N::Algorithms>::contacts_of_separation(&pair, request, raw);
+    }
+
     /// The solids are these from now on.
     pub(super) fn set_solids(&mut self, shapes: [&dyn Shape<N, D>; 2]) {
         let [one, other] = shapes.mapped(Shape::geometry);
@@ -338,6 +341,44 @@ impl<N: Real, const D: usize> CompositeState<N, D> {
 }
 
 impl<N: Space<D>, const D: usize> CompositeState<N, D> {
+    /// Computes the contacts of two shapes, or with `is_self` of one with itself; points that moved keep their ids.
+    pub(crate) fn update_between(
+        &mut self,
+        [one, other]: &[Placed<'_, N, D>; 2],
+        is_self: bool,
+        request: &ManifoldRequest<N>,
+    ) {
+        let ordered = Ordered::new(one, other);
+        self.turn(ordered.swapped, CompositeContacts::flip);
+        self.contacts.update(&Between::of_ordered(&ordered), is_self, request);
+    }
+
+    /// Calls with what each contact lies on, in their order; the solids are those of the last update.
+    pub(super) fn each_touched(
+        &self,
+        placed: &[Placed<'_, N, D>; 2],
+        mut each: impl FnMut(&Touched<'_, N, D>),
+    ) {
+        let pair = in_order(placed, self.swapped);
+        for patch in self.contacts.patches() {
+            patch.points.iter().for_each(|point| touched(&pair, patch, point, &mut each));
+        }
+    }
+
+    /// The contacts as users see them: of each, in their order, `next` tells what it lies on.
+    pub(super) fn manifolds_on<'a>(
+        &self,
+        poses: &[Pose<N, D>; 2],
+        pair: u64,
+        next: impl FnMut() -> Option<Touched<'a, N, D>>,
+        old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> {
+        let is_swapped = self.swapped;
+        let [pose1, pose2] = [&poses[usize::from(is_swapped)], &poses[usize::from(!is_swapped)]];
+        let placement = Placement { pose1, pair, is_swapped };
+        self.contacts.manifolds_on([pose1, pose2], &placement, next, old)
+    }
+
     /// As [`ContactState::view`], of one patch of several; `None` behind the last.
     #[inline]
     pub(super) fn view<'a>(
@@ -353,9 +394,7 @@ impl<N: Space<D>, const D: usize> CompositeState<N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
-    type Manifolds = Vec<ContactManifold<N, D>>;
-
+impl<N: Real, const D: usize> KeptPoints<N, D> for CompositeState<N, D> {
     fn len(&self) -> usize {
         self.contacts.len()
     }
@@ -367,24 +406,23 @@ impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
     fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
         self.contacts.each_point(each);
     }
+}
+
+impl<N: Space<D>, const D: usize> KeptContacts<N, D> for CompositeState<N, D> {
+    type Manifolds = Vec<ContactManifold<N, D>>;
 
     fn update(&mut self, posed: &Posed<'_, N, D>, request: &ManifoldRequest<N>) {
-        let (pair, swapped) = posed.canonical();
-        self.turn(swapped, CompositeContacts::flip);
-        let [first, second] =
-            if swapped { [posed.pose2, posed.pose1] } else { [posed.pose1, posed.pose2] };
-        let between = Between { pair, pose21: Pose::relative(second, first) };
-        self.contacts.update(&between, posed.is_self, request);
+        self.update_between(&posed.placed(), posed.is_self, request);
     }
 
     fn manifolds(
         &self,
-        posed: &Posed<'_, N, D>,
+        placed: &[Placed<'_, N, D>; 2],
         pair_number: u64,
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> {
-        let pair = posed.in_order(self.swapped);
-        let placement = Placement::new(posed.poses(), pair_number, self.swapped);
+        let pair = in_order(placed, self.swapped);
+        let placement = Placement::of_pair(placed, pair_number, self.swapped);
         self.contacts.manifolds(&pair, &placement, old)
     }
 }

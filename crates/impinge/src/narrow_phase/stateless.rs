@@ -1,10 +1,10 @@
 //! The manifolds of two placed shapes, without a world and without memory.
 
-use super::generator::{PairManifoldGenerator, conforming_points};
-use super::state::Posed;
+use super::generator::{PairContacts, conforming_points};
+use super::state::KeptPoints;
 use super::traits::ContactPrediction;
-use crate::collide::{AtIsometry, Placed};
-use crate::math::{AbstractRotation, Isometry, IsometryRef, Space};
+use crate::collide::{AtIsometry, ManifoldRequest, Placed, Solid};
+use crate::math::{AbstractRotation, Isometry, IsometryRef, Mapped, Space};
 use crate::query::ContactManifold;
 use crate::shape::Shape;
 use crate::tables::entries;
@@ -70,6 +70,20 @@ pub(crate) fn contact_manifolds_at<N: Space<D>, const D: usize>(
     if !(placed1.pose.is_finite() && placed2.pose.is_finite()) {
         return Vec::new();
     }
-    let generator = PairManifoldGenerator::new(max_points.unwrap_or(conforming_points::<D>()));
-    generator.once(&Posed::new([&placed1.pose, &placed2.pose], [shape1, shape2]), prediction)
+    let max_points = max_points.unwrap_or(conforming_points::<D>()).max(1);
+    entries::manifolds_of_placed(&[placed1, placed2], &prediction.request(max_points))
+}
+
+/// The manifolds that hold a contact. The pair has the number 0.
+pub(crate) fn manifolds_of_placed<N: Space<D>, const D: usize>(
+    placed: &[Placed<'_, N, D>; 2],
+    request: &ManifoldRequest<N>,
+) -> Vec<ContactManifold<N, D>> {
+    let has_composite = placed.iter().any(|placed| placed.shape.as_composite().is_some());
+    let mut contacts = PairContacts::new(has_composite);
+    let [one, other] = placed;
+    let (poses, shapes) = ([one.pose, other.pose], [one.shape, other.shape]);
+    let [one, other] = shapes.mapped(Solid::of);
+    contacts.update((&poses, shapes), [one.as_ref(), other.as_ref()], request);
+    if contacts.len() == 0 { Vec::new() } else { contacts.manifolds(placed, 0, Vec::new()) }
 }

@@ -7,8 +7,8 @@ use super::ObjectTable;
 use super::entry::posed;
 use super::group::PairKey;
 use super::objects::ObjectSolid;
-use super::state::Posed;
-use crate::math::{Pose, Real, Space};
+use crate::collide::Placed;
+use crate::math::{Mapped, Pose, Real, Space};
 
 /// A pair, and its objects where they were when it was computed.
 #[derive(Clone, Debug)]
@@ -61,16 +61,14 @@ impl<N: Space<D>, const D: usize> ObjectTable<N, D> {
     }
 
     /// The pair as it is to be read: where its objects were when it was computed.
-    pub(super) fn posed(&self, key: PairKey) -> Posed<'_, N, D> {
+    pub(super) fn placed_pair(&self, key: PairKey) -> [Placed<'_, N, D>; 2] {
         match self.solids_between(key) {
-            None => posed(self, key),
-            Some(PairSolids { solids: [first, second], .. }) => Posed {
-                is_self: key[0] == key[1],
-                ..Posed::new(
-                    [&first.pose, &second.pose],
-                    [first.shape.as_ref(), second.shape.as_ref()],
-                )
-            },
+            None => posed(self, key).placed(),
+            Some(pair) => {
+                let [first, second] = &pair.solids;
+                [(first.pose, &first.shape), (second.pose, &second.shape)]
+                    .mapped(|(pose, shape)| Placed { pose, shape: shape.geometry() })
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use super::composite_views::CompositeViews;
 use super::convex_views::ConvexViews;
 use super::group::PairKey;
 use super::lanes::{CompositeGroup, ContactGroup, Lane, PairLanes};
-use super::state::KeptContacts;
+use super::state::KeptPoints;
 use super::traits::ContactManifoldGenerator;
 use super::{DefaultNarrowPhase, ObjectTable};
 use crate::math::Space;
@@ -121,11 +121,11 @@ impl<'a, N: Space<D>, const D: usize> BuiltIn<'a, N, D> {
             return None;
         }
         let (group, place) = (self.group, self.place);
-        let posed = || self.table.posed(group.key(place));
+        let placed = || self.table.placed_pair(group.key(place));
         let entry = group.state(place);
         let skins = self.table.skins_of(group.key(place));
         let make =
-            |old| entries::public_manifold(&entry.state, &posed(), entry.number, old).grown(skins);
+            |old| entries::public_manifold(&entry.state, &placed(), entry.number, old).grown(skins);
         Some(group.view(place).manifolds(make))
     }
 
@@ -144,11 +144,12 @@ impl<'a, N: Space<D>, const D: usize> Composite<'a, N, D> {
     /// The manifolds, all of which hold a contact.
     fn manifolds(&self) -> &'a [ContactManifold<N, D>] {
         let (group, place) = (self.group, self.place);
-        let posed = || self.table.posed(group.key(place));
+        let placed = || self.table.placed_pair(group.key(place));
         let entry = group.state(place);
         let skins = self.table.skins_of(group.key(place));
         let make = |old| {
-            let manifolds = entries::composite_manifolds(&entry.state, &posed(), entry.number, old);
+            let manifolds =
+                entries::composite_manifolds(&entry.state, &placed(), entry.number, old);
             manifolds.into_iter().map(|manifold| manifold.grown(skins)).collect()
         };
         group.view(place).manifolds(make)

@@ -199,14 +199,10 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     }
 
     /// The same in the frames of two shapes of which the solids are parts, or all: `pose1` and
-    /// `pose2` are the poses of the solids in these.
-    pub(super) fn seen_from(
-        &self,
-        [pose1, pose2]: [&Pose<N, D>; 2],
-        shapes: [Geometry<'_, N, D>; 2],
-    ) -> Self {
+    /// `pose2` are the poses of the solids in these, `turns` says whether a rotation changes these.
+    pub(super) fn seen_from(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
-            turns: shapes.mapped(|shape| shape.turns()),
+            turns,
             local1: pose1.point(&self.local1),
             local2: pose2.point(&self.local2),
             geometry1: self.geometry1.moved(pose1),

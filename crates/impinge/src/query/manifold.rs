@@ -2,7 +2,7 @@
 
 use super::kinematic::KinematicSides;
 use super::{Contact, ContactKinematic};
-use crate::collide::{Pair, RawManifold, RawPoint};
+use crate::collide::{Pair, Placed, RawManifold, RawPoint};
 use crate::math::{Pose, Real, Unit, Vector};
 
 /// The name of a contact: no two contacts of a world, at any time, share one.
@@ -242,10 +242,10 @@ pub(crate) struct Placement<'a, N: Real, const D: usize> {
 }
 
 impl<'a, N: Real, const D: usize> Placement<'a, N, D> {
-    /// Of a pair whose solids have these poses in the user's order.
+    /// Of two solids in the user's order.
     #[inline]
-    pub(crate) fn new(poses: [&'a Pose<N, D>; 2], pair: u64, is_swapped: bool) -> Self {
-        Self { pose1: poses[usize::from(is_swapped)], pair, is_swapped }
+    pub(crate) fn of_pair(placed: &'a [Placed<'_, N, D>; 2], pair: u64, is_swapped: bool) -> Self {
+        Self { pose1: &placed[usize::from(is_swapped)].pose, pair, is_swapped }
     }
 }
 

@@ -3,10 +3,9 @@
 use core::fmt;
 
 use crate::math::{Point, Pose, Real, Space, max};
-use crate::shape::solids::rounded::RoundedSolid;
 use crate::shape::{
-    Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Polytope, Segment,
-    SupportMap, TaperedCapsule, Triangle,
+    Ball, Capsule, CompositeShape, Cone, Cuboid, Cylinder, Ellipsoid, Plane, Polytope, Rounded,
+    Segment, SupportMap, TaperedCapsule, Triangle,
 };
 
 /// The kinds of solid that the pair table knows, in the order in which pairs are named.
@@ -80,7 +79,7 @@ pub(crate) enum Kind<'a, N: Real, const D: usize> {
     Cone(&'a Cone<N>, &'a dyn SupportMap<N, D>),
     Ellipsoid(&'a Ellipsoid<N, D>),
     TaperedCapsule(&'a TaperedCapsule<N, D>),
-    Rounded(&'a dyn RoundedSolid<N, D>),
+    Rounded(&'a Rounded<N, D>),
     SupportMap(&'a dyn SupportMap<N, D>),
     Plane(&'a Plane<N, D>),
     Composite(&'a dyn CompositeShape<N, D>),

@@ -16,15 +16,16 @@ use crate::collide::separation::{
     separation_in_plane, separation_in_space,
 };
 use crate::collide::{
-    ConvexPair, ManifoldRequest, OnFace, Pair, RawManifold, Solid, between2, build3, contacts2,
-    contacts3, distances2, distances3, on_face2, on_face3, separations2, separations3, tangents2,
-    tangents3, witness_feature2, witness_feature3, witness_features2, witness_features3,
+    ConvexPair, ManifoldRequest, OnFace, Pair, PairQuestion, RawManifold, Solid, between2, build3,
+    contacts_in_lanes, contacts_of_separation2, contacts_of_separation3, distances2, distances3,
+    on_face2, on_face3, separations2, separations3, tangents2, tangents3, update_pair2,
+    update_pair3, witness_feature2, witness_feature3, witness_features2, witness_features3,
 };
 use crate::convex::Separation;
 #[cfg(feature = "debug_render")]
 use crate::debug_render::{Sketch, sketch2, sketch3};
 use crate::math::{Point, Real, Space, Vector};
-use crate::narrow_phase::{DueContacts, update_lanes2, update_lanes3};
+use crate::narrow_phase::{DueContacts, Revolved, update_lanes2, update_lanes3};
 use crate::query::composite::RayQuestion;
 use crate::query::mass::MassByDimension;
 use crate::query::point::{SurfacePoint, point2, point3};
@@ -82,8 +83,29 @@ pub trait ByDimension<N: Real, const D: usize>:
     /// How a solid sees a point; `None` where there is no closed form.
     fn seen(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
 
-    /// The contact points of a pair.
-    fn contacts(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, D>);
+    /// The contact points of a pair: by the algorithm of its kinds for pairs in lanes where there is one, else from
+    /// the separation.
+    fn contacts(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, D>)
+    where
+        N: Space<D>,
+    {
+        if !contacts_in_lanes(pair, request, out) {
+            Self::contacts_of_separation(pair, request, out);
+        }
+    }
+
+    /// The contact points of a pair from its separation.
+    fn contacts_of_separation(
+        pair: &Pair<'_, N, D>,
+        request: &ManifoldRequest<N>,
+        out: &mut RawManifold<N, D>,
+    );
+
+    /// The contact points of one pair by the algorithm for pairs in lanes; `false` if there is none for its kinds or it
+    /// declines the pair.
+    fn update_pair(question: &PairQuestion<'_, N, D>, out: &mut RawManifold<N, D>) -> bool
+    where
+        N: Space<D>;
 
     /// The contact points of a pair whose separation is known.
     fn between(
@@ -143,6 +165,9 @@ pub trait ByDimension<N: Real, const D: usize>:
 
     /// The point of the boundary of a solid that is nearest to a point.
     fn surface_point(solid: Kind<'_, N, D>, point: &Point<N, D>) -> SurfacePoint<N, D>;
+
+    /// A solid of revolution as queries see it; there is none in 2D.
+    fn revolved(solid: &Revolved<N>) -> Kind<'_, N, D>;
 
     /// The convex hull of points; `None` if they have none with a volume.
     fn hull(points: &[Point<N, D>]) -> Option<ShapeHandle<N, D>>;
@@ -205,8 +230,16 @@ impl<N: Real> ByDimension<N, 2> for Here {
         seen_in_plane(solid, point)
     }
 
-    fn contacts(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, 2>) {
-        contacts2(pair, request, out);
+    fn contacts_of_separation(
+        pair: &Pair<'_, N, 2>,
+        request: &ManifoldRequest<N>,
+        out: &mut RawManifold<N, 2>,
+    ) {
+        contacts_of_separation2(pair, request, out);
+    }
+
+    fn update_pair(question: &PairQuestion<'_, N, 2>, out: &mut RawManifold<N, 2>) -> bool {
+        update_pair2(question, out)
     }
 
     fn between(
@@ -276,6 +309,10 @@ impl<N: Real> ByDimension<N, 2> for Here {
         point2::surface_point(solid, point)
     }
 
+    fn revolved(_: &Revolved<N>) -> Kind<'_, N, 2> {
+        unreachable!("cylinders and cones are solids of space")
+    }
+
     fn hull(points: &[Point<N, 2>]) -> Option<ShapeHandle<N, 2>> {
         ConvexPolygon::try_from_points(points).ok().map(ShapeHandle::new)
     }
@@ -339,8 +376,16 @@ impl<N: Real> ByDimension<N, 3> for Here {
         seen_in_space(solid, point)
     }
 
-    fn contacts(pair: &Pair<'_, N, 3>, request: &ManifoldRequest<N>, out: &mut RawManifold<N, 3>) {
-        contacts3(pair, request, out);
+    fn contacts_of_separation(
+        pair: &Pair<'_, N, 3>,
+        request: &ManifoldRequest<N>,
+        out: &mut RawManifold<N, 3>,
+    ) {
+        contacts_of_separation3(pair, request, out);
+    }
+
+    fn update_pair(question: &PairQuestion<'_, N, 3>, out: &mut RawManifold<N, 3>) -> bool {
+        update_pair3(question, out)
     }
 
     fn between(
@@ -413,6 +458,13 @@ impl<N: Real> ByDimension<N, 3> for Here {
 
     fn surface_point(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> SurfacePoint<N, 3> {
         point3::surface_point(solid, point)
+    }
+
+    fn revolved(solid: &Revolved<N>) -> Kind<'_, N, 3> {
+        match solid {
+            Revolved::Cylinder(cylinder) => Kind::Cylinder(cylinder, cylinder),
+            Revolved::Cone(cone) => Kind::Cone(cone, cone),
+        }
     }
 
     fn hull(points: &[Point<N, 3>]) -> Option<ShapeHandle<N, 3>> {

@@ -9,8 +9,8 @@ use crate::convex::Separation;
 use crate::debug_render::Sketch;
 use crate::math::{self, IsometryRef, Point, Pose, Vector};
 use crate::narrow_phase::{
-    self, CompositeState, ContactPrediction, ContactState, DefaultNarrowPhase, Events,
-    KeptContacts, ObjectTable, Posed, proximity_of,
+    self, CompositeState, ContactPrediction, ContactState, DefaultNarrowPhase, Events, IdAllocator,
+    KeptContacts, ObjectTable, PairManifoldGenerator,
 };
 use crate::query::composite::{self, PartPoint, RayQuestion};
 use crate::query::point::{self, SurfacePoint};
@@ -109,32 +109,39 @@ compiled! {
     fn is_crossed(parts: &dyn CompositeShape<N, D>, ray: &Ray<N, D>, max_time: N) -> bool =
         composite::is_crossed;
 
-    /// Updates the contacts of two convex solids.
-    fn update_contacts(
-        state: &mut ContactState<N, D>,
-        posed: &Posed<'_, N, D>,
-        request: &ManifoldRequest<N>,
-    ) = ContactState::update;
+    /// Updates the contacts of one pair that is kept alone.
+    fn update_generator(
+        generator: &mut PairManifoldGenerator<N, D>,
+        isometries: [&<N as math::Space<D>>::Isometry; 2],
+        shapes: [&dyn Shape<N, D>; 2],
+        prediction: &ContactPrediction<N>,
+        ids: &mut IdAllocator,
+    ) = PairManifoldGenerator::refresh;
 
-    /// Their manifold as users keep it, in the memory of `old`.
+    /// Its manifolds as users see them, in the memory of `old`.
+    fn read_generator(
+        generator: &PairManifoldGenerator<N, D>,
+        old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> = PairManifoldGenerator::read;
+
+    /// The manifolds of two placed shapes, computed from nothing.
+    fn manifolds_of_placed(
+        placed: &[Placed<'_, N, D>; 2],
+        request: &ManifoldRequest<N>,
+    ) -> Vec<ContactManifold<N, D>> = narrow_phase::manifolds_of_placed;
+
+    /// The manifold of two convex solids as users keep it, in the memory of `old`.
     fn public_manifold(
         state: &ContactState<N, D>,
-        posed: &Posed<'_, N, D>,
+        placed: &[Placed<'_, N, D>; 2],
         pair_number: u64,
         old: ContactManifold<N, D>,
     ) -> ContactManifold<N, D> = ContactState::manifolds;
 
-    /// Updates the contacts of two shapes with a composite among them.
-    fn update_composites(
-        state: &mut CompositeState<N, D>,
-        posed: &Posed<'_, N, D>,
-        request: &ManifoldRequest<N>,
-    ) = CompositeState::update;
-
-    /// Their manifolds as users keep them, in the memory of `old`.
+    /// The manifolds of two shapes with a composite among them as users keep them, in the memory of `old`.
     fn composite_manifolds(
         state: &CompositeState<N, D>,
-        posed: &Posed<'_, N, D>,
+        placed: &[Placed<'_, N, D>; 2],
         pair_number: u64,
         old: Vec<ContactManifold<N, D>>,
     ) -> Vec<ContactManifold<N, D>> = CompositeState::manifolds;
@@ -142,9 +149,6 @@ compiled! {
     /// A contact of a manifold that is read in place, with its kinematic.
     fn tracked_contact(view: &ManifoldView<'_, N, D>, index: usize) -> TrackedContact<N, D> =
         ManifoldView::tracked;
-
-    /// Whether two shapes intersect, are within a margin, or farther apart.
-    fn proximity(posed: &Posed<'_, N, D>, margin: N) -> Proximity = proximity_of;
 
     /// The step of a narrow phase.
     fn update_pairs(

@@ -1,6 +1,6 @@
 //! Two balls: `collide/separation/balls/ball_ball.rs` in lanes.
 
-use super::closed_form::{EightContacts, Form};
+use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
 use super::vectors::{times, unit};
 use super::{PairQuestion, Solid};
@@ -13,7 +13,11 @@ pub(super) struct BallBall;
 
 impl<N: Real, const D: usize> Form<N, D> for BallBall {
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, D, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, D>,
+    ) -> bool {
         let [Solid::Ball(ball1), Solid::Ball(ball2)] = pair.solids else { return false };
         inputs.put_centers(lane, pair);
         inputs.put_radius(lane, 0, ball1.radius());
@@ -22,10 +26,10 @@ impl<N: Real, const D: usize> Form<N, D> for BallBall {
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, D>,
-        found: &mut EightContacts<N, D>,
+        inputs: &Inputs<N, D, L>,
+        found: &mut LaneContacts<N, D, L>,
     ) {
         let (normal, apart, is_usual) = unit(simd, &inputs.away::<S, V>(simd));
         let (radius1, radius2) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));

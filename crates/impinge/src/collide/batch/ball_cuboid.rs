@@ -1,6 +1,6 @@
 //! A ball and a box: `collide/separation/balls/ball_cuboid.rs` in lanes.
 
-use super::closed_form::{EightContacts, Form};
+use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
 use super::vectors::{bits, length_of, lit, minus, negated, rounding_of, times, unit};
 use super::{PairQuestion, Solid};
@@ -13,7 +13,11 @@ pub(super) struct BallCuboid;
 
 impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, D, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, D>,
+    ) -> bool {
         let [Solid::Ball(ball), Solid::Cuboid(cuboid)] = pair.solids else { return false };
         inputs.put_beside_ball(lane, pair);
         inputs.put_radius(lane, 0, ball.radius());
@@ -22,10 +26,10 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, D>,
-        found: &mut EightContacts<N, D>,
+        inputs: &Inputs<N, D, L>,
+        found: &mut LaneContacts<N, D, L>,
     ) {
         let (pose12, half) = (inputs.beside_ball::<S, V>(simd), inputs.end(simd, 1, 0));
         let radius = inputs.radius(simd, 0);
@@ -52,7 +56,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
     }
 }
 
-impl<N: Real, const D: usize> EightContacts<N, D> {
+impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
     /// `Cuboid::part_at` for a point of each box: masks of the axes that are free, then of the signs.
     /// Answers the lanes where there is such a part.
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! A ball and a segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
 
-use super::closed_form::{EightContacts, Form};
+use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther};
 use super::vectors::{bits, dot, either, lit, minus, negated, rounding_of, times, unit};
@@ -15,7 +15,11 @@ pub(super) struct BallSegment;
 
 impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, D, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, D>,
+    ) -> bool {
         let Solid::Ball(ball) = pair.solids[0] else { return false };
         inputs.put_radius(lane, 0, ball.radius());
         inputs.put_beside_ball(lane, pair);
@@ -23,10 +27,10 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, D>,
-        found: &mut EightContacts<N, D>,
+        inputs: &Inputs<N, D, L>,
+        found: &mut LaneContacts<N, D, L>,
     ) {
         let pose12 = inputs.beside_ball::<S, V>(simd);
         let ends = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];

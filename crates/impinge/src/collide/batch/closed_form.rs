@@ -1,16 +1,15 @@
 //! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule, and segments
 //! and capsules. Their manifold is one point, of segments of the plane perhaps two.
 
-use crate::tables::ByDimension;
 use core::marker::PhantomData;
 
 use super::gather::Inputs;
 use super::masks::turned;
 use super::vectors::{bits, is_finite};
-use super::{Batch, LANES, PairQuestion};
+use super::{Batch, PairQuestion};
 use crate::collide::manifold::ids::{PairPose, is_same_point};
 use crate::collide::manifold::{Candidate, PointChoice, choose};
-use crate::collide::{ManifoldRequest, Pair, RawManifold, RawPoint};
+use crate::collide::{RawManifold, RawPoint};
 use crate::math::simd::Simd;
 use crate::math::{Mapped, Point, Real, Space, Vector, Wide};
 use crate::shape::FeatureId;
@@ -18,85 +17,80 @@ use crate::shape::FeatureId;
 /// A closed form in lanes.
 pub(super) trait Form<N: Real, const D: usize> {
     /// As [`Batch::gather`].
-    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool;
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, D, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, D>,
+    ) -> bool;
 
-    /// The contacts of eight pairs.
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    /// The contacts of the pairs.
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, D>,
-        found: &mut EightContacts<N, D>,
+        inputs: &Inputs<N, D, L>,
+        found: &mut LaneContacts<N, D, L>,
     );
 
-    /// The features of the two solids that a pair's byte of [`EightContacts::parts`] stands for.
+    /// The features of the two solids that a pair's byte of [`LaneContacts::parts`] stands for.
     fn features(parts: u8) -> [FeatureId; 2];
-
-    /// As [`Batch::fall_back`].
-    #[inline(never)]
-    fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>)
-    where
-        N: Space<D>,
-    {
-        <N::Algorithms>::contacts(pair, request, raw);
-    }
 }
 
 /// A batch of pairs with such a form.
 pub(super) struct ClosedForm<F>(PhantomData<F>);
 
 impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
-    type Found = EightContacts<N, D>;
+    type Found<const L: usize> = LaneContacts<N, D, L>;
 
-    fn blank() -> Self::Found {
-        EightContacts::new()
+    fn blank<const L: usize>() -> LaneContacts<N, D, L> {
+        LaneContacts::new()
     }
 
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, D>, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, D, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, D>,
+    ) -> bool {
         F::gather(inputs, lane, pair)
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, D>,
-        found: &mut EightContacts<N, D>,
+        inputs: &Inputs<N, D, L>,
+        found: &mut LaneContacts<N, D, L>,
     ) {
-        F::find::<S, V>(simd, inputs, found);
+        F::find::<S, V, L>(simd, inputs, found);
         found.is_found &= inputs.is_usable;
         found.is_apart &= inputs.is_usable;
         found.parts = turned(found.parts);
     }
 
     #[inline(always)]
-    fn settle(
-        found: &EightContacts<N, D>,
+    fn settle<const L: usize>(
+        found: &LaneContacts<N, D, L>,
         lane: usize,
         _: usize,
         raw: &mut RawManifold<N, D>,
     ) -> bool {
-        found.settle::<F>(lane & (LANES - 1), raw)
-    }
-
-    fn fall_back(pair: &Pair<'_, N, D>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, D>) {
-        F::fall_back(pair, request, raw);
+        found.settle::<F>(lane & (L - 1), raw)
     }
 }
 
-/// The contacts of eight pairs.
-pub(super) struct EightContacts<N: Real, const D: usize> {
-    pub(super) normal: [[N; LANES]; D],
-    pub(super) gap: [N; LANES],
+/// The contacts of `L` pairs.
+pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
+    pub(super) normal: [[N; L]; D],
+    pub(super) gap: [N; L],
     /// The size of each pair, for what is in proportion to it.
-    pub(super) size: [N; LANES],
+    pub(super) size: [N; L],
     /// The first and the second contact: the points on the first solid, and the distances, of which that of a
     /// lone contact is the gap.
-    pub(super) points1: [[[N; LANES]; D]; 2],
-    pub(super) distances: [[N; LANES]; 2],
+    pub(super) points1: [[[N; L]; D]; 2],
+    pub(super) distances: [[N; L]; 2],
     /// Lengths up to this are rounding errors, where there are two contacts.
-    pub(super) tolerance: [N; LANES],
+    pub(super) tolerance: [N; L],
     /// Eight masks that encode what the points lie on, then a byte for each pair; what the bits mean is up to the
     /// form. Where there are two contacts, four are of the first.
-    pub(super) parts: [u8; LANES],
+    pub(super) parts: [u8; 8],
     /// The lanes that are too far apart, those that have a contact, and those that have two. The others are
     /// declined.
     pub(super) is_apart: u8,
@@ -104,9 +98,9 @@ pub(super) struct EightContacts<N: Real, const D: usize> {
     pub(super) is_two: u8,
 }
 
-impl<N: Real, const D: usize> EightContacts<N, D> {
+impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
     const fn new() -> Self {
-        let row = [N::ZERO; LANES];
+        let row = [N::ZERO; L];
         Self {
             normal: [row; D],
             gap: row,
@@ -114,20 +108,20 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
             points1: [[row; D]; 2],
             distances: [row; 2],
             tolerance: row,
-            parts: [0; LANES],
+            parts: [0; 8],
             is_apart: 0,
             is_found: 0,
             is_two: 0,
         }
     }
 
-    /// What is known of eight pairs, where that is usual: the distance, the normal and the point on the
+    /// What is known of the pairs, where that is usual: the distance, the normal and the point on the
     /// first solid.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        inputs: &Inputs<N, D>,
+        inputs: &Inputs<N, D, L>,
         (distance, is_usual): (V, V::Mask),
         [normal, point1]: [&[V; D]; 2],
     ) {
@@ -164,6 +158,13 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
                 old.distance = self.gap[lane];
                 raw.normal = vector(&self.normal, lane);
             }
+            [] if !is_two => {
+                let id = raw.ids.next();
+                let ([feature1, feature2], distance) = (features, self.gap[lane]);
+                let point1 = Point::from(point1);
+                raw.points.push(RawPoint { point1, distance, feature1, feature2, id, code: 0 });
+                raw.normal = vector(&self.normal, lane);
+            }
             _ => self.choose::<F>(lane, 1 + usize::from(is_two), raw),
         }
         true
@@ -192,10 +193,13 @@ impl<N: Real, const D: usize> EightContacts<N, D> {
 
 /// The vector of one lane.
 #[inline(always)]
-fn vector<N: Real, const D: usize>(rows: &[[N; LANES]; D], lane: usize) -> Vector<N, D> {
+fn vector<N: Real, const D: usize, const L: usize>(
+    rows: &[[N; L]; D],
+    lane: usize,
+) -> Vector<N, D> {
     let mut vector = Vector::<N, D>::zeros();
     for axis in 0..D {
-        vector[axis] = rows[axis][lane & (LANES - 1)];
+        vector[axis] = rows[axis][lane & (L - 1)];
     }
     vector
 }

@@ -1,25 +1,25 @@
-//! Eight pairs of solids side by side.
+//! Pairs of solids side by side: eight, or one.
 
 use super::vectors::{minus, seen_from};
-use super::{Batch, KeptPairs, LANES, PairQuestion};
+use super::{Batch, KeptPairs, PairQuestion};
 use crate::math::lanes::{LanePose, load};
 use crate::math::simd::Simd;
 use crate::math::{Matrix, Real, Vector, Wide, filled};
 
 /// A vector in each lane, by rows.
-type LaneRows<N, const D: usize> = [[N; LANES]; D];
+type LaneRows<N, const D: usize, const L: usize> = [[N; L]; D];
 
-/// What eight pairs are asked about: a row for each number, a column for each pair.
-pub(super) struct Inputs<N: Real, const D: usize> {
+/// What `L` pairs are asked about: a row for each number, a column for each pair.
+pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
     /// By columns.
-    rotations: [[LaneRows<N, D>; D]; 2],
-    translations: [LaneRows<N, D>; 2],
+    rotations: [[LaneRows<N, D, L>; D]; 2],
+    translations: [LaneRows<N, D, L>; 2],
     /// The ends of a segment; the first is the half extents of a box.
-    ends: [[LaneRows<N, D>; 2]; 2],
-    radii: [[N; LANES]; 2],
-    prediction: [N; LANES],
-    sine: [N; LANES],
-    pub(super) max_points: [usize; LANES],
+    ends: [[LaneRows<N, D, L>; 2]; 2],
+    radii: [[N; L]; 2],
+    prediction: [N; L],
+    sine: [N; L],
+    pub(super) max_points: [usize; L],
     /// The first of the pairs, and how many lanes are taken.
     pub(super) first: usize,
     pub(super) count: usize,
@@ -27,9 +27,9 @@ pub(super) struct Inputs<N: Real, const D: usize> {
     pub(super) is_usable: u8,
 }
 
-impl<N: Real, const D: usize> Inputs<N, D> {
+impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     pub(super) const fn new() -> Self {
-        let row = [N::ZERO; LANES];
+        let row = [N::ZERO; L];
         Self {
             rotations: [[[row; D]; D]; 2],
             translations: [[row; D]; 2],
@@ -37,14 +37,14 @@ impl<N: Real, const D: usize> Inputs<N, D> {
             radii: [row; 2],
             prediction: row,
             sine: row,
-            max_points: [0; LANES],
+            max_points: [0; L],
             first: 0,
             count: 0,
             is_usable: 0,
         }
     }
 
-    /// Takes up to eight pairs, beginning with one of a number. Lanes beyond those taken keep what they had.
+    /// Takes up to `L` pairs, beginning with one of a number. Lanes beyond those taken keep what they had.
     #[inline(always)]
     pub(super) fn gather<B: Batch<N, D>, P: KeptPairs<N, D>>(
         &mut self,
@@ -52,7 +52,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
         first: usize,
     ) {
         (self.first, self.is_usable) = (first, 0);
-        self.count = (pairs.len() - first).min(LANES);
+        self.count = (pairs.len() - first).min(L);
         for lane in 0..self.count {
             self.put::<B>(lane, &pairs.begin(first + lane));
         }
@@ -62,8 +62,8 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     #[inline(always)]
     pub(super) fn put<B: Batch<N, D>>(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) {
         self.is_usable |= u8::from(B::gather(self, lane, pair)) << lane;
-        self.prediction[lane & (LANES - 1)] = pair.request.prediction;
-        self.max_points[lane & (LANES - 1)] = pair.request.max_points;
+        self.prediction[lane & (L - 1)] = pair.request.prediction;
+        self.max_points[lane & (L - 1)] = pair.request.max_points;
     }
 
     /// Where two balls are.
@@ -90,13 +90,13 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     /// The radius of one of the solids.
     #[inline(always)]
     pub(super) const fn put_radius(&mut self, lane: usize, which: usize, radius: N) {
-        self.radii[which][lane & (LANES - 1)] = radius;
+        self.radii[which][lane & (L - 1)] = radius;
     }
 
     /// By how much solids may turn.
     #[inline(always)]
     pub(super) const fn put_sine(&mut self, lane: usize, sine: N) {
-        self.sine[lane & (LANES - 1)] = sine;
+        self.sine[lane & (L - 1)] = sine;
     }
 
     /// An end of the segment in the middle of one of the solids, or the half extents of a box.
@@ -145,8 +145,8 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     /// The second solid's pose in the frame of the first, as `Pose::relative` has it.
     #[inline(always)]
     pub(super) fn pose12<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
-        let axes = load_all::<S, N, V, D>(simd, &self.rotations[0]);
-        let turned = load_all::<S, N, V, D>(simd, &self.rotations[1]);
+        let axes = load_all::<S, N, V, D, L>(simd, &self.rotations[0]);
+        let turned = load_all::<S, N, V, D, L>(simd, &self.rotations[1]);
         let rotation = filled(
             #[inline(always)]
             |column| seen_from(&axes, &turned[column]),
@@ -157,33 +157,33 @@ impl<N: Real, const D: usize> Inputs<N, D> {
 
 /// Puts a vector into a lane.
 #[inline(always)]
-pub(super) fn put<N: Real, const D: usize>(
-    rows: &mut LaneRows<N, D>,
+pub(super) fn put<N: Real, const D: usize, const L: usize>(
+    rows: &mut LaneRows<N, D, L>,
     lane: usize,
     vector: &Vector<N, D>,
 ) {
     for axis in 0..D {
-        rows[axis][lane & (LANES - 1)] = vector[axis];
+        rows[axis][lane & (L - 1)] = vector[axis];
     }
 }
 
 #[inline(always)]
-fn put_all<N: Real, const D: usize>(
-    columns: &mut [LaneRows<N, D>; D],
+fn put_all<N: Real, const D: usize, const L: usize>(
+    columns: &mut [LaneRows<N, D, L>; D],
     lane: usize,
     matrix: &Matrix<N, D>,
 ) {
     for column in 0..D {
         for axis in 0..D {
-            columns[column][axis][lane & (LANES - 1)] = matrix[(axis, column)];
+            columns[column][axis][lane & (L - 1)] = matrix[(axis, column)];
         }
     }
 }
 
 #[inline(always)]
-fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, const L: usize>(
     simd: S,
-    columns: &[LaneRows<N, D>; D],
+    columns: &[LaneRows<N, D, L>; D],
 ) -> [[V; D]; D] {
     filled(
         #[inline(always)]

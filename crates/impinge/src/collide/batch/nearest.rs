@@ -11,7 +11,7 @@ use crate::shape::FeatureId;
 pub(super) const END_OR_SIDE: [FeatureId; 4] =
     [FeatureId::Edge(0), FeatureId::Vertex(0), FeatureId::Vertex(1), FeatureId::Edge(0)];
 
-impl<N: Real, const D: usize> Inputs<N, D> {
+impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     /// Two segments or capsules and where they are; answers whether both are.
     #[inline(always)]
     pub(super) fn put_cores(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {

@@ -2,13 +2,11 @@
 //! it for all flat-sided solids, in lanes.
 
 use super::PairQuestion;
-use super::closed_form::{EightContacts, Form};
+use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther, half_length};
 use super::vectors::{bits, dot, either, either_mask, lit, minus, norm, plus, rounding_of, times};
-use crate::collide::manifold::contacts_of_separation2;
 use crate::collide::separation::SegmentGap;
-use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FeatureId;
@@ -18,15 +16,19 @@ pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, 2, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, 2>,
+    ) -> bool {
         inputs.put_cores(lane, pair) && pair.request.max_points > 1
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, 2>,
-        found: &mut EightContacts<N, 2>,
+        inputs: &Inputs<N, 2, L>,
+        found: &mut LaneContacts<N, 2, L>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
         let ends1 = [inputs.end::<S, V>(simd, 0, 0), inputs.end::<S, V>(simd, 0, 1)];
@@ -69,10 +71,6 @@ impl<N: Real> Form<N, 2> for Segments2 {
     #[inline(always)]
     fn features(parts: u8) -> [FeatureId; 2] {
         [END_OR_SIDE[usize::from(parts & 3)], END_OR_SIDE[usize::from(parts >> 2 & 3)]]
-    }
-
-    fn fall_back(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 2>) {
-        contacts_of_separation2(pair, request, raw);
     }
 }
 
@@ -350,7 +348,7 @@ impl<V, M> SegmentContacts<V, M> {
     }
 
     #[inline(always)]
-    fn store<S: Simd, N: Real>(&self, found: &mut EightContacts<N, 2>)
+    fn store<S: Simd, N: Real, const L: usize>(&self, found: &mut LaneContacts<N, 2, L>)
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,

@@ -1,7 +1,7 @@
 //! Segments and capsules in 3D: `collide/separation/segments/segment_segment.rs` in lanes.
 
 use super::PairQuestion;
-use super::closed_form::{EightContacts, Form};
+use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
 use super::nearest::{END_OR_SIDE, farther, half_length};
 use super::vectors::{bits, cross, dot, either, lit, minus, norm, plus, rounding_of, times, unit};
@@ -18,15 +18,19 @@ type SegmentEnds<V> = [[V; 3]; 2];
 
 impl<N: Real> Form<N, 3> for Segments3 {
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, 3, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, 3>,
+    ) -> bool {
         inputs.put_cores(lane, pair)
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, 3>,
-        found: &mut EightContacts<N, 3>,
+        inputs: &Inputs<N, 3, L>,
+        found: &mut LaneContacts<N, 3, L>,
     ) {
         let pose12 = inputs.pose12::<S, V>(simd);
         let ends1 = [inputs.end::<S, V>(simd, 0, 0), inputs.end::<S, V>(simd, 0, 1)];
@@ -215,7 +219,7 @@ fn flat<S: Simd, V: Wide<S>>(along: &[V; 3], normal: &[V; 3]) -> V {
     dot(along, along) - high * high
 }
 
-impl<N: Real> EightContacts<N, 3> {
+impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
     /// `part_at`: whether a point of a segment is at the first end and at the last, in two masks.
     /// Answers the lanes where it is not at both.
     #[inline(always)]

@@ -27,6 +27,18 @@ impl<N: Real, const D: usize> Solid<N, D> {
         })
     }
 
+    /// It has the kind and the numbers of a shape.
+    #[inline]
+    pub(crate) fn is(&self, geometry: Geometry<'_, N, D>) -> bool {
+        match (self, geometry.0) {
+            (Self::Ball(own), Kind::Ball(ball)) => own == ball,
+            (Self::Segment(own), Kind::Segment(segment)) => own == segment,
+            (Self::Capsule(own), Kind::Capsule(capsule)) => own == capsule,
+            (Self::Cuboid(own), Kind::Cuboid(cuboid)) => own == cuboid,
+            _ => false,
+        }
+    }
+
     /// It is a segment, perhaps inflated.
     pub(super) const fn is_segment(&self) -> bool {
         matches!(self, Self::Segment(_) | Self::Capsule(_))

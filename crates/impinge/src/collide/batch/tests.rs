@@ -1,14 +1,14 @@
 //! Eight at a time against one by one, on every instruction set: bit for bit.
 
 use super::{
-    BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, PairQuestion,
-    Segments2, Segments3, Solid, update_at,
+    BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,
+    PairQuestion, Segments2, Segments3, Solid, Task,
 };
 use crate::collide::manifold::tests::scene::{Random, Scene};
-use crate::collide::{ManifoldRequest, RawManifold};
+use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::simd::Level;
 use crate::math::{Point, Pose, Real, Space, Vector};
-use crate::shape::{Ball, Capsule, Cuboid, Segment};
+use crate::shape::{Ball, Capsule, Cuboid, Geometry, Segment};
 use crate::tables::ByDimension;
 
 /// A pair and what is asked of it; not all need an update.
@@ -94,6 +94,26 @@ fn are_same<N: Real, const D: usize>(one: &RawManifold<N, D>, other: &RawManifol
     one.normal == other.normal && one.points == other.points || facts(one) == facts(other)
 }
 
+/// Computes the manifold of a case as a batch of one, and another: by the general algorithm where that has the bits of
+/// the kernel, as for all pairs but boxes and segments in 2D, else as a batch of one from the pair in its own frame.
+fn compute_alone<N: Space<D>, const D: usize>(
+    case: &Case<N, D>,
+    [lone, other]: [&mut RawManifold<N, D>; 2],
+) {
+    let (question, request) = (case.question(), &case.request);
+    let solids = case.solids.each_ref().map(|solid| Geometry(solid.kind()));
+    let pair = Pair::new(solids, question.poses);
+    if !<N::Algorithms>::update_pair(&question, lone) {
+        question.fall_back(lone);
+    }
+    let has_ball = matches!(case.solids[0], Solid::Ball(_));
+    if has_ball || D == 3 && !matches!(case.solids[0], Solid::Cuboid(_)) {
+        <N::Algorithms>::contacts_of_separation(&pair, request, other);
+    } else {
+        <N::Algorithms>::contacts(&pair, request, other);
+    }
+}
+
 /// Some steps of the same pairs, so that names are inherited; answers how many points there were and
 /// how many pairs were declined, of how many.
 fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
@@ -103,17 +123,18 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     let mut sums = [0; 3];
     for level in Level::available() {
         let fresh = || vec![RawManifold::<N, D>::default(); steps[0].len()];
-        let (mut expected, mut found) = (fresh(), fresh());
+        let (mut lone, mut expected, mut found) = (fresh(), fresh(), fresh());
         sums = [0; 3];
         for (step, cases) in steps.iter().enumerate() {
-            for (case, raw) in cases.iter().zip(&mut expected).filter(|(case, _)| case.is_due) {
-                <N::Algorithms>::contacts(&case.question().pair(), &case.request, raw);
+            let alone = lone.iter_mut().zip(&mut expected);
+            for (case, (one, other)) in cases.iter().zip(alone).filter(|(case, _)| case.is_due) {
+                compute_alone(case, [one, other]);
             }
             let [begun, declined] = in_lanes::<F, N, D>(level, cases, &mut found);
             for (index, (one, other)) in expected.iter().zip(&found).enumerate() {
                 let case = &cases[index];
                 assert!(
-                    are_same(one, other),
+                    are_same(one, other) && are_same(&lone[index], other),
                     "{what}, {level:?}, {step}, {index}: {one:?} {other:?} {:?}",
                     (case.poses, case.solids, case.request)
                 );
@@ -132,7 +153,7 @@ fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
 ) -> [usize; 2] {
     let due = (0..cases.len()).filter(|&index| cases[index].is_due).collect();
     let mut kept = Kept { cases, due, raws, counts: [0; 3] };
-    update_at::<F, _, N, D>(level, &mut kept);
+    Many { level, pairs: &mut kept }.run::<F>();
     let [begun, declined, ended] = kept.counts;
     assert_eq!(kept.due.len(), ended, "all that began ended");
     [begun, declined]

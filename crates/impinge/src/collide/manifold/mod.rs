@@ -158,20 +158,8 @@ pub(crate) fn tangents2<N: Real>(normal: &Vector<N, 2>) -> [Vector<N, 2>; 2] {
     [-perp(normal), Vector::<N, 2>::zeros()]
 }
 
-/// The manifold of a pair in 3D: by the batch of its kinds where there is one and it serves the pair,
-/// else from the separation.
-pub(crate) fn contacts3<N: Space<3>>(
-    pair: &Pair<'_, N, 3>,
-    request: &ManifoldRequest<N>,
-    out: &mut RawManifold<N, 3>,
-) {
-    if !super::batch::build3(pair, request, out) {
-        contacts_of_separation3(pair, request, out);
-    }
-}
-
 /// The manifold of a pair in 3D from its separation.
-pub(in crate::collide) fn contacts_of_separation3<N: Real>(
+pub(crate) fn contacts_of_separation3<N: Real>(
     pair: &Pair<'_, N, 3>,
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
@@ -182,19 +170,8 @@ pub(in crate::collide) fn contacts_of_separation3<N: Real>(
     }
 }
 
-/// The manifold of a pair in 2D; as [`contacts3`].
-pub(crate) fn contacts2<N: Space<2>>(
-    pair: &Pair<'_, N, 2>,
-    request: &ManifoldRequest<N>,
-    out: &mut RawManifold<N, 2>,
-) {
-    if !super::batch::build2(pair, request, out) {
-        contacts_of_separation2(pair, request, out);
-    }
-}
-
 /// The manifold of a pair in 2D from its separation.
-pub(in crate::collide) fn contacts_of_separation2<N: Real>(
+pub(crate) fn contacts_of_separation2<N: Real>(
     pair: &Pair<'_, N, 2>,
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,

@@ -1,7 +1,6 @@
 //! The separation of two solids in the world, in the order in which they are given.
 
 use crate::collide::far::Apart;
-use crate::collide::far::are_beyond;
 use crate::collide::pair::{Ordered, Placed, Placing};
 use crate::collide::parts::{Between, Wanted, nearest_between};
 use crate::convex::Separation;
@@ -146,12 +145,8 @@ impl<'a, N: Space<D>, const D: usize> Placed<'a, N, D> {
     ) -> Option<[Self; 2]> {
         let shapes = [one.shape(), other.shape()];
         let between = other.translation() - one.translation();
-        let apart = Apart { shapes, between };
-        let known = apart.is_known_beyond(limit);
-        if known.unwrap_or_else(|| are_beyond(&apart, limit)) {
-            return None;
-        }
-        Some([one.placed(), other.placed()])
+        let is_beyond = (Apart { shapes, between }).is_certainly_beyond(limit);
+        (!is_beyond).then(|| [one.placed(), other.placed()])
     }
 }
 
@@ -165,7 +160,12 @@ pub(crate) struct AtIsometry<'i, 'a, N: Space<D>, const D: usize> {
 impl<'i, 'a, N: Space<D>, const D: usize> AtIsometry<'i, 'a, N, D> {
     #[inline]
     pub(crate) fn new(isometry: IsometryRef<'i, N, D>, shape: &'a dyn Shape<N, D>) -> Self {
-        Self { isometry, shape: shape.geometry() }
+        Self::of((isometry, shape.geometry()))
+    }
+
+    #[inline]
+    pub(crate) fn of((isometry, shape): (IsometryRef<'i, N, D>, Geometry<'a, N, D>)) -> Self {
+        Self { isometry, shape }
     }
 }
 

@@ -13,3 +13,4 @@ pub(crate) use impact::{PartArrival, first_arrival};
 pub(crate) use point::{Near, PartPoint, nearest_part, surface_point};
 pub(crate) use ray::{RayQuestion, each_hit, is_crossed};
 pub(super) use view::tracked;
+pub(crate) use view::{Touched, touched};

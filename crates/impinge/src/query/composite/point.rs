@@ -2,7 +2,7 @@
 
 use crate::collide::parts::between::recentred;
 use crate::collide::parts::bounds::{around_point, loosened};
-use crate::math::{Point, Real, Space, Vector, max};
+use crate::math::{Mapped, Point, Real, Space, Vector, max, min};
 use crate::query::point::{SurfacePoint, length};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Part, PartSolid};
 use crate::tables::ByDimension;
@@ -52,6 +52,35 @@ impl<'a, N: Real, const D: usize> Near<'a, N, D> {
     }
 }
 
+impl<N: Real, const D: usize> Near<'_, N, D> {
+    /// The part is certainly farther than `distance`: it lies beyond a plane across the way to its middle. Said of
+    /// triangles and segments in the frame of the composite alone.
+    ///
+    /// With m the sum of the corners c, seen from the point that is asked about, the plane is min(m · c) / |m| away.
+    fn is_beyond(&self, distance: N) -> bool {
+        let corners: [Vector<N, D>; 3] = match self.solid() {
+            _ if self.asked != Point::origin() => return false,
+            PartSolid::Triangle(triangle) => triangle.corners().mapped(|corner| corner.coords),
+            PartSolid::Segment(segment) => {
+                let (a, b) = (segment.a().coords, segment.b().coords);
+                [a, b, b]
+            }
+            PartSolid::Shape(_) => return false,
+        };
+        let [a, b, c] = &corners;
+        let way = a + b + c;
+        let (heights, squares) =
+            (corners.mapped(|corner| way.dot(&corner)), corners.mapped(|v| v.norm_squared()));
+        let square = way.norm_squared();
+        // What the products lose to rounding, 16 units of the sum of all squares, and a thousandth of the distance:
+        // parts that are as near but for rounding are looked at.
+        let noise = N::lit(16.0) * N::EPSILON * (square + squares[0] + squares[1] + squares[2]);
+        let lowest = min(min(heights[0], heights[1]), heights[2]) - noise;
+        let limit = distance * distance * square * N::lit(1.0 + 1.0 / 512.0);
+        lowest > N::ZERO && lowest * lowest > limit && limit > N::MIN_POSITIVE
+    }
+}
+
 impl<N: Space<D>, const D: usize> Near<'_, N, D> {
     /// The nearest point of the part; `None` if there is none, or the numbers end.
     fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
@@ -83,7 +112,9 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     let limit = if touching { N::ZERO } else { N::INFINITY };
     search.nearest(&start, limit, &mut |index, _| {
         let near = Near::new(parts.part(index), point);
-        if let Some(found) = near.nearest(index, point)
+        let is_beyond = best.is_some_and(|best| near.is_beyond(best.distance));
+        if !is_beyond
+            && let Some(found) = near.nearest(index, point)
             && best.is_none_or(|best| found.is_before(&best))
         {
             best = Some(found);
@@ -146,4 +177,49 @@ pub(crate) fn surface_point<N: Space<D>, const D: usize>(
         feature: found.feature,
         is_inside: found.distance <= N::ZERO,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Pose;
+    use crate::math::noise::Noise;
+    use crate::shape::{Segment, Triangle};
+
+    /// Parts that are said to be beyond a distance are, whatever their size and place; most that are, are said to be.
+    fn parts_beyond<N: Space<3>>() {
+        let noise = &mut Noise(7);
+        let (mut beyond, mut said) = (0, 0);
+        for round in 0..3000 {
+            let scale = [1.0, 1e-12, 1e9][round % 3];
+            let aside = noise.vector::<f64>(3.0);
+            let mut corner = || {
+                let at = noise.vector::<f64>([1.0, 0.1, 4.0][round / 3 % 3]) + aside;
+                Point::from(at.map(|x| N::lit(x * scale)))
+            };
+            let corners = [corner(), corner(), corner()];
+            let point = corner();
+            let solid = if round % 4 == 0 {
+                PartSolid::Segment(Segment::new(corners[0], corners[1]))
+            } else {
+                PartSolid::Triangle(Triangle::new(corners[0], corners[1], corners[2]))
+            };
+            let near = Near::new(Part { pose: Pose::identity(), solid }, &point);
+            let found = near.nearest(0, &point).expect("finite").distance;
+            assert!(!near.is_beyond(found), "{round}: it is as near as it is");
+            let share = N::lit(0.25 + 0.5 * f64::from(u32::try_from(round % 2).expect("small")));
+            for limit in [found * share, found * N::lit(1.5)] {
+                assert!(!near.is_beyond(limit) || limit < found, "{round}: {found} and {limit}");
+            }
+            beyond += 1;
+            said += usize::from(near.is_beyond(found * share));
+        }
+        assert!(said * 3 > beyond, "{said} of {beyond}");
+    }
+
+    #[test]
+    fn what_is_beyond_a_distance_is_farther() {
+        parts_beyond::<f32>();
+        parts_beyond::<f64>();
+    }
 }

@@ -1,9 +1,9 @@
 //! The contacts of composites as users see them.
 
-use crate::collide::CompositeContacts;
-use crate::collide::Pair;
 use crate::collide::mesh::{Patch, PatchPoint};
-use crate::math::{Pose, Space, Vector};
+use crate::collide::pair::pose_between;
+use crate::collide::{CompositeContacts, Pair, RawPoint};
+use crate::math::{Mapped, Pose, Real, Space, Vector};
 use crate::query::kinematic::{ContactKinematic, KinematicSides};
 use crate::query::manifold::{TrackedContact, placed};
 use crate::query::{ContactId, ContactManifold, ManifoldView, PairRef, Placement};
@@ -40,6 +40,25 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         }
         old
     }
+
+    /// [`Self::manifolds`] of shapes at some poses of which, of each contact in its turn, `next` tells what it lies on.
+    pub(crate) fn manifolds_on<'a>(
+        &self,
+        poses: [&Pose<N, D>; 2],
+        placement: &Placement<'_, N, D>,
+        mut next: impl FnMut() -> Option<Touched<'a, N, D>>,
+        mut old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> {
+        old.resize_with(self.patches().len(), ContactManifold::default);
+        for (manifold, patch) in old.iter_mut().zip(self.patches()) {
+            manifold.refill(patch.points.iter().filter_map(|point| {
+                let touched = next()?;
+                let pose12 = pose_between(touched.turns[0], poses);
+                Some(touched.tracked(&pose12, patch, point, placement))
+            }));
+        }
+        old
+    }
 }
 
 /// One contact in the world.
@@ -49,38 +68,78 @@ pub(in crate::query) fn tracked<N: Space<D>, const D: usize>(
     point: &PatchPoint<N, D>,
     placement: &Placement<'_, N, D>,
 ) -> TrackedContact<N, D> {
-    let normal = placement.pose1.vector(&patch.normal);
-    let contact = placed(&patch.normal, &point.raw, placement.pose1, normal);
-    let kinematic = kinematic(pair, patch, point);
-    let id = ContactId { pair: placement.pair, number: point.raw.id };
-    let [part1, part2] = point.parts;
-    let tracked = TrackedContact { contact, kinematic, id, part1, part2 };
-    if placement.is_swapped { tracked.flipped() } else { tracked }
+    touched(pair, patch, point, |touched| touched.tracked(&pair.pose12, patch, point, placement))
 }
 
-/// How a contact moves: as one of its two parts, seen from the frames of the shapes.
-fn kinematic<N: Space<D>, const D: usize>(
+/// What a contact lies on: all that its kinematic takes of the shapes.
+pub(crate) struct Touched<'a, N: Real, const D: usize> {
+    /// A part of each shape, or all of it.
+    pub(crate) solids: [Kind<'a, N, D>; 2],
+    /// How they lie in the frames of the shapes.
+    pub(crate) poses: [Pose<N, D>; 2],
+    /// See [`Geometry::turns`], of the shapes.
+    pub(crate) turns: [bool; 2],
+    /// The normal turns with the second shape, whose face has it, or with the first; `None` if it is that of no face.
+    pub(crate) turns_with_second: Option<bool>,
+}
+
+/// Calls with what a contact lies on.
+pub(crate) fn touched<N: Space<D>, R, const D: usize>(
     pair: &Pair<'_, N, D>,
     patch: &Patch<N, D>,
     point: &PatchPoint<N, D>,
-) -> ContactKinematic<N, D> {
+    read: impl FnOnce(&Touched<'_, N, D>) -> R,
+) -> R {
     let [part1, part2] = point.parts;
     let (part1, part2) = (part_of(pair.first, part1), part_of(pair.second, part2));
     let pose = |part: &Option<Part<'_, N, D>>| part.map_or_else(Pose::identity, |part| part.pose);
-    let (pose1, pose2) = (pose(&part1), pose(&part2));
     let first = part1.as_ref().map_or(pair.first, |part| part.solid.geometry().0);
     let second = part2.as_ref().map_or(pair.second, |part| part.solid.geometry().0);
-    let pose12 = pose1.inverse().compose(&pair.pose12.compose(&pose2));
-    let mut raw = point.raw;
-    raw.point1 = pose1.inverse_point(&raw.point1);
-    let parts = Pair { first, second, pose12 };
-    let normal = pose1.inverse_vector(&patch.normal);
-    let kinematic = KinematicSides::new(&parts, &normal).kinematic(&raw);
-    let kinematic = match turning(pair, patch, point) {
-        Some(is_second) => kinematic.turning_with(is_second),
-        None => kinematic,
-    };
-    kinematic.seen_from([&pose1, &pose2], [Geometry(pair.first), Geometry(pair.second)])
+    read(&Touched {
+        solids: [first, second],
+        poses: [pose(&part1), pose(&part2)],
+        turns: [pair.first, pair.second].mapped(|kind| Geometry(kind).turns()),
+        turns_with_second: turning(pair, patch, point),
+    })
+}
+
+impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
+    /// The contact in the world; `pose12` is that of the shapes.
+    pub(crate) fn tracked(
+        &self,
+        pose12: &Pose<N, D>,
+        patch: &Patch<N, D>,
+        point: &PatchPoint<N, D>,
+        placement: &Placement<'_, N, D>,
+    ) -> TrackedContact<N, D> {
+        let normal = placement.pose1.vector(&patch.normal);
+        let contact = placed(&patch.normal, &point.raw, placement.pose1, normal);
+        let kinematic = self.kinematic(pose12, &patch.normal, &point.raw);
+        let id = ContactId { pair: placement.pair, number: point.raw.id };
+        let [part1, part2] = point.parts;
+        let tracked = TrackedContact { contact, kinematic, id, part1, part2 };
+        if placement.is_swapped { tracked.flipped() } else { tracked }
+    }
+
+    /// How the contact moves: as one of its two solids, seen from the frames of the shapes.
+    fn kinematic(
+        &self,
+        pose12: &Pose<N, D>,
+        normal: &Vector<N, D>,
+        raw: &RawPoint<N, D>,
+    ) -> ContactKinematic<N, D> {
+        let ([first, second], [pose1, pose2]) = (self.solids, &self.poses);
+        let pose12 = pose1.inverse().compose(&pose12.compose(pose2));
+        let raw = RawPoint { point1: pose1.inverse_point(&raw.point1), ..*raw };
+        let solids = Pair { first, second, pose12 };
+        let normal = pose1.inverse_vector(normal);
+        let kinematic = KinematicSides::new(&solids, &normal).kinematic(&raw);
+        let kinematic = match self.turns_with_second {
+            Some(is_second) => kinematic.turning_with(is_second),
+            None => kinematic,
+        };
+        kinematic.seen_from([pose1, pose2], self.turns)
+    }
 }
 
 /// Whether the normal is that of the second surface's face, or of the first's; `None` if of neither.

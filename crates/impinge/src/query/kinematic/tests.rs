@@ -227,7 +227,7 @@ fn common_motion_carries_the_contact_along() {
     let pose12 = Pose::relative(&pose1, &pose2);
     let pair = Pair { first: cuboid.geometry().0, second: cuboid.geometry().0, pose12 };
     let (_, raw) = manifold(&pair, &request(0.0, 0.0));
-    let placed = Placement::new([&pose1, &pose1], 7, false);
+    let placed = Placement { pose1: &pose1, pair: 7, is_swapped: false };
     let straight = materialise(&pair, &raw, &placed, crate::query::ContactManifold::default());
     let swapped =
         materialise(&pair, &raw, &Placement { is_swapped: true, ..placed }, straight.clone());

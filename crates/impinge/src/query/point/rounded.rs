@@ -4,12 +4,12 @@ use super::SurfacePoint;
 use crate::collide::Pair;
 use crate::collide::separation::separation;
 use crate::math::{Point, Pose, Space};
-use crate::shape::{Ball, FeatureId, Geometry, Kind, RoundedSolid};
+use crate::shape::{Ball, FeatureId, Geometry, Kind, Rounded, SupportMap};
 use crate::tables::ByDimension;
 
 /// Beyond the nearest point of what is rounded. A radius of zero changes nothing.
 pub(super) fn surface_point<N: Space<D>, const D: usize>(
-    solid: &dyn RoundedSolid<N, D>,
+    solid: &Rounded<N, D>,
     point: &Point<N, D>,
 ) -> SurfacePoint<N, D> {
     let (inner, radius) = (solid.inner(), solid.radius());

@@ -6,12 +6,12 @@ use crate::bounding_volume::Ray;
 use crate::collide::Pair;
 use crate::collide::separation::separation;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
-use crate::shape::{Ball, Geometry, Kind, RoundedSolid, ShapeKind};
+use crate::shape::{Ball, Geometry, Kind, Rounded, ShapeKind, SupportMap};
 use crate::tables::ByDimension;
 
 /// Searched by the distances of what is rounded; without a radius the line and that.
 pub(super) fn span<N: Space<D>, const D: usize>(
-    solid: &dyn RoundedSolid<N, D>,
+    solid: &Rounded<N, D>,
     ray: &Ray<N, D>,
 ) -> Option<Span<N, D>> {
     let inner = solid.inner();

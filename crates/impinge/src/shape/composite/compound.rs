@@ -10,7 +10,7 @@ use crate::shape::solids::segment::length_of;
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
     CompositeShape, EnclosedBody, FeatureId, Geometry, Part, PartPath, PartSearch, PartSolid,
-    ScaleError, Shape, ShapeError, ShapeHandle, Surface, SurfaceAccess,
+    Revision, ScaleError, Shape, ShapeError, ShapeHandle, Surface, SurfaceAccess,
 };
 
 /// The union of shapes, its children, each placed in the compound's frame.
@@ -63,6 +63,7 @@ pub struct Compound<N: Space<D>, const D: usize> {
     has_surface: bool,
     /// A child is a body within a closed surface.
     has_bodies: bool,
+    revision: Revision,
 }
 
 /// Up to this many children the box of a placed compound is made of the boxes of its children.
@@ -109,7 +110,19 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
         let has_bodies = children.iter().any(|(_, shape)| bodies_of(shape).is_some());
         let sphere = sphere_around(&aabb, &children, &poses);
-        Ok(Self { children, poses, firsts, depth, aabb, tree, sphere, has_surface, has_bodies })
+        let revision = Revision::new();
+        Ok(Self {
+            children,
+            poses,
+            firsts,
+            depth,
+            aabb,
+            tree,
+            sphere,
+            has_surface,
+            has_bodies,
+            revision,
+        })
     }
 
     /// The shapes and their positions in the frame of the compound.
@@ -293,6 +306,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
 
     fn surface_access(&self) -> Option<SurfaceAccess<'_, N, D>> {
         self.surface().map(|_| SurfaceAccess::of_own(self))
+    }
+
+    fn revision(&self) -> Option<Revision> {
+        Some(self.revision)
     }
 
     /// Those of the innermost composite, with the number of its first part in the upper half.

@@ -21,8 +21,9 @@ use smallvec::SmallVec;
 use crate::bounding_volume::{Aabb, Ray};
 use crate::math::{Point, Pose, Real, Vector};
 use crate::partitioning::BoxTree;
-use crate::shape::TriMesh;
-use crate::shape::{EnclosedBody, FeatureId, Geometry, Segment, Shape, SurfaceAccess, Triangle};
+use crate::shape::{
+    EnclosedBody, FeatureId, Geometry, Revision, Segment, Shape, SurfaceAccess, TriMesh, Triangle,
+};
 
 /// The way to a part: the index of the child, of its child, … of the part in the last.
 pub type PartPath = SmallVec<[u32; 4]>;
@@ -124,6 +125,12 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
     /// The composite as a mesh.
     #[doc(hidden)]
     fn as_mesh(&self) -> Option<&TriMesh<N, D>> {
+        None
+    }
+
+    /// Names the state of a composite of the library; `None` for one of the user's, which may change unnoticed.
+    #[doc(hidden)]
+    fn revision(&self) -> Option<Revision> {
         None
     }
 

@@ -5,13 +5,13 @@ use std::sync::OnceLock;
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, Vector, max, max_component};
 use crate::partitioning::{BoxTree, BoxTreeError};
-use crate::shape::Segment;
 use crate::shape::composite::body::{check_fronts, pieces};
 use crate::shape::composite::joints::Joints;
 use crate::shape::composite::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
 };
 use crate::shape::composite::polyline_parts;
+use crate::shape::{Revision, Segment};
 
 /// Segments that share ends: an open or closed line, or several of them, or a net.
 ///
@@ -61,6 +61,8 @@ pub struct Polyline<N: Real, const D: usize> {
     pub(in crate::shape) keeps_internal_edges: bool,
     /// By segment: the first one of its piece.
     pieces: OnceLock<Vec<u32>>,
+    /// Without the options that are set later.
+    pub(in crate::shape) revision: Revision,
 }
 
 /// From the direction of a segment to the normal on its front.
@@ -142,6 +144,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
             is_solid,
             keeps_internal_edges,
             pieces: OnceLock::new(),
+            revision: Revision::new(),
         })
     }
 
@@ -183,6 +186,7 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         self.tree.try_refit(&boxes_of(vertices, &self.segments)).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
         self.is_moved = true;
+        self.revision = Revision::new();
         self.pieces = OnceLock::new();
         let is_whole = self.joints.are_together(vertices);
         self.is_cycle = is_whole && is_cycle(vertices.len(), &self.segments, &self.joints);

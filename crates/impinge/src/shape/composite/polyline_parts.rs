@@ -8,7 +8,7 @@ use crate::shape::surface::seam::{Seam, slack};
 use crate::shape::surface::sidedness::Joining;
 use crate::shape::{
     CompositeShape, EnclosedBody, FeatureId, Geometry, Kind, Part, PartSearch, PartSolid, Polyline,
-    ScaleError, Shape, ShapeHandle, Sidedness, Surface, SurfaceAccess,
+    Revision, ScaleError, Shape, ShapeHandle, Sidedness, Surface, SurfaceAccess,
 };
 
 /// The normal on the right of a direction.
@@ -55,6 +55,11 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Polyline<N, D> {
 
     fn built_in(&self) -> Option<&dyn Shape<N, D>> {
         Some(self)
+    }
+
+    fn revision(&self) -> Option<Revision> {
+        let options = [self.front.is_some(), self.is_solid(), self.keeps_internal_edges];
+        Some(self.revision.with(&options))
     }
 
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {

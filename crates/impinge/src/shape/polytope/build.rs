@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::math::{Point, Real, Vector, max, perp, unit};
-use crate::shape::polytope::count32;
+use crate::shape::polytope::{Twin, count32};
 use crate::shape::{Polytope, PolytopeEdge, PolytopeFace};
 
 /// The mean of some points, computed with doubles near 1, whose sum does not overflow.
@@ -55,6 +55,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
             fans: Vec::new(),
             fan_starts: Vec::new(),
             fan_directions: Vec::new(),
+            twin: Twin::default(),
         }
     }
 

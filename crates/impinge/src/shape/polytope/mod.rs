@@ -8,6 +8,7 @@ pub(crate) mod feature;
 pub(crate) mod support;
 
 use core::ops::Range;
+use std::sync::{Arc, OnceLock};
 
 use smallvec::SmallVec;
 
@@ -66,6 +67,18 @@ pub struct Polytope<N: Real, const D: usize> {
     pub(in crate::shape) fan_starts: Vec<u32>,
     /// For each entry of `fans` the unit vector along it, either way; `None` for one of no length.
     pub(in crate::shape) fan_directions: Vec<Option<Vector<N, D>>>,
+    pub(in crate::shape) twin: Twin<N, D>,
+}
+
+/// A copy of a polytope that pairs share, which know the polytope again by it: made when the first of them asks.
+#[derive(Clone, Default)]
+pub(in crate::shape) struct Twin<N: Real, const D: usize>(OnceLock<Arc<Polytope<N, D>>>);
+
+/// Whether a copy was asked for is no property of the solid.
+impl<N: Real, const D: usize> PartialEq for Twin<N, D> {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// How many vertices or faces are looked at side by side.
@@ -133,6 +146,11 @@ pub struct PolytopeEdge {
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
+    /// A copy of the solid that its clones share.
+    pub(crate) fn twin(&self) -> &Arc<Self> {
+        self.twin.0.get_or_init(|| Arc::new(self.clone()))
+    }
+
     /// The vertices.
     #[must_use]
     pub fn vertices(&self) -> &[Point<N, D>] {

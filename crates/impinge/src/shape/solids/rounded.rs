@@ -85,27 +85,18 @@ impl<N: Real, const D: usize> Rounded<N, D> {
         self.radius
     }
 
-    fn map(&self) -> &dyn SupportMap<N, D> {
-        self.shape.geometry().as_support_map().expect("the constructor has checked it")
+    /// Both round one shape, which they share, by one radius.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.shape.is_same(&other.shape) && self.radius == other.radius
     }
-}
 
-/// A rounded solid whatever is rounded.
-pub(crate) trait RoundedSolid<N: Real, const D: usize>: SupportMap<N, D> {
-    /// What is rounded.
-    fn inner(&self) -> Geometry<'_, N, D>;
-
-    /// By how much.
-    fn radius(&self) -> N;
-}
-
-impl<N: Real, const D: usize> RoundedSolid<N, D> for Rounded<N, D> {
-    fn inner(&self) -> Geometry<'_, N, D> {
+    /// The shape in the middle as queries see it.
+    pub(crate) fn inner(&self) -> Geometry<'_, N, D> {
         self.shape.geometry()
     }
 
-    fn radius(&self) -> N {
-        self.radius
+    fn map(&self) -> &dyn SupportMap<N, D> {
+        self.inner().as_support_map().expect("the constructor has checked it")
     }
 }
 

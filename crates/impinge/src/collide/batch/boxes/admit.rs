@@ -1,32 +1,31 @@
-//! The candidates of eight pairs, each in a slot of its own, and which of them count.
+//! The candidates of some pairs, each in a slot of its own, and which of them count.
 
-use super::LANES;
 use crate::math::lanes::{bits, norm};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The places of eight pairs, and for each of them a bit of a mask.
-pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize> {
+/// The places of `L` pairs, and for each of them a bit of a mask.
+pub(super) struct Slots<N: Real, const D: usize, const COUNT: usize, const L: usize> {
     /// Seen along the normal; in 2D the second coordinate is always zero.
-    pub(super) flat: [[[N; LANES]; COUNT]; 2],
+    pub(super) flat: [[[N; L]; COUNT]; 2],
     /// Above the face or side below.
-    pub(super) height: [[N; LANES]; COUNT],
+    pub(super) height: [[N; L]; COUNT],
     /// Of the candidates that count: the point on the first box, in its frame, and the distance.
-    pub(super) points1: [[[N; LANES]; D]; COUNT],
-    pub(super) distances: [[N; LANES]; COUNT],
+    pub(super) points1: [[[N; L]; D]; COUNT],
+    pub(super) distances: [[N; L]; COUNT],
     /// The lanes where the slot holds a candidate.
     pub(super) valid: [u8; COUNT],
     /// Those where its distance is the smallest but for rounding.
     pub(super) level: [u8; COUNT],
 }
 
-impl<N: Real, const D: usize, const COUNT: usize> Slots<N, D, COUNT> {
+impl<N: Real, const D: usize, const COUNT: usize, const L: usize> Slots<N, D, COUNT, L> {
     pub(super) const fn new() -> Self {
         Self {
-            flat: [[[N::ZERO; LANES]; COUNT]; 2],
-            height: [[N::ZERO; LANES]; COUNT],
-            points1: [[[N::ZERO; LANES]; D]; COUNT],
-            distances: [[N::ZERO; LANES]; COUNT],
+            flat: [[[N::ZERO; L]; COUNT]; 2],
+            height: [[N::ZERO; L]; COUNT],
+            points1: [[[N::ZERO; L]; D]; COUNT],
+            distances: [[N::ZERO; L]; COUNT],
             valid: [0; COUNT],
             level: [0; COUNT],
         }
@@ -44,7 +43,7 @@ pub(super) struct Limits<V> {
     pub(super) tolerance: V,
 }
 
-/// The candidates of eight pairs as they are found.
+/// The candidates of all pairs as they are found.
 ///
 /// A candidate counts up to the prediction; beyond it, where turning brings it as near. The boxes turn about the
 /// middle of the candidates that are lowest but for rounding:
@@ -81,10 +80,10 @@ impl<V> Admission<V> {
 
     /// Stores where a candidate is seen and its height, where there is one.
     #[inline(always)]
-    pub(super) fn store<S: Simd, N: Real, M, const D: usize, const COUNT: usize>(
+    pub(super) fn store<S: Simd, N: Real, M, const D: usize, const COUNT: usize, const L: usize>(
         &mut self,
         simd: S,
-        slots: &mut Slots<N, D, COUNT>,
+        slots: &mut Slots<N, D, COUNT, L>,
         slot: usize,
         flat: &[V; 2],
         height: V,
@@ -118,10 +117,10 @@ impl<V> Admission<V> {
     /// Leaves the candidates that count. Says of these where they are, and how far: `place` gets where a candidate
     /// is seen and how high.
     #[inline(always)]
-    pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize>(
+    pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize, const L: usize>(
         &self,
         simd: S,
-        slots: &mut Slots<N, D, COUNT>,
+        slots: &mut Slots<N, D, COUNT, L>,
         place: impl Fn([V; 2], V) -> [V; D],
     ) where
         V: Wide<S, Scalar = N>,

@@ -1,6 +1,5 @@
 //! From the filled slots of one pair to its manifold: the rules of `choose`, without moving anything.
 
-use super::LANES;
 use super::admit::Slots;
 use crate::collide::manifold::ids::{in_order, is_same_point, near_scale, normals_agree};
 use crate::collide::manifold::matching::each_near;
@@ -12,8 +11,8 @@ use crate::math::{Mapped, Point, Real, Vector};
 use crate::shape::FeatureId;
 
 /// The slots of one pair.
-pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize> {
-    pub(super) slots: &'a Slots<N, D, COUNT>,
+pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, const L: usize> {
+    pub(super) slots: &'a Slots<N, D, COUNT, L>,
     pub(super) lane: usize,
     /// The slots that hold a candidate, by bits.
     pub(super) valid: u32,
@@ -23,7 +22,7 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize> {
     pub(super) tolerance: N,
     /// Of the pair, for what is in proportion to it.
     pub(super) size: N,
-    pub(super) normal: &'a [[N; LANES]; D],
+    pub(super) normal: &'a [[N; L]; D],
 }
 
 /// How the slots of one pair are named.
@@ -84,7 +83,7 @@ impl<const COUNT: usize> KeptSlots<COUNT> {
     }
 }
 
-impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
+impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_, N, D, COUNT, L> {
     /// Replaces the points of a manifold, and its normal, by at most `limit` of the candidates.
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
@@ -181,7 +180,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
 
     #[inline(always)]
     fn normal(&self) -> Vector<N, D> {
-        let lane = self.lane & (LANES - 1);
+        let lane = self.lane & (L - 1);
         Vector::<N, D>::from_fn(
             #[inline(always)]
             |axis, _| self.normal[axis][lane],
@@ -257,7 +256,7 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
 
     #[inline(always)]
     fn point1(&self, slot: usize) -> Point<N, D> {
-        let (lane, rows) = (self.lane & (LANES - 1), &self.slots.points1[slot]);
+        let (lane, rows) = (self.lane & (L - 1), &self.slots.points1[slot]);
         Point::from(Vector::<N, D>::from_fn(
             #[inline(always)]
             |axis, _| rows[axis][lane],
@@ -266,13 +265,13 @@ impl<N: Real, const D: usize, const COUNT: usize> SlotChoice<'_, N, D, COUNT> {
 
     #[inline(always)]
     fn distance(&self, slot: usize) -> N {
-        self.slots.distances[slot][self.lane & (LANES - 1)]
+        self.slots.distances[slot][self.lane & (L - 1)]
     }
 
     #[inline(always)]
     fn flat(&self, slot: usize) -> Vector<N, 2> {
         let [x, y] = &self.slots.flat;
-        let lane = self.lane & (LANES - 1);
+        let lane = self.lane & (L - 1);
         Vector::<N, 2>::new(x[slot][lane], y[slot][lane])
     }
 

@@ -14,13 +14,13 @@ mod space;
 pub(super) use self::plane::Boxes2;
 pub(super) use self::space::Boxes3;
 use super::gather::Inputs;
-use super::{LANES, PairQuestion, Solid, masks};
+use super::{PairQuestion, Solid, masks};
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::math::lanes::{either, lit, norm, seen_from};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-impl<N: Real, const D: usize> Inputs<N, D> {
+impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     /// Two boxes and where they are; answers whether both are.
     #[inline(always)]
     fn put_boxes(&mut self, lane: usize, pair: &PairQuestion<'_, N, D>) -> bool {
@@ -41,7 +41,7 @@ impl<N: Real, const D: usize> Inputs<N, D> {
     }
 }
 
-/// Eight pairs of boxes, the second of each placed in the frame of the first.
+/// Pairs of boxes, the second of each placed in the frame of the first.
 pub(super) struct Boxes<V, const D: usize> {
     /// By columns: the axes of the second box.
     pub(super) rotation: [[V; D]; D],

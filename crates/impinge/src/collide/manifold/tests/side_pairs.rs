@@ -1,6 +1,5 @@
 //! Flat-sided 2D solids: their contacts span the overlap of the sides that face each other.
 
-use super::super::contacts2;
 use super::scene::{Random, Scene, describe, near_pose, off_surface, solids};
 use crate::collide::separation::separation_in_plane;
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
@@ -8,6 +7,7 @@ use crate::math::{Isometry2, Point, Pose, Real, Space, Vector, max, min};
 use crate::shape::{
     Capsule, ConvexPolygon, Cuboid, Kind, Rounded, Segment, Shape, ShapeKind, Triangle,
 };
+use crate::tables::ByDimension;
 
 fn p<N: Real>(x: f64, y: f64) -> Point<N, 2> {
     Point::<N, 2>::new(N::lit(x), N::lit(y))
@@ -19,7 +19,7 @@ fn request<N: Real>(prediction: f64, sine: f64) -> ManifoldRequest<N> {
 
 fn contacts<N: Real>(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>) -> RawManifold<N, 2> {
     let mut raw = RawManifold::default();
-    contacts2(pair, request, &mut raw);
+    <<N as Space<2>>::Algorithms>::contacts(pair, request, &mut raw);
     raw
 }
 

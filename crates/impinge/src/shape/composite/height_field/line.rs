@@ -11,8 +11,8 @@ use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::{
-    CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Segment, Shape, ShapeError,
-    ShapeHandle, Surface, SurfaceAccess,
+    CompositeShape, Geometry, Part, PartSearch, PartSolid, Revision, ScaleError, Segment, Shape,
+    ShapeError, ShapeHandle, Surface, SurfaceAccess,
 };
 
 impl<N: Real> HeightField<N, 2> {
@@ -163,11 +163,12 @@ impl<N: Real> HeightField<N, 2> {
     fn refresh(&mut self, cell: usize) {
         let mut pyramid = self.pyramid.take();
         pyramid.refresh(0, cell, |row, column| self.cell_span(row, column));
-        self.pyramid = pyramid;
+        (self.pyramid, self.revision) = (pyramid, Revision::new());
     }
 
     fn rebuild(&mut self) {
         self.pyramid = entries::pyramid_over(self);
+        self.revision = Revision::new();
     }
 
     #[track_caller]
@@ -243,6 +244,10 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
 
     fn search(&self) -> &dyn PartSearch<N, 2> {
         self
+    }
+
+    fn revision(&self) -> Option<Revision> {
+        Some(self.named())
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, 2>> {

@@ -20,6 +20,7 @@ use self::grid::{Grid, lines};
 use self::marks::Marks;
 use self::pyramid::Pyramid;
 use crate::math::{Real, Vector};
+use crate::shape::Revision;
 use crate::shape::ShapeError;
 use crate::shape::error::finite;
 
@@ -73,6 +74,8 @@ pub struct HeightField<N: Real, const D: usize> {
     scale: Vector<N, D>,
     is_one_sided: bool,
     keeps_internal_edges: bool,
+    /// Without the options.
+    revision: Revision,
 }
 
 impl<N: Real, const D: usize> HeightField<N, D> {
@@ -122,19 +125,24 @@ impl<N: Real, const D: usize> HeightField<N, D> {
         self
     }
 
+    /// Names the field with its options.
+    fn named(&self) -> Revision {
+        self.revision.with(&[self.is_one_sided, self.keeps_internal_edges])
+    }
+
     /// The same field with other extents, those along z in `depth`.
     fn with_scale(&self, scale: Vector<N, D>, depth: N) -> Result<Self, ShapeError> {
         let mut scaled = self.clone();
         let heights = std::mem::take(&mut scaled.grid.heights);
         scaled.grid = grid([scaled.grid.zs.len(), scaled.grid.columns], heights, &scale, depth)?;
-        Ok(Self { scale, ..scaled })
+        Ok(Self { scale, revision: Revision::new(), ..scaled })
     }
 
     /// The field between these lines: both sides can be touched, and contacts see one surface.
-    const fn around(grid: Grid<N>, pyramid: Pyramid<N>, scale: Vector<N, D>) -> Self {
+    fn around(grid: Grid<N>, pyramid: Pyramid<N>, scale: Vector<N, D>) -> Self {
         let marks = Marks::new(Diagonals::Forward);
-        let (is_one_sided, keeps_internal_edges) = (false, false);
-        Self { grid, pyramid, marks, scale, is_one_sided, keeps_internal_edges }
+        let (is_one_sided, keeps_internal_edges, revision) = (false, false, Revision::new());
+        Self { grid, pyramid, marks, scale, is_one_sided, keeps_internal_edges, revision }
     }
 
     /// The scale has an odd number of negative components.

@@ -12,7 +12,7 @@ use crate::math::{Point, Pose, Real, Vector, max, min};
 use crate::shape::error::or_panic;
 use crate::shape::scale::Scale;
 use crate::shape::{
-    CompositeShape, Geometry, Part, PartSearch, PartSolid, ScaleError, Shape, ShapeError,
+    CompositeShape, Geometry, Part, PartSearch, PartSolid, Revision, ScaleError, Shape, ShapeError,
     ShapeHandle, Surface, SurfaceAccess, Triangle,
 };
 
@@ -261,11 +261,12 @@ impl<N: Real> HeightField<N, 3> {
     fn refresh(&mut self, row: usize, column: usize) {
         let mut pyramid = self.pyramid.take();
         pyramid.refresh(row, column, |row, column| self.cell_span(row, column));
-        self.pyramid = pyramid;
+        (self.pyramid, self.revision) = (pyramid, Revision::new());
     }
 
     fn rebuild(&mut self) {
         self.pyramid = entries::pyramid_over(self);
+        self.revision = Revision::new();
     }
 }
 
@@ -422,6 +423,10 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
 
     fn search(&self) -> &dyn PartSearch<N, 3> {
         self
+    }
+
+    fn revision(&self) -> Option<Revision> {
+        Some(self.named())
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, 3>> {

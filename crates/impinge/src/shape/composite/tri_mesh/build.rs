@@ -9,6 +9,7 @@ use super::{TriMesh, entries};
 use crate::bounding_volume::Aabb;
 use crate::math::{Mapped, Point, Real, Space, Vector};
 use crate::partitioning::BoxTree;
+use crate::shape::Revision;
 use crate::shape::composite::mesh_error::{
     MeshError, check_moved, check_parts, check_scale, check_vertices, or_panic,
 };
@@ -63,6 +64,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
             is_solid: false,
             keeps_internal_edges: false,
             pieces: OnceLock::new(),
+            revision: Revision::new(),
         })
     }
 
@@ -151,6 +153,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         self.tree.add_slabs(&self.normals, corners);
         self.bends.clear();
         self.pieces = OnceLock::new();
+        self.revision = Revision::new();
         self.topology.is_moved = true;
         self.packed = <N::Algorithms>::mesh_packed(&self.tree, vertices, &self.triangles);
         self.is_cycle = self.topology.is_cycle && self.topology.joints.are_together(vertices);

@@ -10,7 +10,7 @@ use crate::shape::solids::segment::length_of;
 use crate::shape::surface::own_surface::OwnSurface;
 use crate::shape::{
     CompositeShape, EnclosedBody, FaceSeams, FeatureId, Geometry, Kind, Part, PartSearch,
-    PartSolid, ScaleError, Shape, ShapeHandle, Surface, SurfaceAccess,
+    PartSolid, Revision, ScaleError, Shape, ShapeHandle, Surface, SurfaceAccess,
 };
 
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
@@ -55,6 +55,11 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
 
     fn as_mesh(&self) -> Option<&Self> {
         Some(self)
+    }
+
+    fn revision(&self) -> Option<Revision> {
+        let options = [self.is_one_sided, self.is_solid, self.keeps_internal_edges];
+        Some(self.revision.with(&options))
     }
 
     fn each_body(&self, visit: &mut dyn FnMut(&EnclosedBody<'_, N, D>)) {

@@ -27,7 +27,7 @@ use self::topology::Topology;
 use crate::bvh::Triangles;
 use crate::math::{Mapped, Point, Real, Vector};
 use crate::partitioning::BoxTree;
-use crate::shape::Triangle;
+use crate::shape::{Revision, Triangle};
 
 /// Triangles that share corners: a filled shape in 2D, a surface in 3D, open or closed.
 ///
@@ -85,6 +85,7 @@ pub struct TriMesh<N: Real, const D: usize> {
     keeps_internal_edges: bool,
     /// By triangle: the first one of its piece.
     pieces: OnceLock<Vec<u32>>,
+    revision: Revision,
 }
 
 impl<N: Real, const D: usize> TriMesh<N, D> {

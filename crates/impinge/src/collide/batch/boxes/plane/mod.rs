@@ -9,10 +9,9 @@ use self::sides::BoxSides;
 use super::admit::{Admission, Limits, Slots};
 use super::choose::SlotChoice;
 use super::masks::turned;
-use super::{Inputs, LANES, smaller_size};
+use super::{Inputs, smaller_size};
+use crate::collide::RawManifold;
 use crate::collide::batch::{Batch, PairQuestion};
-use crate::collide::manifold::contacts_of_separation2;
-use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
@@ -20,13 +19,13 @@ use crate::math::{Real, Wide};
 /// The ends of the upper side, the one with the smaller place first, and of the lower one.
 const SLOTS: usize = 4;
 
-/// What is known of eight pairs before points are chosen.
-pub(in super::super) struct EightSides<N: Real> {
-    slots: Slots<N, 2, SLOTS>,
-    gap: [N; LANES],
-    tolerance: [N; LANES],
-    size: [N; LANES],
-    normal: [[N; LANES]; 2],
+/// What is known of `L` pairs before points are chosen.
+pub(in super::super) struct LaneSides<N: Real, const L: usize> {
+    slots: Slots<N, 2, SLOTS, L>,
+    gap: [N; L],
+    tolerance: [N; L],
+    size: [N; L],
+    normal: [[N; L]; 2],
     /// The lanes: the axis across the lower side is the second, the side is on the positive side of
     /// it; the same of the upper side; the lower side is the second box's; the upper side's first
     /// end is the one on the positive side of its box; too far apart; the slots are filled.
@@ -34,15 +33,15 @@ pub(in super::super) struct EightSides<N: Real> {
     /// Of each slot, whether it is at the first end of the other side, and at the second.
     at_ends: [u8; 2 * SLOTS],
     /// For each pair the slots that hold a candidate, and those with the smallest distance.
-    filled: [u8; LANES],
+    filled: [u8; 8],
 }
 
 /// Pairs of 2D boxes.
 pub(in super::super) struct Boxes2;
 
-impl<N: Real> EightSides<N> {
+impl<N: Real, const L: usize> LaneSides<N, L> {
     fn new() -> Self {
-        let row = [N::ZERO; LANES];
+        let row = [N::ZERO; L];
         Self {
             slots: Slots::new(),
             gap: row,
@@ -51,51 +50,51 @@ impl<N: Real> EightSides<N> {
             normal: [row; 2],
             sides: [0; 8],
             at_ends: [0; 2 * SLOTS],
-            filled: [0; LANES],
+            filled: [0; 8],
         }
     }
 }
 
 impl<N: Real> Batch<N, 2> for Boxes2 {
-    type Found = EightSides<N>;
+    type Found<const L: usize> = LaneSides<N, L>;
 
-    fn blank() -> EightSides<N> {
-        EightSides::new()
+    fn blank<const L: usize>() -> LaneSides<N, L> {
+        LaneSides::new()
     }
 
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, 2>, lane: usize, pair: &PairQuestion<'_, N, 2>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, 2, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, 2>,
+    ) -> bool {
         inputs.put_boxes(lane, pair)
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, 2>,
-        found: &mut EightSides<N>,
+        inputs: &Inputs<N, 2, L>,
+        found: &mut LaneSides<N, L>,
     ) {
         found.find::<S, V>(simd, inputs);
         found.turn();
     }
 
     #[inline(always)]
-    fn settle(
-        found: &EightSides<N>,
+    fn settle<const L: usize>(
+        found: &LaneSides<N, L>,
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 2>,
     ) -> bool {
-        found.settle(lane & (LANES - 1), max_points, raw)
-    }
-
-    fn fall_back(pair: &Pair<'_, N, 2>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 2>) {
-        contacts_of_separation2(pair, request, raw);
+        found.settle(lane & (L - 1), max_points, raw)
     }
 }
 
-impl<N: Real> EightSides<N> {
+impl<N: Real, const L: usize> LaneSides<N, L> {
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2>) {
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
         let axis = boxes.best_side(simd);
         let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
@@ -135,7 +134,7 @@ impl<N: Real> EightSides<N> {
         );
     }
 
-    /// From masks of eight pairs to a byte for each pair.
+    /// From masks of all pairs to a byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;

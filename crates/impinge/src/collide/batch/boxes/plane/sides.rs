@@ -106,11 +106,11 @@ impl<V, M> BoxSides<V, M> {
     /// Fills the slots with the ends of what the sides share. Answers for
     /// each slot whether it is at the first or the second end of the other side, a bit for each pair.
     #[inline(always)]
-    pub(super) fn share<S: Simd, N: Real>(
+    pub(super) fn share<S: Simd, N: Real, const L: usize>(
         &self,
         simd: S,
         admission: &mut Admission<V>,
-        slots: &mut Slots<N, 2, SLOTS>,
+        slots: &mut Slots<N, 2, SLOTS, L>,
     ) -> [u8; 2 * SLOTS]
     where
         V: Wide<S, Scalar = N, Mask = M>,

@@ -53,19 +53,19 @@ const fn ends(arm: usize, sign: bool, upper: bool) -> [bool; 2] {
 }
 
 /// The clipping of eight pairs under way.
-pub(super) struct Clip<'a, S, N: Real, V, M> {
+pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,
     /// What is shown of the rectangle, and of the parallelogram.
     shown: [ShownFaces<M>; 2],
     admission: Admission<V>,
-    slots: &'a mut Slots<N, 3, SLOTS>,
+    slots: &'a mut Slots<N, 3, SLOTS, L>,
     corners: &'a mut Corners,
     /// One of the faces leans too far in some lane.
     is_partial: bool,
 }
 
-impl<'a, S, N, V, M> Clip<'a, S, N, V, M>
+impl<'a, S, N, V, M, const L: usize> Clip<'a, S, N, V, M, L>
 where
     S: Simd,
     N: Real,
@@ -77,7 +77,7 @@ where
         simd: S,
         faces: &'a FacesInLanes<V, M>,
         limits: &Limits<V>,
-        slots: &'a mut Slots<N, 3, SLOTS>,
+        slots: &'a mut Slots<N, 3, SLOTS, L>,
         corners: &'a mut Corners,
         is_partial: bool,
     ) -> Self {
@@ -212,6 +212,11 @@ where
         let (before, after) = (from.0[axis] - at, to.0[axis] - at);
         let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
         let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
+        if M::LEN == 1 && !(leaves | enters).any_true() {
+            // Most sides of a lone pair do not cross; among eight pairs some do.
+            (self.slots.valid[slot], self.slots.level[slot]) = (0, 0);
+            return;
+        }
         let along = before / (before - after);
         let flat = [from.0[0] + side.0[0] * along, from.0[1] + side.0[1] * along];
         let is_within = flat[1 - axis].abs().simd_lt(across[1 - axis] - tolerance);

@@ -12,10 +12,9 @@ use self::names::{BoxPairNames, FaceSide, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::SlotChoice;
 use super::masks::turned;
-use super::{Boxes, Inputs, LANES, smaller_size};
+use super::{Boxes, Inputs, smaller_size};
+use crate::collide::RawManifold;
 use crate::collide::batch::{Batch, PairQuestion};
-use crate::collide::manifold::contacts_of_separation3;
-use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
@@ -23,14 +22,14 @@ use crate::math::{Real, Wide, filled};
 /// The slots of a pair.
 const SLOTS: usize = 24;
 
-/// What is known of eight pairs before points are chosen.
-pub(in super::super) struct EightFaces<N: Real> {
-    slots: Slots<N, 3, SLOTS>,
+/// What is known of `L` pairs before points are chosen.
+pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
+    slots: Slots<N, 3, SLOTS, L>,
     corners: Corners,
-    gap: [N; LANES],
-    tolerance: [N; LANES],
-    size: [N; LANES],
-    normal: [[N; LANES]; 3],
+    gap: [N; L],
+    tolerance: [N; L],
+    size: [N; L],
+    normal: [[N; L]; 3],
     /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
     /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
     sides: [u8; 8],
@@ -43,9 +42,9 @@ pub(in super::super) struct EightFaces<N: Real> {
 /// Pairs of 3D boxes.
 pub(in super::super) struct Boxes3;
 
-impl<N: Real> EightFaces<N> {
+impl<N: Real, const L: usize> LaneFaces<N, L> {
     fn new() -> Self {
-        let row = [N::ZERO; LANES];
+        let row = [N::ZERO; L];
         Self {
             slots: Slots::new(),
             corners: Corners::new(),
@@ -56,51 +55,51 @@ impl<N: Real> EightFaces<N> {
             sides: [0; 8],
             is_apart: 0,
             is_built: 0,
-            columns: Columns([[0; LANES]; 7]),
+            columns: Columns([[0; 8]; 7]),
         }
     }
 }
 
 impl<N: Real> Batch<N, 3> for Boxes3 {
-    type Found = EightFaces<N>;
+    type Found<const L: usize> = LaneFaces<N, L>;
 
-    fn blank() -> EightFaces<N> {
-        EightFaces::new()
+    fn blank<const L: usize>() -> LaneFaces<N, L> {
+        LaneFaces::new()
     }
 
     #[inline(always)]
-    fn gather(inputs: &mut Inputs<N, 3>, lane: usize, pair: &PairQuestion<'_, N, 3>) -> bool {
+    fn gather<const L: usize>(
+        inputs: &mut Inputs<N, 3, L>,
+        lane: usize,
+        pair: &PairQuestion<'_, N, 3>,
+    ) -> bool {
         inputs.put_boxes(lane, pair)
     }
 
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(
+    fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
-        inputs: &Inputs<N, 3>,
-        found: &mut EightFaces<N>,
+        inputs: &Inputs<N, 3, L>,
+        found: &mut LaneFaces<N, L>,
     ) {
         found.find::<S, V>(simd, inputs);
         found.turn();
     }
 
     #[inline(always)]
-    fn settle(
-        found: &EightFaces<N>,
+    fn settle<const L: usize>(
+        found: &LaneFaces<N, L>,
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 3>,
     ) -> bool {
-        found.settle(lane & (LANES - 1), max_points, raw)
-    }
-
-    fn fall_back(pair: &Pair<'_, N, 3>, request: &ManifoldRequest<N>, raw: &mut RawManifold<N, 3>) {
-        contacts_of_separation3(pair, request, raw);
+        found.settle(lane & (L - 1), max_points, raw)
     }
 }
 
-impl<N: Real> EightFaces<N> {
+impl<N: Real, const L: usize> LaneFaces<N, L> {
     #[inline(always)]
-    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3>) {
+    fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
         let axis = boxes.best_axis(simd);
         let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
@@ -135,7 +134,7 @@ impl<N: Real> EightFaces<N> {
         }
     }
 
-    /// From masks of eight pairs to a byte for each pair.
+    /// From masks of all pairs to a byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         self.columns = Columns::of(self);
@@ -179,7 +178,7 @@ impl<N: Real> EightFaces<N> {
 
     /// The candidates of one pair, and how they are named.
     #[inline(always)]
-    fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS>, BoxPairNames) {
+    fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairNames) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
         let sides = FaceSides::of(bits);
         let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
@@ -205,7 +204,7 @@ struct FaceSides {
 }
 
 impl FaceSides {
-    /// From the bits of `EightFaces::sides`.
+    /// From the bits of `LaneFaces::sides`.
     #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
@@ -215,13 +214,13 @@ impl FaceSides {
     }
 }
 
-/// The masks of eight pairs, turned so that a byte has the bits of one pair: three bytes of the slots
+/// The masks of all pairs, turned so that a byte has the bits of one pair: three bytes of the slots
 /// that are there, three of those that are level, one of the faces.
-struct Columns([[u8; LANES]; 7]);
+struct Columns([[u8; 8]; 7]);
 
 impl Columns {
     #[inline(always)]
-    fn of<N: Real>(found: &EightFaces<N>) -> Self {
+    fn of<N: Real, const L: usize>(found: &LaneFaces<N, L>) -> Self {
         let Slots { valid, level, .. } = &found.slots;
         let rows = [
             part(valid, 0),
@@ -232,7 +231,7 @@ impl Columns {
             part(level, 16),
             found.sides,
         ];
-        let mut columns = [[0; LANES]; 7];
+        let mut columns = [[0; 8]; 7];
         for (column, row) in columns.iter_mut().zip(rows) {
             *column = turned(row);
         }
@@ -241,7 +240,7 @@ impl Columns {
 
     #[inline(always)]
     fn byte(&self, row: usize, lane: usize) -> u8 {
-        self.0[row][lane & (LANES - 1)]
+        self.0[row][lane & 7]
     }
 
     /// The bits of all slots.
@@ -254,7 +253,7 @@ impl Columns {
 
 /// Eight bytes in a row.
 #[inline(always)]
-fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; LANES] {
+fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; 8] {
     filled(
         #[inline(always)]
         |index| bytes[first + index],

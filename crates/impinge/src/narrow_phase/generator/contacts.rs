@@ -1,0 +1,106 @@
+//! The contacts of a pair alone, whether a composite is among its shapes or not.
+
+use crate::collide::{ManifoldRequest, Placed, Solid};
+use crate::math::{Point, Pose, Real, Space, Vector};
+use crate::narrow_phase::state::{CompositeState, ContactState, KeptContacts, KeptPoints};
+use crate::query::ContactManifold;
+use crate::shape::Geometry;
+
+/// Contacts as they are kept.
+#[derive(Clone)]
+pub(in crate::narrow_phase) enum PairContacts<N: Real, const D: usize> {
+    Convex(ContactState<N, D>),
+    /// Of a pair with a composite.
+    Composite(Box<CompositeState<N, D>>),
+}
+
+impl<N: Real, const D: usize> PairContacts<N, D> {
+    /// There is none yet.
+    pub(in crate::narrow_phase) fn new(has_composite: bool) -> Self {
+        if has_composite {
+            Self::Composite(Box::default())
+        } else {
+            Self::Convex(ContactState::default())
+        }
+    }
+}
+
+impl<N: Real, const D: usize> KeptPoints<N, D> for PairContacts<N, D> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Convex(state) => state.len(),
+            Self::Composite(state) => state.len(),
+        }
+    }
+
+    fn is_swapped(&self) -> bool {
+        match self {
+            Self::Convex(state) => state.is_swapped(),
+            Self::Composite(state) => state.is_swapped(),
+        }
+    }
+
+    fn each_point(&mut self, each: impl FnMut(&Vector<N, D>, &mut N, &Point<N, D>)) {
+        match self {
+            Self::Convex(state) => state.each_point(each),
+            Self::Composite(state) => state.each_point(each),
+        }
+    }
+}
+
+/// Of two things those of the solid in whose frame contacts are kept first.
+pub(super) fn in_kept_order<T>([one, other]: [T; 2], is_swapped: bool) -> [T; 2] {
+    if is_swapped { [other, one] } else { [one, other] }
+}
+
+/// How the solid in whose frame contacts are kept lies to the other one.
+pub(super) fn pose21<N: Real, const D: usize>(
+    [one, other]: &[Pose<N, D>; 2],
+    is_swapped: bool,
+) -> Pose<N, D> {
+    let [home, away] = in_kept_order([one, other], is_swapped);
+    Pose::relative(away, home)
+}
+
+/// Shapes at poses.
+pub(super) fn placed<'a, N: Real, const D: usize>(
+    [pose1, pose2]: &[Pose<N, D>; 2],
+    [shape1, shape2]: [Geometry<'a, N, D>; 2],
+) -> [Placed<'a, N, D>; 2] {
+    [Placed { pose: *pose1, shape: shape1 }, Placed { pose: *pose2, shape: shape2 }]
+}
+
+impl<N: Space<D>, const D: usize> PairContacts<N, D> {
+    /// Brings the contacts up to date; solids of a few numbers come with copies.
+    pub(in crate::narrow_phase) fn update(
+        &mut self,
+        (poses, shapes): (&[Pose<N, D>; 2], [Geometry<'_, N, D>; 2]),
+        copies: [Option<&Solid<N, D>>; 2],
+        request: &ManifoldRequest<N>,
+    ) {
+        match self {
+            Self::Convex(state) => state.update_alone((poses, shapes), copies, request),
+            Self::Composite(state) => {
+                state.update_between(&placed(poses, shapes), false, request);
+            }
+        }
+    }
+
+    /// The manifolds that hold a contact, in the memory of old ones.
+    pub(in crate::narrow_phase) fn manifolds(
+        &self,
+        placed: &[Placed<'_, N, D>; 2],
+        number: u64,
+        mut old: Vec<ContactManifold<N, D>>,
+    ) -> Vec<ContactManifold<N, D>> {
+        match self {
+            Self::Convex(state) => {
+                let manifold = old.pop().unwrap_or_default();
+                old.clear();
+                old.push(state.manifolds(placed, number, manifold));
+                old
+            }
+            Self::Composite(state) => state.manifolds(placed, number, old),
+        }
+    }
+}
