@@ -201,6 +201,37 @@ mod tests {
         }
     }
 
+    /// All instruction sets tell the same lanes and times, the nearest first, of those that are entered at some times.
+    fn check_nearest(
+        block: &Block<3>,
+        slabs: &Slabs<3>,
+        limit: f32,
+        (expected, keys): (u32, &[f32; LANES]),
+    ) {
+        let nearest = |lanes: Lanes| {
+            let mut keys = [0; LANES];
+            let limit = slabs.limit(limit);
+            let found = with_kernel!(lanes, kernel => {
+                kernel.enter_nearest(block, slabs, limit, &mut keys)
+            });
+            let mut widest = [0; LANES];
+            let again = with_widest_kernel!(lanes, kernel => {
+                kernel.enter_nearest(block, slabs, limit, &mut widest)
+            });
+            assert_eq!((again, widest), (found, keys), "{lanes:?}");
+            (found, keys)
+        };
+        let ((mask, least), lane_keys) = nearest(Lanes::scalar());
+        assert_eq!(mask, expected, "the same lanes are entered");
+        assert_eq!(lane_keys.iter().min(), Some(&least), "the least is the first");
+        for (lane, key) in (0..).zip(lane_keys).filter(|&(_, key)| key != u32::MAX) {
+            assert!(key & 15 == lane && f32::from_bits(key - lane) <= keys[lane as usize]);
+        }
+        for lanes in Lanes::available() {
+            assert_eq!(nearest(lanes), ((mask, least), lane_keys), "{lanes:?}");
+        }
+    }
+
     #[test]
     fn every_instruction_set_proposes_what_is_hit() {
         let (state, mut hits, mut proposed) = (&mut 3, 0, 0);
@@ -230,28 +261,7 @@ mod tests {
                     assert_eq!(own[lane], keys[lane], "{lanes:?}, lane {lane}");
                 }
             }
-            let nearest = |lanes: Lanes| {
-                let mut keys = [0; LANES];
-                let limit = tight.limit(limit);
-                let found = with_kernel!(lanes, kernel => {
-                    kernel.enter_nearest(&block, &tight, limit, &mut keys)
-                });
-                let mut widest = [0; LANES];
-                let again = with_widest_kernel!(lanes, kernel => {
-                    kernel.enter_nearest(&block, &tight, limit, &mut widest)
-                });
-                assert_eq!((again, widest), (found, keys), "{lanes:?}");
-                (found, keys)
-            };
-            let ((mask, least), lane_keys) = nearest(Lanes::scalar());
-            assert_eq!(mask, expected, "the same lanes are entered");
-            assert_eq!(lane_keys.iter().min(), Some(&least), "the least is the first");
-            for (lane, key) in (0..).zip(lane_keys).filter(|&(_, key)| key != u32::MAX) {
-                assert!(key & 15 == lane && f32::from_bits(key - lane) <= keys[lane as usize]);
-            }
-            for lanes in Lanes::available() {
-                assert_eq!(nearest(lanes), ((mask, least), lane_keys), "{lanes:?}");
-            }
+            check_nearest(&block, &tight, limit, (expected, &keys));
             let (padded, keys) = ask(Lanes::scalar(), &slabs);
             assert_eq!(padded & expected, expected, "padding takes nothing away");
             assert_eq!(expected >> (LANES - 2), 0, "nothing is in empty lanes");
