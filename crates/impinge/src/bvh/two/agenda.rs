@@ -10,7 +10,7 @@ pub(super) const STACK: usize = 48;
 
 /// A block of each tree.
 #[derive(Clone, Copy)]
-pub(super) struct BlockPair {
+pub(super) struct OpenPair {
     pub(super) layers: [u8; 2],
     pub(super) blocks: [u32; 2],
     /// What is in them is not nearer, but for what rounding does; no number of an unlimited reach.
@@ -19,24 +19,24 @@ pub(super) struct BlockPair {
 
 /// The pairs of blocks that are put off.
 pub(super) trait Agenda {
-    fn put(&mut self, pair: BlockPair);
-    fn take(&mut self) -> Option<BlockPair>;
+    fn put(&mut self, pair: OpenPair);
+    fn take(&mut self) -> Option<OpenPair>;
 }
 
 /// The last that was put off.
-impl Agenda for SmallVec<[BlockPair; STACK]> {
-    fn put(&mut self, pair: BlockPair) {
+impl Agenda for SmallVec<[OpenPair; STACK]> {
+    fn put(&mut self, pair: OpenPair) {
         self.push(pair);
     }
 
-    fn take(&mut self) -> Option<BlockPair> {
+    fn take(&mut self) -> Option<OpenPair> {
         self.pop()
     }
 }
 
 /// The least gap, and of several the lowest blocks.
 impl Agenda for BinaryHeap<Reverse<RankedPair>> {
-    fn put(&mut self, pair: BlockPair) {
+    fn put(&mut self, pair: OpenPair) {
         // Those of numbers that are not negative order as the numbers do.
         let gap = if pair.gap > 0.0 { pair.gap.to_bits() } else { 0 };
         let layers = pair.layers.map(u32::from);
@@ -44,7 +44,7 @@ impl Agenda for BinaryHeap<Reverse<RankedPair>> {
         self.push(Reverse(RankedPair { rank, pair }));
     }
 
-    fn take(&mut self) -> Option<BlockPair> {
+    fn take(&mut self) -> Option<OpenPair> {
         self.pop().map(|Reverse(RankedPair { pair, .. })| pair)
     }
 }
@@ -53,7 +53,7 @@ impl Agenda for BinaryHeap<Reverse<RankedPair>> {
 #[derive(Clone, Copy)]
 pub(super) struct RankedPair {
     rank: (u32, u32, [u32; 2]),
-    pair: BlockPair,
+    pair: OpenPair,
 }
 
 impl PartialEq for RankedPair {

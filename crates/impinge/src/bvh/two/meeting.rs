@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 
 use smallvec::SmallVec;
 
-use super::agenda::{Agenda, BlockPair, STACK};
+use super::agenda::{Agenda, OpenPair, STACK};
 use super::near_pairs::Toward;
 use crate::bounding_volume::Aabb;
 use crate::bvh::block_slabs::BlockSlab;
@@ -110,7 +110,7 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
     let size = trees[0].size() + trees[1].size() + way;
     let room = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
     let gap = f32::NEG_INFINITY;
-    let whole = BlockPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
+    let whole = OpenPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
     let slack = N::lit(f64::from(ROUNDING) * f64::from(size)) * N::EPSILON;
     let (level, is_for_nearest) = (Level::new(), question.is_for_nearest());
     let mut search = MeetingSearch { trees, turns, level, room, slack, is_for_nearest, question };
@@ -118,7 +118,7 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
         search.guess(whole);
         search.run(whole, BinaryHeap::new());
     } else {
-        search.run(whole, SmallVec::<[BlockPair; STACK]>::new());
+        search.run(whole, SmallVec::<[OpenPair; STACK]>::new());
     }
 }
 
@@ -208,7 +208,7 @@ impl<const D: usize> TurnedBox<D> {
 }
 
 impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
-    fn run(&mut self, whole: BlockPair, mut agenda: impl Agenda) {
+    fn run(&mut self, whole: OpenPair, mut agenda: impl Agenda) {
         agenda.put(whole);
         while let Some(pair) = agenda.take() {
             let Some(room) = self.room() else { return };
@@ -230,7 +230,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
 
     /// What is in two blocks is beyond the reach along the direction that parts the nearest objects so far, or along that
     /// between the middles of their boxes. In the scalar, which tells more than `f32` about what is far away.
-    fn is_beyond(&self, pair: &BlockPair) -> bool {
+    fn is_beyond(&self, pair: &OpenPair) -> bool {
         let Some((best, reach)) = self.question.best().zip(self.question.reach()) else {
             return false;
         };
@@ -246,7 +246,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// The gap along a unit vector of the frame of each tree toward the other.
-    fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
+    fn gap_along(&self, toward: &Toward<N, D>, pair: &OpenPair) -> N {
         let reaches = [0, 1].mapped(|which| {
             let block = self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which]);
             block.reach(&toward[which])
@@ -261,7 +261,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
 
     /// Hands out an object of each tree: where a descent ends toward the middle of the other's leaf block, the first toward
     /// all of the other tree.
-    fn guess(&mut self, whole: BlockPair) {
+    fn guess(&mut self, whole: OpenPair) {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
             let turn = &self.turns[1 - which];
@@ -276,13 +276,13 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         }
     }
 
-    fn bounds(&self, which: usize, pair: &BlockPair) -> &Bounds<D> {
+    fn bounds(&self, which: usize, pair: &OpenPair) -> &Bounds<D> {
         &self.trees[which].layers[usize::from(pair.layers[which])].bounds
             [pair.blocks[which] as usize]
     }
 
     /// The boxes in one of two blocks that what is in the other may touch.
-    fn held(&self, which: usize, pair: &BlockPair, room: f32) -> Held {
+    fn held(&self, which: usize, pair: &OpenPair, room: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
         let seen = self.turns[1 - which].turned(own.bounds, own.slab, room);
@@ -291,7 +291,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// Puts off the blocks below one of two, each with the other, so that the deepest comes next.
-    fn open(&self, which: usize, pair: &BlockPair, room: f32, agenda: &mut impl Agenda) {
+    fn open(&self, which: usize, pair: &OpenPair, room: f32, agenda: &mut impl Agenda) {
         let Held { mask, gaps } = self.held(which, pair, room);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
         let mut near = SmallVec::<[(f32, u32); LANES]>::new();
@@ -313,7 +313,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// Visits the objects of two leaf blocks: each of that with fewer near ones with those of the other.
-    fn meet(&mut self, pair: &BlockPair, mut room: f32) {
+    fn meet(&mut self, pair: &OpenPair, mut room: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
             masks[which] = self.held(which, pair, room).mask;

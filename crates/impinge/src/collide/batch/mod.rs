@@ -207,7 +207,7 @@ impl<N: Space<D>, const D: usize> Task<N, D> for One<'_, '_, N, D> {
         let Self { question, raw } = self;
         let (mut inputs, mut found) = (Inputs::<N, D, 1>::new(), B::blank::<1>());
         inputs.put::<B>(0, question);
-        Lone.find::<B, N, D>(&inputs, &mut found);
+        LonePair.find::<B, N, D>(&inputs, &mut found);
         B::settle(&found, 0, question.request.max_points, raw)
     }
 }
@@ -221,15 +221,15 @@ struct Many<'a, P> {
 impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P> {
     fn run<B: Batch<N, D>>(self) -> bool {
         match self.level {
-            Level::Wide(vectors) => update::<B, _, _, D, LANES>(Eight(vectors), self.pairs),
-            _ => update::<B, _, _, D, 1>(Lone, self.pairs),
+            Level::Wide(vectors) => update::<B, _, _, D, LANES>(VectorLanes(vectors), self.pairs),
+            _ => update::<B, _, _, D, 1>(LonePair, self.pairs),
         }
         true
     }
 }
 
 /// What computes `L` lanes.
-trait Lanes<const L: usize>: Copy {
+trait BatchLanes<const L: usize>: Copy {
     /// Runs [`Batch::find`], which is compiled once for all that keep pairs.
     fn find<B: Batch<N, D>, N: Real, const D: usize>(
         self,
@@ -240,9 +240,9 @@ trait Lanes<const L: usize>: Copy {
 
 /// Eight lanes in vectors.
 #[derive(Clone, Copy)]
-struct Eight(Vectors);
+struct VectorLanes(Vectors);
 
-impl Lanes<LANES> for Eight {
+impl BatchLanes<LANES> for VectorLanes {
     #[inline(never)]
     fn find<B: Batch<N, D>, N: Real, const D: usize>(
         self,
@@ -256,9 +256,9 @@ impl Lanes<LANES> for Eight {
 
 /// One lane.
 #[derive(Clone, Copy)]
-struct Lone;
+struct LonePair;
 
-impl Lanes<1> for Lone {
+impl BatchLanes<1> for LonePair {
     #[inline(never)]
     fn find<B: Batch<N, D>, N: Real, const D: usize>(
         self,
@@ -272,7 +272,7 @@ impl Lanes<1> for Lone {
 /// [`Batch`] for all pairs, `L` by `L`. The numbers of the next pairs are gathered before those gathered last
 /// are used, which gives the memory time to put them together.
 fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const L: usize>(
-    lanes: impl Lanes<L>,
+    lanes: impl BatchLanes<L>,
     pairs: &mut P,
 ) {
     let (mut now, mut next) = (&mut Inputs::<N, D, L>::new(), &mut Inputs::new());

@@ -19,7 +19,7 @@ pub(crate) fn first_on_mesh<N: Space<3>>(
 ) -> Option<RayIntersection<N, 3>> {
     let RayQuestion { ray, max_time, solid } = question;
     // In place: a cast that is moved is read before it is written through.
-    let mut cast = Cast::new(mesh, ray, *max_time, *solid);
+    let mut cast = MeshCast::new(mesh, ray, *max_time, *solid);
     let Some(cast) = &mut cast else {
         return first_that(mesh, question, |_| true);
     };
@@ -41,7 +41,7 @@ pub(crate) fn first_hits_on_mesh<N: Space<3>>(
     let (mut casts, mut walks) = (Vec::with_capacity(RAYS), Vec::with_capacity(RAYS));
     let mut numbers = Vec::with_capacity(RAYS);
     for (number, ray) in rays.iter().enumerate() {
-        if let Some(cast) = Cast::new(mesh, ray, max_time, solid) {
+        if let Some(cast) = MeshCast::new(mesh, ray, max_time, solid) {
             let probe = mesh.ray_probe(ray, &cast.around);
             walks.push(Walk::new(probe, probe.slabs.limit(cast.limit())));
             casts.push(cast);
@@ -63,7 +63,7 @@ pub(crate) fn first_hits_on_mesh<N: Space<3>>(
 /// Rays that go together.
 struct Casts<'a, 'b, N: Real> {
     mesh: &'b TriMesh<N, 3>,
-    casts: &'b mut [Cast<'a, N>],
+    casts: &'b mut [MeshCast<'a, N>],
 }
 
 impl<N: Space<3>> RayVisitor for Casts<'_, '_, N> {
@@ -81,7 +81,7 @@ impl<N: Space<3>> RayVisitor for Casts<'_, '_, N> {
 }
 
 /// A ray on its way through a mesh.
-struct Cast<'a, N: Real> {
+struct MeshCast<'a, N: Real> {
     ray: &'a Ray<N, 3>,
     solid: bool,
     own: TriangleRay<N>,
@@ -102,7 +102,7 @@ struct Met<N: Real> {
     inner: Option<InnerHit<N>>,
 }
 
-impl<'a, N: Space<3>> Cast<'a, N> {
+impl<'a, N: Space<3>> MeshCast<'a, N> {
     /// A ray that has not started; `None` where the mesh is a body to the question, and for rays without a direction or
     /// that are not finite.
     #[inline(always)]

@@ -20,7 +20,7 @@ const CLEAR: f64 = 1.0 / 1024.0;
 
 /// How far the corners of a ring are inside of the sides of the other, by corner and side, with bits for the lanes in
 /// which that is by more than rounding.
-pub(super) struct Insides<N, const CORNERS: usize, const SIDES: usize> {
+pub(super) struct SideHeights<N, const CORNERS: usize, const SIDES: usize> {
     inside: [[[N; LANES]; SIDES]; CORNERS],
     within: [[u8; SIDES]; CORNERS],
     beyond: [[u8; SIDES]; CORNERS],
@@ -29,7 +29,7 @@ pub(super) struct Insides<N, const CORNERS: usize, const SIDES: usize> {
     pub(super) is_on: [u8; CORNERS],
 }
 
-impl<N: Real, const CORNERS: usize, const SIDES: usize> Insides<N, CORNERS, SIDES> {
+impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, SIDES> {
     const fn blank() -> Self {
         let (inside, none) = ([[[N::ZERO; LANES]; SIDES]; CORNERS], [[0; SIDES]; CORNERS]);
         let blank = [0; CORNERS];
@@ -80,8 +80,8 @@ pub(in crate::collide) struct FaceClip<N: Real> {
     /// How far along the normal the corners of the face are from the plane of the triangle.
     pub(super) vertex_depths: [[N; LANES]; MAX],
     /// The corners of the triangles among the sides of the face, and the other way round.
-    pub(super) in_face: Insides<N, 3, MAX>,
-    pub(super) in_triangle: Insides<N, MAX, 3>,
+    pub(super) in_face: SideHeights<N, 3, MAX>,
+    pub(super) in_triangle: SideHeights<N, MAX, 3>,
     /// Lengths below this are rounding errors.
     pub(super) tolerance: [N; LANES],
     pub(super) shown: ShownBits,
@@ -109,8 +109,8 @@ impl<N: Real> FaceClip<N> {
             corners: [[zeros; 3]; 3],
             depths: [zeros; 3],
             vertex_depths: [zeros; MAX],
-            in_face: Insides::blank(),
-            in_triangle: Insides::blank(),
+            in_face: SideHeights::blank(),
+            in_triangle: SideHeights::blank(),
             tolerance: zeros,
             shown: ShownBits::default(),
             plain: 0,
