@@ -150,7 +150,7 @@ impl<N: Real, const D: usize> PairManifoldGenerator<N, D> {
     /// };
     /// assert_eq!(depth(1.9375), 0.0625);
     /// assert!((depth(1.9375 - 0.0078125) - 0.0703125).abs() < 1e-12, "measured, not computed");
-    /// assert!(PairManifoldGenerator::<f32, 3>::default().try_reusing(-1.0).is_err());
+    /// assert!(PairManifoldGenerator::<f32>::default().try_reusing(-1.0).is_err());
     /// ```
     ///
     /// # Errors
