@@ -23,7 +23,7 @@ use crate::tables::entries;
 ///
 /// Nothing is kept between calls. A [`ContactId`](crate::query::ContactId) here names a contact within one
 /// answer; ids that last over motion are those of a world or of a
-/// [`PairManifoldGenerator`]. Many pairs at once are quicker in
+/// [`PairManifoldGenerator`](super::PairManifoldGenerator). Many pairs at once are quicker in
 /// [`PairBatch::manifolds`](crate::batch::PairBatch::manifolds).
 ///
 /// ```
