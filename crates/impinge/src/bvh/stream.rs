@@ -1,6 +1,6 @@
 //! Many rays among triangles at once, step by step.
 //!
-//! What one ray does next hangs on what it has just read, which memory delivers late and no processor foresees. So all
+//! The next step of a ray depends on what it has just read, which memory delivers late and no processor foresees. So all
 //! rays that are to open a block do so one after the other, then all that look at triangles, then all that go back to a
 //! block that lies open: within such a step nothing hangs on the ray before, no branch is taken by chance, and memory
 //! has several blocks on their way. The order of each ray on its own is that of [`near_first`](super::near_first).
@@ -14,7 +14,7 @@ use super::{LANES, NONE, Slabs, Tree};
 /// Rays that are on their way at a time.
 pub(crate) const RAYS: usize = 64;
 
-/// What becomes of the triangles that rays may cross.
+/// Is called with the triangles that rays may cross.
 pub(crate) trait RayVisitor {
     /// Reads something of an object that [`Self::visit`] looks at soon.
     fn touch(&self, id: u32);

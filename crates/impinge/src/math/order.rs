@@ -62,23 +62,10 @@ pub(crate) fn sort_few<T>(items: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     }
 }
 
-/// Up to so many items with keys are sorted by insertion.
-const FEW_KEYED: usize = 48;
-
 /// Sorts by the first, equals by the second.
 #[inline(never)]
 pub(crate) fn sort_keyed(items: &mut [(u64, u32)]) {
-    if items.len() > FEW_KEYED {
-        return items.sort_unstable();
-    }
-    for next in 1..items.len() {
-        let (item, mut at) = (items[next], next);
-        while at > 0 && item < items[at - 1] {
-            items[at] = items[at - 1];
-            at -= 1;
-        }
-        items[at] = item;
-    }
+    items.sort_unstable();
 }
 
 #[cfg(test)]

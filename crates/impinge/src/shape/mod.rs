@@ -68,6 +68,8 @@ pub(crate) use solids::tapered_capsule::Taper;
 pub use solids::tapered_capsule::TaperedCapsule;
 pub use solids::tetrahedron::Tetrahedron;
 pub use solids::triangle::Triangle;
+/// The limits by which a triangle shows a part clearly.
+pub(crate) use solids::triangle_feature::{CLEAR as CLEARLY_LARGER, THIN_SQUARED};
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
 #[doc(hidden)]
 pub(crate) use surface::face_seams::FaceSeams;

@@ -13,7 +13,7 @@ pub(super) const STACK: usize = 48;
 pub(super) struct OpenPair {
     pub(super) layers: [u8; 2],
     pub(super) blocks: [u32; 2],
-    /// What is in them is not nearer, but for what rounding does; no number of an unlimited reach.
+    /// No two objects in them are nearer, but for rounding; NaN where the reach has no limit.
     pub(super) gap: f32,
 }
 
@@ -37,7 +37,7 @@ impl Agenda for SmallVec<[OpenPair; STACK]> {
 /// The least gap, and of several the lowest blocks.
 impl Agenda for BinaryHeap<Reverse<RankedPair>> {
     fn put(&mut self, pair: OpenPair) {
-        // Those of numbers that are not negative order as the numbers do.
+        // The bits of numbers that are not negative have the order of the numbers.
         let gap = if pair.gap > 0.0 { pair.gap.to_bits() } else { 0 };
         let layers = pair.layers.map(u32::from);
         let rank = (gap, layers[0] + layers[1], pair.blocks);

@@ -288,9 +288,9 @@ fn side_between(from: usize, to: usize) -> usize {
 }
 
 /// A triangle of less height than the root of this part of its longest side is thin.
-const THIN_SQUARED: f64 = 1.0 / 1024.0;
+pub(crate) const THIN_SQUARED: f64 = 1.0 / 1024.0;
 /// By this part of a number another one is clearly larger.
-const CLEAR: f64 = 1.0 / 1024.0;
+pub(crate) const CLEAR: f64 = 1.0 / 1024.0;
 
 impl<N: Real> Triangle<N, 3> {
     /// The name of what [`SupportMap::core_feature`] answers to a unit vector, by products alone; `None` of

@@ -9,14 +9,10 @@ use crate::math::lanes::{
 };
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
-use crate::shape::{FACING_SINE_SQUARED, FaceRing};
+use crate::shape::{CLEARLY_LARGER, FACING_SINE_SQUARED, FaceRing, THIN_SQUARED};
 
 /// As many corners as a face has here.
 const MAX: usize = FaceRing::<f32>::MAX;
-/// A triangle of less height than the root of this part of its longest side shows nothing clearly.
-const THIN_SQUARED: f64 = 1.0 / 1024.0;
-/// By this part of a number another one is clearly larger.
-const CLEAR: f64 = 1.0 / 1024.0;
 
 /// How far the corners of a ring are inside of the sides of the other, by corner and side, with bits for the lanes in
 /// which that is by more than rounding.
@@ -289,7 +285,7 @@ impl<V> SeenTriangles<V> {
         V: Wide<S, Scalar = N>,
     {
         let (zero, limit) = (V::all(simd, N::ZERO), lit::<S, N, V>(simd, FACING_SINE_SQUARED));
-        let less = lit::<S, N, V>(simd, 1.0 - CLEAR);
+        let less = lit::<S, N, V>(simd, 1.0 - CLEARLY_LARGER);
         let longest = self.squared[0].larger(self.squared[1]).larger(self.squared[2]);
         let (area, rise) = (dot(&self.across, &self.across), self.rise * self.rise);
         let is_wide = area.simd_gt(lit::<S, N, V>(simd, THIN_SQUARED) * longest * longest)

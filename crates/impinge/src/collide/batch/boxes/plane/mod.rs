@@ -19,7 +19,7 @@ use crate::math::{Real, Wide};
 /// The ends of the upper side, the one with the smaller place first, and of the lower one.
 const SLOTS: usize = 4;
 
-/// What is known of `L` pairs before points are chosen.
+/// `L` pairs, measured, before points are chosen.
 pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
     gap: [N; L],

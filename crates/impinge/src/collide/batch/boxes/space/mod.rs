@@ -22,7 +22,7 @@ use crate::math::{Real, Wide, filled};
 /// The slots of a pair.
 const SLOTS: usize = 24;
 
-/// What is known of `L` pairs before points are chosen.
+/// `L` pairs, measured, before points are chosen.
 pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     slots: Slots<N, 3, SLOTS, L>,
     corners: Corners,
