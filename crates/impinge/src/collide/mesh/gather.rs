@@ -3,6 +3,7 @@
 use smallvec::SmallVec;
 
 use super::cull::LowerBoundQuery;
+use super::faces::has_faces;
 use super::part_cache::PartCache;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::LANES;
@@ -45,7 +46,11 @@ pub(super) fn nearby<N: Space<D>, const D: usize>(
         if around.reaches(parts2, &aabb)
             && let Some(query) = LowerBoundQuery::new(between, reach, around, &aabb)
         {
-            return near_kept(&query, parts2, around, &aabb);
+            let nearby = near_kept(&query, parts2, around, &aabb);
+            if has_faces(between.pair.first) {
+                around.learn_seams(parts2, &nearby.near);
+            }
+            return nearby;
         }
     }
     let parts = candidates(between, is_self, reach);

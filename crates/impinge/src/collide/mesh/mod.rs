@@ -185,7 +185,6 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let of_parts = of_parts(between, request);
         let around = &mut self.around;
         let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
-        self.around.learn_seams(between, &nearby.near);
         let center = middle_of_first(between);
         // A body knows by itself on which side its inside is.
         let old = self.reference.filter(|_| !between.has_bodies());

@@ -4,10 +4,8 @@
 
 use smallvec::SmallVec;
 
-use super::faces::has_faces;
 use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::{LANES, PartPacket};
-use crate::collide::parts::between::Between;
 use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportMap, Triangle};
@@ -185,19 +183,11 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.tiles
     }
 
-    /// Asks a surface for the seams of those of its parts that are near, given a bit for each part of each tile, if the
-    /// solid has faces that contacts are made with.
-    pub(super) fn learn_seams(&mut self, between: &Between<'_, N, D>, near: &[u8]) {
-        let [None, Some(parts)] = between.composites() else { return };
-        if !has_faces(between.pair.first) {
-            return;
-        }
-        let Some(surface) = parts.surface_access().filter(|_| self.has_triangles_alone()) else {
-            return;
-        };
-        if near.len() != self.tiles.len() {
-            return;
-        }
+    /// Asks the surface of a composite for the seams of those of its triangles that are near, given a bit for each part
+    /// of each tile.
+    pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, near: &[u8]) {
+        let surface = composite.surface_access().filter(|_| self.has_triangles_alone());
+        let Some(surface) = surface else { return };
         self.seams.resize(self.parts.len(), KeptSeams::Unasked);
         for (block, near) in near.iter().enumerate() {
             for lane in Ones::<LANES>((*near).into()) {

@@ -50,7 +50,6 @@ fn each_in_general<N: Space<D>, const D: usize>(
 ) {
     let (reference, mut around) = (middle_of_first(between), PartCache::for_once());
     let nearby = gather::nearby(between, false, request.prediction, &mut around);
-    around.learn_seams(between, &nearby.near);
     let (around, reference) = (&around, &reference);
     let query = Query { between, is_self: false, around, reference, request };
     let mut arena = Arena::default();
