@@ -12,7 +12,7 @@ compiled! {
     /// Height fields.
     trait FieldEntries;
 
-    /// The pyramid over the cells as they are.
+    /// Builds the pyramid over the present cells.
     fn pyramid_over(field: &HeightField<N, D>) -> Pyramid<N> = new_pyramid;
 
     fn cells_overlapping(
@@ -28,7 +28,7 @@ compiled! {
         visit: &mut dyn FnMut(u32, N) -> N,
     ) = nearest_first;
 
-    /// The cells that a box meets which moves with a velocity.
+    /// Visits the cells that a moving box hits.
     fn first_cells(
         field: &HeightField<N, D>,
         aabb: &Aabb<N, D>,
