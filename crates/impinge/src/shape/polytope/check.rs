@@ -78,7 +78,7 @@ impl<N: Real> Polytope<N, 3> {
     /// distance of a vertex from the origin. Quadratic time.
     ///
     /// Says what is wrong.
-    /// What is wrong, in words.
+    /// Says what is wrong.
     pub fn validate(&self) -> Result<(), &'static str> {
         self.validate_faces()?;
         self.validate_fans()?;

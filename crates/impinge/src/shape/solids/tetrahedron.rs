@@ -44,7 +44,7 @@ pub(in crate::shape) const EDGES: [[u32; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2
 #[derive(Clone, PartialEq)]
 pub struct Tetrahedron<N: Real> {
     corners: [Point<N, 3>; 4],
-    /// Of a flat tetrahedron only the vertices and ids are valid; its faces overlap.
+    /// If the tetrahedron is flat, only the vertices and ids are valid; the faces overlap.
     polytope: Polytope<N, 3>,
     /// The outline, if the tetrahedron is flat.
     flat: Option<FlatOutline<N>>,
