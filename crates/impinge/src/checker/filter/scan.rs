@@ -1,8 +1,8 @@
 //! The scan: eight configurations against all pairs.
 //!
 //! ```text
-//! group      [ c0 c1 c2 c3 c4 c5 c6 c7 ]   lane = configuration; a bit for each in which it is near
-//! its balls  [ b0 b1 b2 b3 b4 b5 b6 b7 ]   lane = ball, once for each of these configurations
+//! group     [ c0 c1 c2 c3 c4 c5 c6 c7 ]   lane = configuration; a bit for each where it is near
+//! its balls [ b0 b1 b2 b3 b4 b5 b6 b7 ]   lane = ball, once for each of these configurations
 //! ```
 
 use super::MAX_LENGTH;

@@ -84,6 +84,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
 
     /// The compound of the given shapes at their positions.
     ///
+    /// # Errors
     /// If there is no shape, a position is not finite or its rotation has no length of 1, the parts
     /// are more than 32 bits can number, or a child has the nesting depth
     /// [`MAX_NESTING`](crate::shape::MAX_NESTING) already.

@@ -77,7 +77,7 @@ impl<N: Real> Polytope<N, 3> {
     /// that run along it in opposite directions; convex within 48 · `N::EPSILON` times the largest
     /// distance of a vertex from the origin. Quadratic time.
     ///
-    /// Says what is wrong.
+    /// # Errors
     /// Says what is wrong.
     pub fn validate(&self) -> Result<(), &'static str> {
         self.validate_faces()?;
