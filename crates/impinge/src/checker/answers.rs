@@ -58,6 +58,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
+    /// Scans a packet: reads its numbers in `f32` and collects candidate pairs up to `limit`.
     fn scan(&mut self, eight: &Range<usize>, limit: N) {
         let slides = self.read_numbers(eight);
         let lanes = u8::MAX >> (LANES - eight.len());
@@ -112,6 +113,7 @@ fn angle<N: Real>(value: N) -> f32 {
     if size <= NEAR_ANGLE { value.as_f32() } else { reduced(value) }
 }
 
+/// The angle modulo a full turn, reduced in `f64`; NaN above `FAR_ANGLE`.
 #[cold]
 fn reduced<N: Real>(value: N) -> f32 {
     let value = value.as_f64();

@@ -319,6 +319,7 @@ fn check_bodies<N: Real, const D: usize>(
     Ok(())
 }
 
+/// Checks that `is_pair` holds for all pairs; `argument` names the list in the error.
 fn check_pairs(
     argument: &'static str,
     pairs: &[[u32; 2]],

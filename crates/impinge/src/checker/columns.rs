@@ -35,6 +35,7 @@ impl<N: Real> NearestColumns<'_, N> {
         Ok(())
     }
 
+    /// Writes the result of one configuration to the columns that are not empty.
     pub(super) fn put(&mut self, slot: usize, distance: N, pair: [u32; 2]) {
         if let Some(place) = self.distance.get_mut(slot) {
             *place = distance;

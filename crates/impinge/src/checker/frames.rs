@@ -218,6 +218,7 @@ pub(super) fn place<N: Space<D>, const D: usize>(
     Progress::new(control).run(count, poses, work)
 }
 
+/// Checks the parent, the column, the numbers and the axis of a frame.
 fn check<N: Real, const D: usize>(
     index: usize,
     frame: &Frame<N, D>,

@@ -52,6 +52,7 @@ fn grow(expansion: &mut Expansion, addend: f64) {
     }
 }
 
+/// `a − b`, exactly.
 fn difference(a: f64, b: f64) -> Expansion {
     let (high, low) = sum_and_error(a, -b);
     let mut expansion = Expansion::new();
@@ -60,6 +61,7 @@ fn difference(a: f64, b: f64) -> Expansion {
     expansion
 }
 
+/// Adds `sign · a · b` to an expansion, exactly.
 fn add_product(sum: &mut Expansion, a: &[f64], b: &[f64], sign: f64) {
     for &x in a {
         for &y in b {
@@ -136,6 +138,7 @@ pub(crate) fn volume(a: &P3, b: &P3, c: &P3, q: &P3) -> f64 {
     if det.abs() > MARGIN * permanent { -det } else { volume_exact([a, b, c], q) }
 }
 
+/// [`volume`] from the exact determinant.
 #[cold]
 fn volume_exact(corners: [&P3; 3], q: &P3) -> f64 {
     let [u, v, w] = corners.map(|p| [0, 1, 2].map(|axis| difference(p[axis], q[axis])));

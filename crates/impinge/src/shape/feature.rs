@@ -155,6 +155,8 @@ impl<N: Real, const D: usize> Feature<N, D> {
         self.rename_collapsed();
     }
 
+    /// Makes a feature of one or two vertices a point or a segment: sets its id and drops the
+    /// normal.
     fn rename_collapsed(&mut self) {
         match self.vertices.len() {
             1 => {

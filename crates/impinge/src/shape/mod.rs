@@ -85,8 +85,8 @@ use crate::math::{Pose, Real, Vector};
 
 /// A solid in its own frame.
 ///
-/// Implement it for a type of your own to put that type into a world: give its box and say through
-/// [`Shape::geometry`] how queries shall see it.
+/// Implement it for a type of your own to put that type into a world: return its box, and from
+/// [`Shape::geometry`] how queries treat it.
 ///
 /// ```
 /// use impinge::dim2::math::Point;
@@ -105,8 +105,8 @@ use crate::math::{Pose, Real, Vector};
             or `CompositeShape`"
 )]
 pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
-    /// How queries see the solid: [`Geometry::support_map`] for a convex solid of your own, or the
-    /// geometry of a built-in shape that yours stands for.
+    /// How queries treat the solid: [`Geometry::support_map`] for a convex solid of your own, or
+    /// the geometry of a built-in shape that stands for yours.
     fn geometry(&self) -> Geometry<'_, N, D>;
 
     /// A box around the solid in its own frame; as small as is cheap.
@@ -119,12 +119,13 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
 
     /// The solid scaled along the axes of its frame, about its origin; factors may be negative.
     ///
-    /// The answer is exact up to rounding and of the same type, but that a ball may become an
-    /// [`Ellipsoid`]: no shape becomes an approximation of itself. Other round shapes need factors of
-    /// one magnitude, cylinders and cones across their axis; a cone cannot be turned over, a compound
-    /// not sheared.
-    /// Polygons number their vertices the other way round if mirrored; other parts and features keep
-    /// their numbers.
+    /// The result is exact up to rounding, never an approximation, and of the same type, except
+    /// that a ball may become an [`Ellipsoid`]. Other round shapes need factors of one magnitude,
+    /// cylinders and cones across their axis; a cone cannot be reversed, a compound not be sheared.
+    ///
+    /// Parts and features keep their numbers, unless the scale mirrors: then a polygon numbers its
+    /// vertices in the opposite order, a hull renumbers its edges, and triangles of meshes and
+    /// segments of polylines are reversed.
     ///
     /// # Errors
     /// If a factor is zero or not finite, no shape of the library is the scaled solid, or its numbers
@@ -148,8 +149,8 @@ pub trait Shape<N: Real, const D: usize>: Any + Debug + Send + Sync {
     }
 
     /// Returns the nesting depth of the shape, at most [`MAX_NESTING`]; zero (the default) for a
-    /// shape that holds no other shape. A user's shape that holds others keeps zero and answers for
-    /// the depth itself.
+    /// shape that holds no other shape. A user's shape that holds others keeps zero and is itself
+    /// responsible for the depth of recursion.
     #[doc(hidden)]
     fn nesting(&self) -> u32 {
         0

@@ -82,6 +82,7 @@ impl From<MeshError> for ScaleError {
 pub(super) struct Scale<'a, N: Real, const D: usize>(&'a Vector<N, D>);
 
 impl<'a, N: Real, const D: usize> Scale<'a, N, D> {
+    /// Checks the factors: finite, and not zero.
     pub(super) fn try_new(factors: &'a Vector<N, D>) -> Result<Self, ScaleError> {
         let is_bad = |x: &N| *x == N::ZERO || !x.is_finite_number();
         match factors.iter().position(is_bad) {

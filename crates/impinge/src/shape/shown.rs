@@ -45,6 +45,7 @@ impl<N: Real> Shown<N> {
         Self::side(FeatureId::Edge(0), ends)
     }
 
+    /// The feature of a support map; `None` if it has more than two vertices.
     fn of_map(map: &dyn SupportMap<N, 2>, direction: &Vector<N, 2>) -> Option<Self> {
         let mut feature = Feature::default();
         map.core_feature(direction, &mut feature);

@@ -68,6 +68,8 @@ fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     ring
 }
 
+/// Whether a vertex lies, within `flat`, on the segment between two neighbors or amid all of them
+/// in one plane.
 fn is_inside(vertex: &P3, neighbors: &[P3], flat: f64) -> bool {
     let pairs =
         neighbors.iter().enumerate().flat_map(|(i, a)| neighbors[..i].iter().map(move |b| (a, b)));
@@ -253,6 +255,7 @@ impl<'a> Merger<'a> {
         faces
     }
 
+    /// Grows a face from the facet `seed`: its loop goes to `ring`, the facets beyond to `beyond`.
     fn grow(&mut self, seed: u32) {
         let facet = &self.facets[at(seed)];
         self.is_taken[at(seed)] = true;
@@ -301,6 +304,8 @@ impl<'a> Merger<'a> {
         true
     }
 
+    /// Whether the loop stays convex, within the tolerance, when `far` is inserted after
+    /// `position`.
     fn stays_convex(&self, seed: u32, position: usize, far: u32) -> bool {
         let count = self.ring.len();
         let vertex = |step: usize| self.ring[(position + step) % count];

@@ -149,6 +149,7 @@ impl<'a> HullSurface<'a> {
         Some(surface.compacted())
     }
 
+    /// Makes the first tetrahedron; `None` if the four points are coplanar.
     fn start(&mut self, [a, b, c, d]: [u32; 4]) -> Option<()> {
         let [e, f, g] = [a, b, c].mapped(|corner| &self.points[at(corner)]);
         let height = volume([e, f, g], &self.points[at(d)]);

@@ -98,6 +98,7 @@ fn cuboid_at<N: Real, const D: usize>(
     Core::Cuboid { axes: columns(&pose.rotation), center: numbers(center), half: numbers(half) }
 }
 
+/// A segment in the outer frame.
 fn between<N: Real, const D: usize>(pose: &Pose<N, D>, ends: [&Point<N, D>; 2]) -> Core<D> {
     let [start, end] = ends.mapped(|end| pose.point(end).coords);
     let way = (end - start).map(N::as_f32);

@@ -189,6 +189,8 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
         self.divide(back);
     }
 
+    /// Appends a group of the balls of some bodies on one node, with its bounding ball, reach and
+    /// margin.
     fn add_group(&mut self, bodies: &[&Covered<N, D>]) {
         let node = bodies[0].node;
         let shift = if node == 0 { self.shift } else { Vector::<N, D>::zeros() };
@@ -273,6 +275,7 @@ impl<const D: usize> BallGroup<D> {
         }
     }
 
+    /// Appends a ball of a body; the group must not be full.
     fn push<N: Real>(&mut self, body: &Covered<N, D>, (center, radius): ([f32; D], f32)) {
         let lane = self.count;
         for (row, x) in self.centers.iter_mut().zip(center) {

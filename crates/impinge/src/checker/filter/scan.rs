@@ -74,6 +74,7 @@ fn run<S: Simd, const D: usize>(
 }
 
 impl<const D: usize> Scan<'_, D> {
+    /// Places all groups by forward kinematics, then tests them against obstacles and each other.
     #[inline(always)]
     fn run<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -117,6 +118,7 @@ impl<const D: usize> Scan<'_, D> {
         centers
     }
 
+    /// Tests each group against its obstacles, nearest first, until their gap exceeds all limits.
     #[inline(always)]
     fn meet_obstacles<S: Simd, V: Wide<S, Scalar = f32>>(
         self,
@@ -170,6 +172,7 @@ impl<const D: usize> Scan<'_, D> {
         );
     }
 
+    /// Tests the pairs of groups against each other, by their bounding balls first.
     #[inline(always)]
     fn meet_itself<S: Simd, V: Wide<S, Scalar = f32>>(
         self,

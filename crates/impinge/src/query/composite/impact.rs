@@ -86,6 +86,7 @@ const ROUNDING: f64 = 64.0;
 const SAME: f64 = 1.0 / 1024.0;
 
 impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
+    /// Searches all pairs of parts.
     fn run(&mut self) {
         self.begin_inside();
         match self.between.composites() {
@@ -99,6 +100,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
+    /// Casts the parts of the composite with fewer of them against the other.
     fn of_many(&mut self, parts1: &dyn CompositeShape<N, D>, parts2: &dyn CompositeShape<N, D>) {
         let (which, fewer, more) = by_number(parts1, parts2);
         let aabb = self.grown(&self.between.whole_in_other(1 - which));
@@ -242,6 +244,8 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         Aabb::try_new(*grown.mins(), *grown.maxs()).unwrap_or_else(|_| Aabb::unbounded())
     }
 
+    /// The latest time that still matters; negative once a contact of the whole is a hit at the
+    /// start.
     fn end(&self) -> N {
         if self.start == WholeContact::Hit {
             return -N::ONE;

@@ -211,6 +211,7 @@ enum Mode<N> {
 }
 
 impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
+    /// Steps to the first impact; `None` if there is none up to `end`.
     fn run(&self) -> Option<Impact<N, D>> {
         let mut configuration = self.look(N::ZERO, None)?;
         let starts = self.end >= N::ZERO;

@@ -108,6 +108,8 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         &self.linear
     }
 
+    /// A motion with the generator `unit_spin` and `turn` radians per unit of time, starting at
+    /// time zero.
     fn spinning(
         start: N::Isometry,
         linear: Vector<N, D>,

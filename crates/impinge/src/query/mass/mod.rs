@@ -133,6 +133,7 @@ struct Weighing<'d, N> {
 }
 
 impl<N: Real> Weighing<'_, N> {
+    /// The moments of a shape, with the density of its path.
     fn of_shape<const D: usize>(&mut self, shape: &dyn Shape<N, D>) -> Result<Moments<D>, MassError>
     where
         N: Space<D>,
@@ -163,6 +164,7 @@ impl<N: Real> Weighing<'_, N> {
         Ok(found.of_density(self.density()?))
     }
 
+    /// The sum of the children of a compound, in its frame.
     fn of_children<const D: usize>(
         &mut self,
         compound: &Compound<N, D>,

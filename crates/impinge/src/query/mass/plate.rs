@@ -73,6 +73,7 @@ pub(super) struct EdgeWedge {
 }
 
 impl EdgeWedge {
+    /// Adds the sector with the given radius; nothing for an edge without length.
     pub(super) fn add(&self, radius: f64, sum: &mut Integrals<3>) {
         let [a, b] = &self.ends;
         let (edge, wedge) = (b - a, Wedge::new(radius, self.angle));

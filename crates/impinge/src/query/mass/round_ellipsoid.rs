@@ -22,6 +22,7 @@ const THIN: f64 = 1e-9;
 /// The sine and the cosine of an angle up to 90°, and its weight.
 type AngleNode = [f64; 3];
 
+/// The angles and weights of the quadrature, from near zero to near 90°.
 fn nodes() -> Vec<AngleNode> {
     let node = |step: i32| {
         let growth = libm::exp(STEP * f64::from(step));

@@ -152,6 +152,7 @@ impl<N: Real> Sliced<'_, N> {
         self.round.point(&self.map.support_point(&toward.map(N::lit)))
     }
 
+    /// The integrals over the solid in its round frame.
     fn integrals(&self) -> Integrals<3> {
         let [bottom, top] = [-V3::z(), V3::z()].map(|direction| self.support(&direction));
         let quarter = core::f64::consts::FRAC_PI_2;

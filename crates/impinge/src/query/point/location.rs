@@ -76,6 +76,7 @@ fn of_segment<N: Real, const D: usize>(segment: &Segment<N, D>, point: &Point<N,
     [N::ONE - fraction, fraction]
 }
 
+/// The weights of a point of a triangle; exactly zero for corners outside of `feature`.
 fn of_triangle<N: Real, const D: usize>(
     triangle: &Triangle<N, D>,
     point: &Point<N, D>,

@@ -105,6 +105,7 @@ impl<N: Real> Nappe<N> {
         })
     }
 
+    /// The crossing with the side at the time `t`.
     fn crossing(&self, t: N) -> Crossing<N, 3> {
         if !t.is_finite_number() {
             return Crossing::never(t);

@@ -114,6 +114,7 @@ pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Po
     }
 }
 
+/// Whether the box of a triangle, loosened by the rounding error of a thin set, contains a point.
 fn may_lie_on<N: Real, const D: usize>(triangle: &Triangle<N, D>, point: &Point<N, D>) -> bool {
     let [a, b, c] = triangle.corners();
     let largest = |corner: &Point<N, D>| max_component(&corner.coords);

@@ -72,6 +72,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         }
     }
 
+    /// The span of the line in the frustum.
     fn span(&self) -> Option<Span<N, D>> {
         let (low, high) = self.between_circles()?;
         let (enter, leave) = self.in_cone()?;

@@ -413,6 +413,7 @@ fn chain(vertices: usize) -> Result<Vec<[u32; 2]>, MeshError> {
     Ok((1..).take(vertices - 1).map(|next| [next - 1, next]).collect())
 }
 
+/// The boxes of the segments, in their order.
 fn boxes_of<N: Real, const D: usize>(
     vertices: &[Point<N, D>],
     segments: &[[u32; 2]],

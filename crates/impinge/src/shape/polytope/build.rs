@@ -40,6 +40,7 @@ fn grouped<T: Copy + Default>(
 }
 
 impl<N: Real, const D: usize> Polytope<N, D> {
+    /// A polytope with vertices only; faces, edges and fans follow.
     fn from_vertices(vertices: Vec<Point<N, D>>) -> Self {
         Self {
             center: center_of(&vertices),

@@ -94,6 +94,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         faces.reduce(|best, face| if along(face) > along(best) { face } else { best }).unwrap_or(0)
     }
 
+    /// Writes a part as a feature.
     fn fill(&self, part: HullPart, out: &mut Feature<N, D>) {
         match part {
             HullPart::Face(face) => self.fill_face(face, out),
@@ -104,6 +105,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
+    /// The id of a part.
     fn named(part: HullPart) -> FeatureId {
         match part {
             HullPart::Face(face) => FeatureId::Face(face),
@@ -112,6 +114,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         }
     }
 
+    /// Writes face `index`; in 2D as a segment with a normal.
     fn fill_face(&self, index: u32, out: &mut Feature<N, D>) {
         let face = &self.faces[index as usize];
         out.clear();

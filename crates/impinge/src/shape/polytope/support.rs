@@ -24,6 +24,7 @@ pub(in crate::shape) fn plane<N: Real, const D: usize>(
     with_lanes!(level, simd => plane_in_lanes::<_, N, N::Lanes<_>, D>(simd, planes, point))
 }
 
+/// [`vertex`] in lanes.
 #[inline(always)]
 fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -39,6 +40,7 @@ fn vertex_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
+/// [`plane`] in lanes.
 #[inline(always)]
 fn plane_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

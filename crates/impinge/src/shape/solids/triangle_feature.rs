@@ -95,6 +95,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         (vertex_id(index), self.corners()[index])
     }
 
+    /// Writes the supporting feature for the unit vector `direction` with the limit `tilt`.
     pub(in crate::shape) fn fill_toward(
         &self,
         direction: &Vector<N, D>,

@@ -296,6 +296,8 @@ impl<N: Real> HeightField<N, 3> {
         self.corners_in(row, column, k)
     }
 
+    /// The corners of triangle `k` of the cell at a row and column, counter-clockwise seen from the
+    /// front.
     pub(super) fn corners_in(&self, row: usize, column: usize, k: usize) -> [GridPoint; 3] {
         let [a, b, c, d] =
             [[row, column], [row + 1, column], [row + 1, column + 1], [row, column + 1]];

@@ -238,6 +238,7 @@ impl<N: Real> HeightField<N, 3> {
             }
     }
 
+    /// Whether the field has a normal at a side of a triangle, by the cached bend if it is plain.
     fn edge_admits(
         &self,
         own: &FieldFace<N>,
@@ -260,6 +261,7 @@ impl<N: Real> HeightField<N, 3> {
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
     }
 
+    /// Whether the field has a normal at a corner of a triangle that is not the triangle's own.
     fn vertex_admits(
         &self,
         own: &FieldFace<N>,

@@ -180,6 +180,7 @@ pub(crate) fn box_of_corners<N: Real, const D: usize>(corners: &[Point<N, D>; 3]
     Aabb::from_points(corners).unwrap_or_else(Aabb::unbounded)
 }
 
+/// The unit normals of all triangles, zero without area; empty in 2D.
 fn normals_of<N: Space<D>, const D: usize>(
     vertices: &[Point<N, D>],
     triangles: &[[u32; 3]],

@@ -128,6 +128,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         self.across(triangle, side as usize)
     }
 
+    /// [`Self::neighbor`], with a flip if both triangles traverse the side in the same direction.
     fn across(&self, triangle: u32, side: usize) -> EdgeNeighbor {
         if self.topology.has_several_across(triangle, side) {
             return EdgeNeighbor::Several;

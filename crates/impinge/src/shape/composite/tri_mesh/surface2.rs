@@ -6,6 +6,7 @@ use crate::shape::FeatureId;
 use crate::shape::surface::seam::{is_flat, slack};
 
 impl<N: Real> TriMesh<N, 2> {
+    /// [`Surface::admits`](crate::shape::Surface::admits) in 2D.
     pub(super) fn admits_in_plane(
         &self,
         part: u32,
@@ -53,6 +54,7 @@ impl<N: Real> TriMesh<N, 2> {
         is_open
     }
 
+    /// Whether a side is a border with this normal; a triangle without area may have both normals.
     fn side_admits(&self, part: u32, side: usize, normal: &Vector<N, 2>) -> bool {
         match self.open_normal(part, side) {
             Some(own) => max_component(&(own - normal)) <= slack(),

@@ -25,6 +25,7 @@ pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector
 }
 
 impl<N: Real> TriMesh<N, 3> {
+    /// [`Surface::admits`](crate::shape::Surface::admits) in 3D.
     pub(super) fn admits_in_space(
         &self,
         part: u32,
@@ -69,6 +70,7 @@ impl<N: Real> TriMesh<N, 3> {
         }
     }
 
+    /// [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` without area.
     pub(super) fn snapped_in_space(
         &self,
         part: u32,
