@@ -206,9 +206,9 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         }
     }
 
-    /// Confirms an arrival of two parts after a start in contact that does not count: the whole
-    /// shape must have a contact that counts there. Returns the arrival of the whole if its normals
-    /// differ.
+    /// Checks an arrival of two parts after a start in contact that does not count. `None` if the
+    /// whole shape has contacts there, none of which counts; the arrival of the whole if one counts,
+    /// but none with the normal of the parts.
     fn confirmed(
         &self,
         found: PartArrival<N, D>,

@@ -123,7 +123,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
         Some(cast)
     }
 
-    /// The largest distance at which boxes are searched.
+    /// The latest time at which boxes are searched: loosened by rounding.
     #[inline(always)]
     fn limit(&self) -> N {
         loosened(self.latest)
