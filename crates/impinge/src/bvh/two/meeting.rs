@@ -16,21 +16,19 @@ use smallvec::SmallVec;
 
 use super::agenda::{Agenda, OpenPair, STACK};
 use super::near_pairs::Toward;
+use super::regions::{Held, Turn, TurnedBox};
 use crate::bounding_volume::Aabb;
-use crate::bvh::block_slabs::BlockSlab;
 use crate::bvh::tree::small;
-use crate::bvh::{Block, Bounds, LANES, NONE, Tree};
-use crate::math::lanes::{bits, with_lanes};
+use crate::bvh::{Bounds, LANES, NONE, Tree};
 use crate::math::ones::Ones;
 use crate::math::order::sort_few;
-use crate::math::simd::{Level, Simd};
-use crate::math::{Mapped, Pose, Real, Wide, filled, max_component, unit};
+use crate::math::simd::Level;
+use crate::math::{Mapped, Pose, Real, Vector, filled, max_component, unit};
 
-/// Lanes that are treated at once.
-const HALF: usize = LANES / 2;
 /// Heights lose this to rounding, in units of `f32` of all lengths: 3 for a turn, as many for a sum of products, 2 for
 /// directions that are not quite unit, in up to three axes. The rest is reserve.
 const ROUNDING: f32 = 64.0;
+
 /// How two trees lie to each other, and what is done with pairs of their objects.
 pub(crate) trait TreeMeeting<N: Real, const D: usize> {
     /// The frame of the first (0) or the second (1) tree in that of the other.
@@ -56,31 +54,15 @@ pub(crate) trait TreeMeeting<N: Real, const D: usize> {
     /// there are any near it, it is visited next.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D>;
 
+    /// The corners of the object that [`Self::object_in_other`] was asked about last, in the frame of the other tree, if
+    /// it is given by them.
+    fn corners(&self) -> Option<[Vector<N, D>; 3]> {
+        None
+    }
+
     /// Gets an object of the first (0) or the second (1) tree and all of one block of the other whose boxes are within
     /// its reach.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
-}
-
-/// How the frame of one tree lies in that of the other.
-#[derive(Clone, Copy)]
-struct Turn<const D: usize> {
-    /// Its axes.
-    axes: [[f32; D]; D],
-    shift: [f32; D],
-}
-
-/// A convex region as the blocks of a tree see it: a box and slabs, all wider by the reach and what rounding does.
-struct TurnedBox<const D: usize> {
-    bounds: Bounds<D>,
-    /// Along the axes of the other frame, and across a slab.
-    slabs: SmallVec<[BlockSlab<D>; 4]>,
-}
-
-/// The boxes of a block that a region may touch.
-struct Held {
-    mask: u32,
-    /// How far each box is from the region along the direction that parts them best, or less.
-    gaps: [f32; LANES],
 }
 
 struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
@@ -119,91 +101,6 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
         search.run(whole, BinaryHeap::new());
     } else {
         search.run(whole, SmallVec::<[OpenPair; STACK]>::new());
-    }
-}
-
-impl<const D: usize> Turn<D> {
-    fn of<N: Real>(pose: &Pose<N, D>) -> Self {
-        let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));
-        Self { axes, shift: filled(|row| pose.translation[row].as_f32()) }
-    }
-
-    fn vector(&self, local: &[f32; D]) -> [f32; D] {
-        filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
-    }
-
-    /// A box of one tree, and a slab around the same, as the other tree sees them, wider by `room`.
-    fn turned(&self, bounds: &Bounds<D>, slab: Option<&BlockSlab<D>>, room: f32) -> TurnedBox<D> {
-        let half: [f32; D] = filled(|axis| bounds.hi[axis] * 0.5 - bounds.lo[axis] * 0.5);
-        let turned: [f32; D] = self.vector(&bounds.center());
-        let center: [f32; D] = filled(|row| turned[row] + self.shift[row]);
-        let extents: [f32; D] = filled(|row| {
-            room + (0..D).map(|axis| self.axes[axis][row].abs() * half[axis]).sum::<f32>()
-        });
-        let mut slabs = SmallVec::new();
-        for (across, half) in self.axes.iter().zip(half) {
-            let height = dot(across, &center);
-            let (low, high) = (height - half - room, height + half + room);
-            slabs.push(BlockSlab { across: *across, low, high });
-        }
-        if let Some(slab) = slab {
-            let across = self.vector(&slab.across);
-            let height = dot(&across, &self.shift);
-            let (low, high) = (height + slab.low - room, height + slab.high + room);
-            slabs.push(BlockSlab { across, low, high });
-        }
-        let bounds = Bounds {
-            lo: filled(|row| center[row] - extents[row]),
-            hi: filled(|row| center[row] + extents[row]),
-        };
-        TurnedBox { bounds, slabs }
-    }
-}
-
-fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-impl<const D: usize> TurnedBox<D> {
-    /// Which of the boxes of a block it may touch.
-    fn held(&self, level: Level, block: &Block<D>) -> Held {
-        let mut held = Held { mask: 0, gaps: [0.0; LANES] };
-        for first in [0, HALF] {
-            let gaps = &mut held.gaps[first..first + HALF];
-            let mask = with_lanes!(level, simd => self.held_half(simd, block, first, gaps));
-            held.mask |= u32::from(mask) << first;
-        }
-        held
-    }
-
-    /// Eight of the boxes of a block. Empty ones are infinitely far.
-    #[inline(always)]
-    fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
-        let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));
-        let (mut lo, mut hi) = ([zero; D], [zero; D]);
-        let mut gap = S::F32x8::all(simd, f32::NEG_INFINITY);
-        for axis in 0..D {
-            lo[axis] = S::F32x8::load(simd, &block.lo[axis][lanes.clone()]);
-            hi[axis] = S::F32x8::load(simd, &block.hi[axis][lanes.clone()]);
-            gap = (lo[axis] - S::F32x8::all(simd, self.bounds.hi[axis])).larger(gap);
-            gap = (S::F32x8::all(simd, self.bounds.lo[axis]) - hi[axis]).larger(gap);
-        }
-        if bits(gap.simd_gt(zero)) != u8::MAX {
-            for BlockSlab { across, low, high } in &self.slabs {
-                let (mut lowest, mut highest) = (zero, zero);
-                for axis in 0..D {
-                    let along = S::F32x8::all(simd, across[axis]);
-                    let ends = [along * lo[axis], along * hi[axis]];
-                    let far = usize::from(across[axis] >= 0.0);
-                    (lowest, highest) = (lowest + ends[1 - far], highest + ends[far]);
-                }
-                // What is no number is not larger.
-                gap = (lowest - S::F32x8::all(simd, *high)).larger(gap);
-                gap = (S::F32x8::all(simd, *low) - highest).larger(gap);
-            }
-        }
-        gap.store(gaps);
-        !bits(gap.simd_gt(zero))
     }
 }
 
@@ -285,7 +182,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     fn held(&self, which: usize, pair: &OpenPair, room: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
-        let seen = self.turns[1 - which].turned(own.bounds, own.slab, room);
+        let seen = self.turns[1 - which].turned(own.bounds, own.slab, room, self.is_for_nearest);
         let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
         seen.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
@@ -328,9 +225,10 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         for lane in Ones::<LANES>(masks[which]) {
             let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
             let aabb = self.question.object_in_other(which, id);
-            let bounds = loosened(&Bounds::enclosing(&aabb), room);
-            let near = TurnedBox { bounds, slabs: SmallVec::new() }.held(self.level, block).mask;
-            let ids = Ones::<LANES>(near & masks[1 - which])
+            let corners = self.question.corners().filter(|_| self.is_for_nearest);
+            let region = TurnedBox::of_object(&Bounds::enclosing(&aabb), corners, room);
+            let near = region.held(self.level, block);
+            let ids = Ones::<LANES>(near.mask & masks[1 - which])
                 .filter_map(|lane| other.id_in(others * small(LANES) + small(lane)));
             let ids = ids.collect::<SmallVec<[u32; LANES]>>();
             if !ids.is_empty() {
@@ -340,10 +238,6 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             }
         }
     }
-}
-
-fn loosened<const D: usize>(bounds: &Bounds<D>, room: f32) -> Bounds<D> {
-    Bounds { lo: filled(|axis| bounds.lo[axis] - room), hi: filled(|axis| bounds.hi[axis] + room) }
 }
 
 #[cfg(test)]
@@ -362,6 +256,9 @@ mod tests {
         reach: f64,
         found: Vec<[u32; 2]>,
         is_first_enough: bool,
+        is_for_nearest: bool,
+        /// The object that was asked about last, as a triangle without area.
+        own: Option<[Vector<f64, 3>; 3]>,
     }
 
     impl TreeMeeting<f64, 3> for Turned<'_> {
@@ -373,8 +270,18 @@ mod tests {
             (self.found.is_empty() || !self.is_first_enough).then_some(self.reach)
         }
 
+        fn is_for_nearest(&self) -> bool {
+            self.is_for_nearest
+        }
+
         fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<f64, 3> {
-            around(&self.segments[which][id as usize].map(|end| self.poses[which].point(&end)))
+            let ends = self.segments[which][id as usize].map(|end| self.poses[which].point(&end));
+            self.own = Some([0, 1, 0].map(|end: usize| ends[end].coords));
+            around(&ends)
+        }
+
+        fn corners(&self) -> Option<[Vector<f64, 3>; 3]> {
+            self.own
         }
 
         fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
@@ -418,22 +325,35 @@ mod tests {
             let turn = noise.vector::<f64>(3.0);
             let pose = Pose::from(Isometry3::new(Vector::<f64, 3>::new(9.0, -4.0, 2.0), turn));
             let poses = [pose.inverse(), pose];
-            let mut pairs =
-                Turned { segments: &all, poses, reach, found: Vec::new(), is_first_enough: false };
-            visit_meetings(trees.each_ref(), &mut pairs);
-            let mut found = core::mem::take(&mut pairs.found);
-            found.sort_unstable();
-            assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
+            let mut pairs = Turned {
+                segments: &all,
+                poses,
+                reach,
+                found: Vec::new(),
+                is_first_enough: false,
+                is_for_nearest: false,
+                own: None,
+            };
+            let ways = [false, true].map(|is_for_nearest| {
+                pairs.is_for_nearest = is_for_nearest;
+                visit_meetings(trees.each_ref(), &mut pairs);
+                let mut found = core::mem::take(&mut pairs.found);
+                found.sort_unstable();
+                assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
+                found
+            });
+            let [found, nearest] = &ways;
+            assert!(nearest.len() * 2 < found.len() || found.len() < 100, "{}", nearest.len());
             for (id1, one) in (0..).zip(&all[0]) {
                 for (id2, other) in (0..).zip(&all[1]) {
                     let distance = distance(one, &other.map(|end| pose.point(&end)));
-                    let is_found = found.binary_search(&[id1, id2]).is_ok();
+                    let is_found = ways.iter().all(|way| way.binary_search(&[id1, id2]).is_ok());
                     assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
                 }
             }
             let most = count1 * count2;
             assert!(most < 1000 || found.len() * 20 < most, "{} of {most} pairs", found.len());
-            pairs.is_first_enough = true;
+            (pairs.is_first_enough, pairs.is_for_nearest) = (true, false);
             visit_meetings(trees.each_ref(), &mut pairs);
             assert!(pairs.found.len() <= LANES, "the search ends");
         }

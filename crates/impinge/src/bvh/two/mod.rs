@@ -4,6 +4,7 @@
 mod agenda;
 mod meeting;
 mod near_pairs;
+mod regions;
 
 pub(crate) use meeting::{TreeMeeting, visit_meetings};
 pub(crate) use near_pairs::{Toward, TreePair, visit_pairs};

@@ -8,13 +8,13 @@
 use super::between::Between;
 use super::bounds::extent;
 use super::pair_lanes::PartPairs;
-use super::slabs::corners;
+use super::slabs::{corners, range};
 use super::solid_bounds::gap_slack;
 use crate::bounding_volume::Aabb;
 use crate::bvh::{Toward, TreeMeeting, visit_meetings};
 use crate::collide::packet::LANES;
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min};
-use crate::shape::CompositeShape;
+use crate::shape::{CompositeShape, TriMesh};
 use crate::tables::ByDimension;
 
 /// What is done with pairs of parts.
@@ -63,6 +63,7 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     let mut meeting = PartMeetings {
         between,
         parts: [parts1, parts2],
+        meshes: [parts1.as_mesh(), parts2.as_mesh()],
         reach: Some(reach),
         slack: if wanted == Meetings::Nearest { gap_slack(size) } else { N::ZERO },
         wanted,
@@ -79,6 +80,8 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
 struct PartMeetings<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
+    /// The composites that are meshes.
+    meshes: [Option<&'a TriMesh<N, D>>; 2],
     reach: Option<N>,
     /// Boxes may be farther apart than the nearest parts by this much.
     slack: N,
@@ -92,6 +95,25 @@ struct PartMeetings<'a, 'q, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
+    /// The corners of a part of the first shape (0) or the second (1), in its frame; `None` of parts without.
+    fn corners_of(&self, which: usize, id: u32) -> Option<[Vector<N, D>; 3]> {
+        if let Some(mesh) = self.meshes[which] {
+            return Some(mesh.corners(id).mapped(|corner| corner.coords));
+        }
+        let part = self.parts[which].part(id);
+        corners(&part.solid, &part.pose)
+    }
+
+    /// Two parts are beyond reach along the way between their middles: that tells most of those that boxes do not.
+    fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
+        let Some(reach) = self.reach.filter(|_| self.wanted == Meetings::Nearest) else {
+            return false;
+        };
+        let way = (other[0] + other[1] + other[2]) - (one[0] + one[1] + one[2]);
+        let [gap1, gap2] = [range(one, &way)[1], range(other, &way)[0]];
+        gap2 - gap1 > (reach + self.slack) * way.norm()
+    }
+
     fn found(&mut self, pair: [u32; 2]) {
         self.reach = self.reach.and_then(|_| self.visitor.visit(pair));
     }
@@ -149,9 +171,9 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
     }
 
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D> {
-        let part = self.parts[which].part(id);
-        let pose = self.pose(which).compose(&part.pose);
-        self.own = corners(&part.solid, &pose);
+        let pose = self.pose(which);
+        let own = self.corners_of(which, id);
+        self.own = own.map(|own| own.mapped(|corner| pose.point(&Point::from(corner)).coords));
         let Some([a, b, c]) = self.own else { return self.between.aabb_in_other(which, id) };
         let (mut low, mut high) = (a, a);
         for axis in 0..D {
@@ -161,11 +183,15 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
         Aabb::try_new(low.into(), high.into()).unwrap_or_else(|_| Aabb::unbounded())
     }
 
+    fn corners(&self) -> Option<[Vector<N, D>; 3]> {
+        self.own
+    }
+
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         for &other in others {
             let pair = if which == 0 { [own, other] } else { [other, own] };
-            let part = self.parts[1 - which].part(other);
-            match (self.own, corners(&part.solid, &part.pose)) {
+            match (self.own, self.corners_of(1 - which, other)) {
+                (Some(one), Some(other)) if self.are_beyond(&one, &other) => {}
                 (Some(one), Some(other)) => self.keep(pair, &one, &other),
                 _ => self.found(pair),
             }

@@ -90,12 +90,15 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let mut held = HeldPairs::<S, V, 3>::new(simd, pairs, limit);
     let (own, others) = (sides(&held.one), sides(&held.other));
     let [normal, other_normal] = [cross(&own[0], &own[1]), cross(&others[0], &others[1])];
-    held.along(&normal);
-    held.along(&other_normal);
     if limit > N::ZERO {
         // Far pairs beside each other, which the directions that decide about an overlap hardly part.
         held.between_middles();
+        if bits(held.beyond) == u8::MAX {
+            return held.verdicts(false);
+        }
     }
+    held.along(&normal);
+    held.along(&other_normal);
     if bits(held.beyond) == u8::MAX {
         return held.verdicts(false);
     }

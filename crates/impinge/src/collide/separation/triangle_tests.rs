@@ -2,8 +2,8 @@
 //! trust in either: a plane that parts two solids bounds their distance from below, and two of their points
 //! from above.
 
-use super::triangles::{TiledTriangles, TriangleGap};
-use super::{gaps3, general, hulls, separation};
+use super::triangles::{TiledTriangles, TriangleGap, pair};
+use super::{Algorithm, gaps3, general, hulls, separation};
 use crate::collide::Pair;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::convex::Separation;
@@ -79,9 +79,9 @@ struct Tally {
     rounds: usize,
 }
 
-/// Holds the separating axis test against the general algorithm.
-fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
-    let (slack, own) = (256.0 * N::EPSILON.as_f64() * size, hulls::separation::<N>);
+/// Holds a separating axis test against the general algorithm.
+fn check_pair<N: Real>(own: Algorithm<N, 3>, pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
+    let slack = 256.0 * N::EPSILON.as_f64() * size;
     let found = own(pair, N::INFINITY).expect("within infinity");
     let general = general::of_flat_cores(pair, N::INFINITY).expect("within infinity");
     let triangle = match pair.first {
@@ -102,7 +102,7 @@ fn check_pair<N: Real>(pair: &Pair<'_, N, 3>, size: f64, tally: &mut Tally) {
 
 /// Boxes, hulls and triangles at every depth, of sizes from a tenth to one, some of them flat.
 fn at_random<N: Real>(rounds: usize) {
-    let (mut noise, mut tallies) = (Noise(7), [(); 3].map(|()| Tally::default()));
+    let (mut noise, mut tallies) = (Noise(7), [(); 4].map(|()| Tally::default()));
     for round in 0..rounds {
         let triangle = noise.triangle::<N>(round);
         let mut half = noise.vector::<N>(0.5).abs() + Vector::<N, 3>::repeat(N::lit(0.05));
@@ -119,9 +119,12 @@ fn at_random<N: Real>(rounds: usize) {
         let first = triangle.geometry().0;
         let other = noise.triangle::<N>(round / 2);
         let kinds = [cuboid.geometry().0, hull.geometry().0, other.geometry().0];
-        for (second, tally) in kinds.into_iter().zip(&mut tallies) {
-            check_pair(&Pair { first, second, pose12 }, 4.0, tally);
+        let [with_kinds @ .., with_pairs] = &mut tallies;
+        for (second, tally) in kinds.into_iter().zip(with_kinds) {
+            check_pair(hulls::separation, &Pair { first, second, pose12 }, 4.0, tally);
         }
+        let pair = Pair { first, second: kinds[2], pose12 };
+        check_pair(pair::separation, &pair, 4.0, with_pairs);
     }
     for Tally { overlaps, closed, rounds } in &tallies {
         assert!(

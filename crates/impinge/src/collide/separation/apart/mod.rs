@@ -27,7 +27,7 @@ use self::search::MIN_GAP;
 use self::search::{LaneCores, LaneGap};
 use super::boxes::cuboid_cuboid;
 use super::flat_core::FlatCore;
-use super::{Algorithm, hulls};
+use super::{Algorithm, hulls, triangles};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units, safe_reach};
 use crate::math::lanes::{LanePose, minus};
@@ -113,6 +113,7 @@ pub(crate) const fn is_faceted<N: Real>(kind: &Kind<'_, N, 3>) -> bool {
 fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
     match (pair.first, pair.second) {
         (Kind::Cuboid(_), Kind::Cuboid(_)) => cuboid_cuboid::separation,
+        (Kind::Triangle(_), Kind::Triangle(_)) => triangles::pair::separation,
         _ => hulls::separation,
     }
 }

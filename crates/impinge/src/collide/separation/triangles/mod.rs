@@ -1,4 +1,5 @@
-//! Triangles of a surface against one solid, eight at a time: boxes and hulls ([`axes`]), and balls ([`ball`]).
+//! Triangles of a surface against one solid, eight at a time: boxes and hulls ([`axes`]), and balls ([`ball`]);
+//! and two triangles ([`pair`]).
 //!
 //! Of most triangles a surface asks no more than which of its sides or corners is touched, and contacts along
 //! its face are made anew. Where a side and an edge cross well inside both, or one corner alone is nearest to
@@ -8,6 +9,7 @@
 
 mod axes;
 mod ball;
+pub(super) mod pair;
 
 use self::axes::{AxisFeature, TriangleAxes};
 pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
