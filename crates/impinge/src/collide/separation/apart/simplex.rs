@@ -1,4 +1,5 @@
-//! The point nearest to the origin on the faces of a tetrahedron that meet in its newest corner, in lanes.
+//! Nearest point to the origin on the faces of a tetrahedron that meet in its newest corner, in
+//! lanes.
 //!
 //! ```text
 //!            w  newest            candidates: the edges w p0, w p1, w p2 and the inside of the faces
@@ -9,16 +10,17 @@
 //!           p2
 //! ```
 //!
-//! The old face p0 p1 p2 is not looked at: the newest corner lies beyond it, toward the origin.
+//! The old face p0 p1 p2 is skipped: the newest corner lies beyond it, toward the origin.
 
 use crate::math::lanes::{cross, dot, either, either_mask, lit, minus, negated, plus, times};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The planes of a simplex that holds the origin clearly are farther than this from it: 2⁻¹⁰ of the pair.
+/// The origin is clearly inside a simplex if it is farther than this from each plane: 2⁻¹⁰ of the
+/// pair.
 const CLEAR: f64 = 1.0 / 1024.0;
 
-/// A point of the difference of two cores, and the point of the first core that it belongs to.
+/// A point of the difference of two cores, and the point of the first core that it comes from.
 #[derive(Clone, Copy)]
 pub(super) struct LaneCorner<V> {
     pub(super) point: [V; 3],
