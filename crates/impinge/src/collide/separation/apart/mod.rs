@@ -137,7 +137,7 @@ enum GapResult<N: Real> {
 }
 
 impl<N: Real> GapResult<N> {
-    /// The separation of the pair that this is known of.
+    /// Returns the separation; unproved pairs are computed by the algorithm of their kinds.
     #[inline]
     fn separation(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
         match self {
@@ -147,7 +147,7 @@ impl<N: Real> GapResult<N> {
         }
     }
 
-    /// Its distance, or zero if the cores certainly overlap.
+    /// Returns the distance, or zero if the cores certainly overlap.
     #[inline]
     fn distance(&self, pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
         let distance = match self {
@@ -163,7 +163,7 @@ impl<N: Real> GapResult<N> {
     }
 }
 
-/// The result of the search for a lone pair.
+/// Runs the search for one pair, in one lane.
 #[inline(never)]
 fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapResult<N> {
     let Some(solids) = FlatPair::of(pair) else { return GapResult::Unproved };
@@ -183,12 +183,13 @@ struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
     radii: [N; 2],
     units: Units<N>,
-    /// The middles of the cores in their own frames, in units of the pair.
+    /// Centres of the cores in their own frames, in units of the pair.
     middles: [Vector<N, 3>; 2],
 }
 
 impl<'a, N: Real> FlatPair<'a, N> {
-    /// `None` for other solids, and where the numbers end.
+    /// `None` for other kinds, for hulls of more than [`MAX_VERTICES`] vertices, and if the unit of
+    /// the pair is not finite.
     #[inline]
     fn of(pair: &Pair<'a, N, 3>) -> Option<Self> {
         if !(is_faceted(&pair.first) && is_faceted(&pair.second)) {
@@ -212,8 +213,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
         })
     }
 
-    /// A limit of the solids as one of their cores, in units of the pair, that nothing within the limit exceeds by
-    /// rounding.
+    /// Returns the limit for the distance of the cores, in units of the pair, raised so that
+    /// rounding rejects nothing within `limit`.
     #[inline]
     fn limit_of_cores(&self, limit: N) -> N {
         let limit = (limit + self.radii[0] + self.radii[1]) * self.units.shrink;
@@ -234,8 +235,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
         }
     }
 
-    /// The result from what is known of the cores: whether they are beyond the limit, overlap, or are apart by a
-    /// separation in units of the pair.
+    /// Returns the result for the solids: `core` is the separation of the cores in units of the
+    /// pair, used if they are apart.
     #[inline]
     fn result(
         &self,
@@ -267,7 +268,7 @@ impl<'a, N: Real> FlatPair<'a, N> {
     }
 }
 
-/// The vertices of a solid that has more than ends or half extents.
+/// Returns the vertices of a triangle or hull; `None` for other kinds.
 #[inline]
 fn vertices<'a, N: Real>(solid: &FlatCore<'a, N, 3>) -> Option<CorePoints<'a, N>> {
     match *solid {

@@ -44,23 +44,23 @@ impl<V> LaneCorner<V> {
 #[derive(Clone, Copy)]
 pub(super) struct LaneSimplex<V> {
     pub(super) corners: [LaneCorner<V>; 3],
-    /// What the corners contribute, of sum 1.
+    /// Barycentric weights of the corners; their sum is 1.
     pub(super) weights: [V; 3],
     pub(super) nearest: [V; 3],
     pub(super) squared: V,
 }
 
-/// The best of the candidates so far.
+/// The nearest of the candidates so far.
 struct BestFeature<V> {
     nearest: [V; 3],
     squared: V,
-    /// The weights of the two old corners, and which these are: 0, 1, 2.
+    /// Weights of up to two old corners, and their indices 0, 1 or 2.
     weights: [V; 2],
     places: [V; 2],
 }
 
 impl<V> BestFeature<V> {
-    /// This one, or another that is nearer and admitted.
+    /// Selects `other` where it is nearer and admitted.
     #[inline(always)]
     fn or_nearer<S: Simd>(self, (other, is_admitted): (Self, V::Mask)) -> Self
     where
@@ -76,19 +76,19 @@ impl<V> BestFeature<V> {
     }
 }
 
-/// The newest corner of a simplex, and the others as seen from there.
+/// The newest corner of a simplex, and its edges to the old corners.
 struct Fan<'a, V> {
     old: &'a LaneSimplex<V>,
     newest: &'a LaneCorner<V>,
     edges: [[V; 3]; 3],
-    /// The squares of the lengths of the edges.
+    /// Squared lengths of the edges.
     squares: [V; 3],
-    /// The cross products of the way to the origin with the edges.
+    /// Cross products of the vector from the newest corner to the origin with the edges.
     turns: [[V; 3]; 3],
 }
 
 impl<V: Copy> LaneSimplex<V> {
-    /// A single corner.
+    /// A simplex of a single corner.
     #[inline(always)]
     pub(super) fn new<S: Simd, N: Real>(simd: S, corner: LaneCorner<V>) -> Self
     where
@@ -103,11 +103,11 @@ impl<V: Copy> LaneSimplex<V> {
         }
     }
 
-    /// The simplex around the nearest point after one more corner, and the lanes in which all four corners
-    /// hold a ball around the origin.
+    /// Adds a corner: returns the simplex around the new nearest point, and the lanes in which all
+    /// four corners contain a ball around the origin.
     ///
-    /// The third corner of a lane that has two is a copy, and copies add no nearer point: they are passed over where no
-    /// lane has three.
+    /// In a lane with two corners the third is a copy, which adds no nearer point. Its features are
+    /// skipped if no lane has three.
     #[inline(always)]
     pub(super) fn with<S: Simd, N: Real>(&self, simd: S, newest: &LaneCorner<V>) -> (Self, V::Mask)
     where
@@ -146,7 +146,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         Self { old, newest, edges, squares, turns }
     }
 
-    /// An edge from the newest corner, its ends included, and the lanes in which it has a length.
+    /// Nearest point on the edge to an old corner, ends included, and the lanes in which it has a
+    /// length.
     #[inline(always)]
     fn edge<S: Simd, N: Real>(&self, simd: S, old: usize) -> (BestFeature<V>, V::Mask)
     where
@@ -168,8 +169,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, has_length)
     }
 
-    /// A face at the newest corner, and the lanes in which the point of its plane that is nearest to the origin lies
-    /// within it.
+    /// Nearest point on a face at the newest corner, and the lanes in which it lies inside the
+    /// face.
     #[inline(always)]
     fn face<S: Simd, N: Real>(&self, simd: S, [one, two]: [usize; 2]) -> (BestFeature<V>, V::Mask)
     where
@@ -197,7 +198,8 @@ impl<'a, V: Copy> Fan<'a, V> {
         (feature, is_within)
     }
 
-    /// The lanes in which the origin is inside of the tetrahedron, clearly on the inner side of each face.
+    /// Returns the lanes in which the origin is clearly on the inner side of each face of the
+    /// tetrahedron.
     #[inline(always)]
     fn holds_origin<S: Simd, N: Real>(&self, simd: S) -> V::Mask
     where
@@ -215,7 +217,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         holds
     }
 
-    /// The corners of a feature.
+    /// Returns the simplex reduced to the corners of a feature.
     #[inline(always)]
     fn reduced<S: Simd, N: Real>(&self, simd: S, best: &BestFeature<V>) -> LaneSimplex<V>
     where
@@ -230,7 +232,7 @@ impl<'a, V: Copy> Fan<'a, V> {
         }
     }
 
-    /// The old corner of an index.
+    /// Returns the old corner of an index.
     #[inline(always)]
     fn at<S: Simd, N: Real>(&self, simd: S, place: V) -> LaneCorner<V>
     where
@@ -241,8 +243,8 @@ impl<'a, V: Copy> Fan<'a, V> {
     }
 }
 
-/// The lanes in which the origin and another point lie on the same side of a plane, the origin clearly: of
-/// both the height along a normal that is not of unit length.
+/// Returns the lanes in which the origin and another point lie on the same side of a plane, the
+/// origin clearly. `of_origin` and `of_point` are their heights times the length of `normal`.
 #[inline(always)]
 fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -257,7 +259,7 @@ fn is_clear<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     is_far & both
 }
 
-/// The index of an old corner as a number of the type.
+/// Returns the index of an old corner as a number of the scalar type.
 #[inline(always)]
 fn index<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, old: usize) -> V {
     lit(simd, [0.0, 1.0, 2.0][old])
