@@ -198,7 +198,7 @@ fn around<N: Real>(outline: &PolygonOutline<N>, vertex: usize) -> [Point<N, 2>; 
 ///   end      f  t  f  t  f  t  f  t      f: from, t: to
 /// ```
 ///
-/// Of equals the first counts, in the order of sides of the first outline, sides of the second,
+/// The first of equals counts, in the order of sides of the first outline, sides of the second,
 /// ends of the first, ends of the second.
 #[inline(always)]
 pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
