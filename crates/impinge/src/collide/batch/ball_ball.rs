@@ -1,4 +1,4 @@
-//! Two balls: `collide/separation/balls/ball_ball.rs` in lanes.
+//! Ball against ball: `collide/separation/balls/ball_ball.rs` in lanes.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -8,7 +8,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Balls whose centres are some way apart.
+/// Balls whose centres do not coincide.
 pub(super) struct BallBall;
 
 impl<N: Real, const D: usize> Form<N, D> for BallBall {

@@ -1,4 +1,4 @@
-//! A ball and a box: `collide/separation/balls/ball_cuboid.rs` in lanes.
+//! Ball against box: `collide/separation/balls/ball_cuboid.rs` in lanes.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -8,7 +8,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 use crate::shape::{Cuboid, FeatureId};
 
-/// Balls with their centre outside of the box.
+/// Balls with their centre outside the box.
 pub(super) struct BallCuboid;
 
 impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
@@ -57,8 +57,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
-    /// `Cuboid::part_at` for a point of each box: masks of the axes that are free, then of the signs.
-    /// Answers the lanes where there is such a part.
+    /// Computes the part of each box that a point lies on, as `Cuboid::part_at` does: masks of the
+    /// free axes, then of the signs. Returns the lanes that have such a part.
     #[inline(always)]
     fn put_part<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,

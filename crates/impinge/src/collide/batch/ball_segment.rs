@@ -1,4 +1,4 @@
-//! A ball and a segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
+//! Ball against segment or capsule: `collide/separation/balls/ball_segment.rs` in lanes.
 
 use super::closed_form::{Form, LaneContacts};
 use super::gather::Inputs;
@@ -10,7 +10,7 @@ use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 use crate::shape::FeatureId;
 
-/// Balls with their centre some way off a segment that has a length.
+/// Balls with their centre off a segment that has a length.
 pub(super) struct BallSegment;
 
 impl<N: Real, const D: usize> Form<N, D> for BallSegment {
@@ -64,7 +64,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
     }
 }
 
-/// `made_perpendicular` of a vector whose direction is given, and where that is certain.
+/// Computes `made_perpendicular` of a vector with known direction; the mask has the lanes where it
+/// is certain.
 #[inline(always)]
 fn made_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

@@ -1,5 +1,16 @@
-//! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule, and segments
-//! and capsules. Their manifold is one point, of segments of the plane perhaps two.
+//! Pairs whose separation is one closed form: a ball against a ball, a box, a segment or a capsule,
+//! and segments and capsules against each other. The manifold is one point, for segments in 2D up
+//! to two.
+//!
+//! ```text
+//!   LaneContacts::parts   as masks, row by row        after `turned`, byte of a pair
+//!     ball, box           rows 0..D: free axes        bits 0..D and D..2D, read by
+//!                         rows D..2D: signs           `Cuboid::part_named`
+//!     segments            rows 0, 1: first contact    bits 0, 1 and 2, 3: index of
+//!                         at an end of segment 1,     `END_OR_SIDE` for either segment
+//!                         2, 3: of segment 2
+//!                         rows 4..8: second contact   the high four bits
+//! ```
 
 use core::marker::PhantomData;
 
@@ -16,25 +27,25 @@ use crate::shape::FeatureId;
 
 /// A closed form in lanes.
 pub(super) trait Form<N: Real, const D: usize> {
-    /// As [`Batch::gather`].
+    /// Puts a pair into a lane, as [`Batch::gather`].
     fn gather<const L: usize>(
         inputs: &mut Inputs<N, D, L>,
         lane: usize,
         pair: &PairQuestion<'_, N, D>,
     ) -> bool;
 
-    /// The contacts of the pairs.
+    /// Computes the contacts of all lanes.
     fn find<S: Simd, V: Wide<S, Scalar = N>, const L: usize>(
         simd: S,
         inputs: &Inputs<N, D, L>,
         found: &mut LaneContacts<N, D, L>,
     );
 
-    /// The features of the two solids that a pair's byte of [`LaneContacts::parts`] stands for.
+    /// Decodes a pair's byte of [`LaneContacts::parts`] into the features of both solids.
     fn features(parts: u8) -> [FeatureId; 2];
 }
 
-/// A batch of pairs with such a form.
+/// Adapts a [`Form`] to a [`Batch`].
 pub(super) struct ClosedForm<F>(PhantomData<F>);
 
 impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
@@ -76,23 +87,23 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
     }
 }
 
-/// The contacts of `L` pairs.
+/// Contacts of `L` pairs.
 pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
     pub(super) normal: [[N; L]; D],
     pub(super) gap: [N; L],
-    /// The size of each pair, for what is in proportion to it.
+    /// Size of each pair, as `collide::size` defines it.
     pub(super) size: [N; L],
-    /// The first and the second contact: the points on the first solid, and the distances, of which that of a
-    /// lone contact is the gap.
+    /// First and second contact: points on the first solid, and distances. The distance of a lone
+    /// contact is `gap`.
     pub(super) points1: [[[N; L]; D]; 2],
     pub(super) distances: [[N; L]; 2],
-    /// Lengths up to this are rounding errors, where there are two contacts.
+    /// Lengths up to this are rounding errors; used for two contacts.
     pub(super) tolerance: [N; L],
-    /// Eight masks that encode what the points lie on, then a byte for each pair; what the bits mean is up to the
-    /// form. Where there are two contacts, four are of the first.
+    /// Masks of the parts that the points lie on, then a byte for each pair; the form defines the
+    /// bits. With two contacts, the low four are those of the first.
     pub(super) parts: [u8; 8],
-    /// The lanes that are too far apart, those that have a contact, and those that have two. The others are
-    /// declined.
+    /// Bits of the lanes beyond the prediction, with a contact, and with two contacts. Lanes with
+    /// none of these fall back.
     pub(super) is_apart: u8,
     pub(super) is_found: u8,
     pub(super) is_two: u8,
@@ -115,8 +126,8 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// What is known of the pairs, where that is usual: the distance, the normal and the point on the
-    /// first solid.
+    /// Stores the distances, normals and points on the first solid, and sets the masks. `is_usual`
+    /// are the lanes where they hold.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -136,7 +147,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Replaces the manifold of one pair; answers whether that was possible.
+    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
     fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
@@ -170,7 +181,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         true
     }
 
-    /// Replaces the points of one pair by so many others.
+    /// Replaces the points of one pair by `count` contacts, keeping ids as `choose` does.
     #[inline(never)]
     fn choose<F: Form<N, D>>(&self, lane: usize, count: usize, raw: &mut RawManifold<N, D>) {
         let mut candidates = [0, 1].mapped(|which| Candidate {
@@ -191,7 +202,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
     }
 }
 
-/// The vector of one lane.
+/// Returns the vector of one lane.
 #[inline(always)]
 fn vector<N: Real, const D: usize, const L: usize>(
     rows: &[[N; L]; D],

@@ -1,5 +1,16 @@
-//! Segments and capsules in 2D: the interval in which their cores face each other, as `stretch.rs` has
-//! it for all flat-sided solids, in lanes.
+//! Segments and capsules in 2D: the overlap interval of their cores along the tangent, as
+//! `stretch.rs` computes it for all flat-sided solids, in lanes.
+//!
+//! ```text
+//!      normal
+//!         ^        a-----*=======*        second: ends in the order of their places
+//!         |              :       :
+//!    ---- o ------------ from -- to --->  tangent; origin: `point1`, nearest point of the first
+//!                        :       :
+//!               *========*-------b        first
+//! ```
+//!
+//! `from` is the larger of the low places, `to` the smaller of the high ones. Each gives a contact.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -11,7 +22,7 @@ use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 use crate::shape::FeatureId;
 
-/// Segments and capsules whose cores are apart and are seen as more than points.
+/// Segments and capsules whose cores are apart and project to more than points along the normal.
 pub(super) struct Segments2;
 
 impl<N: Real> Form<N, 2> for Segments2 {
@@ -74,10 +85,10 @@ impl<N: Real> Form<N, 2> for Segments2 {
     }
 }
 
-/// A point or vector of the plane in each lane.
+/// A point or vector in 2D, in each lane.
 type PlaneLanes<V> = [V; 2];
 
-/// The line perpendicular to the normal through the nearest point of the first solid, and what is asked for: a
+/// The tangent line through the nearest point of the first solid, and the request: a
 /// [`ContactFrame`](crate::collide::manifold::frame::ContactFrame) in lanes.
 struct ContactLine<V> {
     normal: PlaneLanes<V>,
@@ -90,7 +101,7 @@ struct ContactLine<V> {
 }
 
 impl<V> ContactLine<V> {
-    /// The place on the line where a point is seen.
+    /// Returns the coordinate of a point along the tangent.
     #[inline(always)]
     fn flat<S: Simd>(&self, point: &PlaneLanes<V>) -> V
     where
@@ -99,7 +110,8 @@ impl<V> ContactLine<V> {
         dot(&self.tangent, &minus(point, &self.point1))
     }
 
-    /// The distance to give to a pair of points seen at a place, and where it is admitted.
+    /// Returns the distance of a pair of points at the coordinate `flat`, and the lanes where it is
+    /// within the prediction or turning brings it within.
     #[inline(always)]
     fn admit<S: Simd>(&self, distance: V, flat: V) -> (V, V::Mask)
     where
@@ -114,24 +126,24 @@ impl<V> ContactLine<V> {
     }
 }
 
-/// A segment as seen along the normal, perhaps with a radius around it.
+/// A segment or capsule, projected onto the tangent.
 struct LaneSide<V, M> {
     is_first: bool,
-    /// The ends in the order of their places, and these.
+    /// Ends in the order of their coordinates along the tangent, and these coordinates.
     ends: [PlaneLanes<V>; 2],
     places: [V; 2],
-    /// They are in the opposite order of the segment's.
+    /// Lanes where that order is the opposite of the segment's.
     is_turned: M,
     radius: V,
-    /// Between the segment and the line of contact.
+    /// Cosine of the angle between the segment and the tangent.
     cosine: V,
-    /// How far the end nearest to the other solid is below the supporting line, and where it is seen.
+    /// Depth of the end nearest to the other solid below the supporting line, and its coordinate.
     top: (V, V),
-    /// It leans so much that it counts as its nearest end.
+    /// Lanes where the segment is tilted so far that it counts as its nearest end.
     is_point: M,
-    /// Its ends are seen apart from each other.
+    /// Lanes where the coordinates of both ends differ by more than rounding.
     is_wide: M,
-    /// The nearest point lies at the segment's first end; at its last.
+    /// Lanes where the nearest point lies at the segment's first end, and at its last.
     at_witness: [M; 2],
 }
 
@@ -179,7 +191,7 @@ impl<V, M> LaneSide<V, M> {
         side
     }
 
-    /// How far a point of the core is below the nearest point of the surface.
+    /// Returns the depth of a point of the core below the nearest point of the surface.
     #[inline(always)]
     fn below_witness<S: Simd>(&self, point: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
@@ -189,7 +201,7 @@ impl<V, M> LaneSide<V, M> {
         if self.is_first { -height } else { height - line.distance }
     }
 
-    /// The point of the core that is seen at a place.
+    /// Returns the point of the core at a coordinate along the tangent.
     #[inline(always)]
     fn under<S: Simd, N: Real>(&self, simd: S, place: V) -> PlaneLanes<V>
     where
@@ -200,7 +212,7 @@ impl<V, M> LaneSide<V, M> {
         plus(&self.ends[0], &times(&minus(&self.ends[1], &self.ends[0]), share))
     }
 
-    /// How far the rounded surface is above a point of the core, along the normal.
+    /// Returns the height of the rounded surface above a point of the core, along the normal.
     #[inline(always)]
     fn lift<S: Simd, N: Real>(&self, simd: S, core: &PlaneLanes<V>, line: &ContactLine<V>) -> V
     where
@@ -218,7 +230,8 @@ impl<V, M> LaneSide<V, M> {
         radius.simd_le(zero).select(zero, lift)
     }
 
-    /// Where one of the ends, by the order of places, is the first of the segment, and where the last.
+    /// Returns the lanes where the end `end`, in tangent order, is the segment's first, and its
+    /// last.
     #[inline(always)]
     fn names<S: Simd>(&self, end: usize) -> [M; 2]
     where
@@ -229,17 +242,17 @@ impl<V, M> LaneSide<V, M> {
     }
 }
 
-/// A pair of points that face each other.
+/// A pair of points across from each other.
 struct LaneContact<V, M> {
     point1: PlaneLanes<V>,
     distance: V,
     is_admitted: M,
-    /// At the first end of the first segment; at the last; the same of the second segment.
+    /// Masks: at the first and the last end of the first segment, then of the second.
     parts: [M; 4],
 }
 
 impl<V, M> LaneContact<V, M> {
-    /// One of the ends of the interval in which two sides face each other, by the order of places.
+    /// Computes the contact at one end of the overlap interval; `end` is 0 for the low end.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -254,7 +267,7 @@ impl<V, M> LaneContact<V, M> {
     {
         let [first, second] = sides;
         let is_at = [first, second].map(|side| {
-            // The segment ends here, or but for rounding.
+            // The segment ends here, up to rounding.
             (side.places[end] - place).abs().simd_le(line.tolerance)
         });
         let cores = [first.under(simd, place), second.under(simd, place)];
@@ -276,7 +289,7 @@ impl<V, M> LaneContact<V, M> {
         Self { point1, distance, is_admitted, parts }
     }
 
-    /// The other one where a mask says so.
+    /// Selects `other` in the lanes of `is_other`.
     #[inline(always)]
     fn or<S: Simd>(&self, other: &Self, is_other: M) -> Self
     where
@@ -301,14 +314,16 @@ struct SegmentContacts<V, M> {
     first: LaneContact<V, M>,
     second: LaneContact<V, M>,
     is_two: M,
-    /// There are no others.
+    /// Lanes where these are all contacts.
     is_known: M,
 }
 
 impl<V, M> SegmentContacts<V, M> {
-    /// The ends of the interval that are admitted, the nearest points if there are none.
+    /// Computes the contacts: the admitted ends of the interval, or the nearest points if there are
+    /// none.
     ///
-    /// Not known is what rounding would decide, and what takes the nearest points besides an end.
+    /// Not known are lanes that rounding would decide, and lanes that need the nearest points
+    /// besides an end.
     #[inline(always)]
     fn of<S: Simd, N: Real>(simd: S, line: &ContactLine<V>, sides: &[LaneSide<V, M>; 2]) -> Self
     where

@@ -1,26 +1,26 @@
-//! The separating axis test of eight pairs of boxes in 2D:
-//! `collide/separation/boxes/rectangle_axes.rs` in lanes.
+//! Separating axis test of `L` pairs of boxes in 2D: `collide/separation/boxes/rectangle_axes.rs`
+//! in lanes.
 
 use super::super::{Boxes, is_finite};
 use crate::math::lanes::{dot, either_mask, lit};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
-/// The axis of the largest gap of eight pairs.
+/// Direction of the largest gap of each pair.
 pub(super) struct BestSide<V, M> {
     /// The side belongs to the second box.
     pub(super) is_second: M,
     /// It is perpendicular to the second axis of its box.
     pub(super) is_y: M,
-    /// A unit vector from the first box to the second.
+    /// Unit vector from the first box to the second.
     pub(super) normal: [V; 2],
     pub(super) gap: V,
     pub(super) noise: V,
-    /// All numbers of the pose are finite, and so is their sum.
+    /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
 }
 
-/// The side of one box that leaves the larger gap.
+/// The side of one box with the larger gap.
 struct AxisSide<V, M> {
     gap: V,
     is_y: M,
@@ -29,7 +29,7 @@ struct AxisSide<V, M> {
 }
 
 impl<V> Boxes<V, 2> {
-    /// What arithmetic on these numbers cannot resolve.
+    /// Rounding error of lengths of each pair.
     #[inline(always)]
     fn noise<S: Simd, N: Real>(&self, simd: S) -> V
     where
@@ -41,7 +41,7 @@ impl<V> Boxes<V, 2> {
         lit::<S, N, V>(simd, 4.0) * V::all(simd, N::EPSILON) * size
     }
 
-    /// The direction of the largest gap, as `Rectangles::best_axis` has it for one pair.
+    /// Returns the direction of the largest gap, as `Rectangles::best_axis` does for one pair.
     #[inline(always)]
     pub(super) fn best_side<S: Simd, N: Real, M>(&self, simd: S) -> BestSide<V, M>
     where
@@ -67,7 +67,8 @@ impl<V> Boxes<V, 2> {
         BestSide { is_second, is_y, normal, gap, noise, is_finite }
     }
 
-    /// The best side of each box; of equal gaps the one that comes first in the box's outline.
+    /// Returns the best side of each box; of equal gaps the one that comes first in the box's
+    /// outline.
     #[inline(always)]
     fn best_sides<S: Simd, N: Real, M>(&self, simd: S) -> (AxisSide<V, M>, AxisSide<V, M>)
     where

@@ -1,4 +1,15 @@
-//! 2D boxes: the separating axis test and the overlap of the sides in lanes.
+//! Boxes in 2D: the separating axis test, and the overlap of both sides, in lanes.
+//!
+//! ```text
+//!    upper   3---.___             slot 0, 1   ends of the upper side, by their place along the lower
+//!                ^^^ '---*        slot 2, 3   ends of the lower side: low end, high end
+//!    lower   *===========*        at_ends     two bits for each slot: at the first or the second end
+//!            low       high                   of the other side, in the order of places
+//!
+//!   byte `sides` of a pair, from bit 0 on: lower side is across y, and faces up; upper side is across
+//!   its own y, and on its positive side; lower side is the second box's; upper ends are exchanged;
+//!   beyond the prediction; slots are filled. `names` encodes bits 0..6 in a code.
+//! ```
 
 mod axis;
 mod names;
@@ -16,23 +27,25 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
 
-/// The ends of the upper side, the one with the smaller place first, and of the lower one.
+/// Slots: the ends of the upper side, the one with the smaller place first, and of the lower side.
 const SLOTS: usize = 4;
 
-/// `L` pairs, measured, before points are chosen.
+/// Results of the kernel for `L` pairs.
 pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
     gap: [N; L],
     tolerance: [N; L],
     size: [N; L],
     normal: [[N; L]; 2],
-    /// The lanes: the axis across the lower side is the second, the side is on the positive side of
-    /// it; the same of the upper side; the lower side is the second box's; the upper side's first
-    /// end is the one on the positive side of its box; too far apart; the slots are filled.
+    /// Masks, after `turn` a byte for each pair: the axis across the lower side is the second; that
+    /// side is on its positive side; both for the upper side, in its own box; the lower side is the
+    /// second box's; the upper side's first end is on the positive side of its box; beyond the
+    /// prediction; slots filled.
     sides: [u8; 8],
-    /// Of each slot, whether it is at the first end of the other side, and at the second.
+    /// Two masks for each slot: at the first end of the other side, and at the second.
     at_ends: [u8; 2 * SLOTS],
-    /// For each pair the slots that hold a candidate, and those with the smallest distance.
+    /// Byte of each pair: in the low half the filled slots, in the high half those with the
+    /// smallest distance.
     filled: [u8; 8],
 }
 
@@ -134,7 +147,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         );
     }
 
-    /// From masks of all pairs to a byte for each pair.
+    /// Transposes masks of all pairs into a byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;

@@ -1,4 +1,12 @@
-//! Boxes in 3D: the separating axis test, and the corners of the area that the two faces share.
+//! Boxes in 3D: the separating axis test, and the corners of the common area of both faces.
+//!
+//! ```text
+//!   find:    axis -> faces -> clip (24 slots) -> admit        masks: one byte per slot or flag
+//!   turn:    Columns: bytes 0..3 the valid slots of a pair (24 bits), 3..6 the level ones,
+//!            6 its faces: rectangle's axis (2 bits) and side, parallelogram's axis and side,
+//!            bit 6: the rectangle is the second box's
+//!   settle:  choose, names
+//! ```
 
 mod axis;
 mod clip;
@@ -19,10 +27,10 @@ use crate::math::lanes::{bits, lit};
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide, filled};
 
-/// The slots of a pair.
+/// Slots of a pair; `clip` has their order.
 const SLOTS: usize = 24;
 
-/// `L` pairs, measured, before points are chosen.
+/// Results of the kernel for `L` pairs.
 pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     slots: Slots<N, 3, SLOTS, L>,
     corners: Corners,
@@ -30,10 +38,10 @@ pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     tolerance: [N; L],
     size: [N; L],
     normal: [[N; L]; 3],
-    /// The lanes: the axis across the rectangle is the first, the second, the rectangle is on the
-    /// positive side of it; the same of the parallelogram; the rectangle is the second box's.
+    /// Masks: the axis across the rectangle is the first, or the second; the rectangle is on the
+    /// positive side of it; these three for the parallelogram; the rectangle is the second box's.
     sides: [u8; 8],
-    /// The lanes that are too far apart, and those whose slots are filled.
+    /// Bits of the lanes beyond the prediction, and of those with filled slots.
     is_apart: u8,
     is_built: u8,
     columns: Columns,
@@ -134,7 +142,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         }
     }
 
-    /// From masks of all pairs to a byte for each pair.
+    /// Transposes masks of all pairs into a byte for each pair.
     #[inline(always)]
     fn turn(&mut self) {
         self.columns = Columns::of(self);
@@ -154,7 +162,8 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         is_built
     }
 
-    /// Fills the slots; answers where they hold the separation. `is_partial` where some face leans too far.
+    /// Fills the slots; returns the lanes where they confirm the separation. `is_partial` if a face
+    /// is tilted too far in some lane.
     #[inline(always)]
     fn fill<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -176,7 +185,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         found.is_found()
     }
 
-    /// The candidates of one pair, and how they are named.
+    /// Returns the candidates of one pair, and their names.
     #[inline(always)]
     fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairNames) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
@@ -204,7 +213,7 @@ struct FaceSides {
 }
 
 impl FaceSides {
-    /// From the bits of `LaneFaces::sides`.
+    /// Decodes a byte of `LaneFaces::sides`.
     #[inline(always)]
     fn of(bits: u8) -> Self {
         const AXES: [usize; 4] = [2, 0, 1, 0];
@@ -214,8 +223,8 @@ impl FaceSides {
     }
 }
 
-/// The masks of all pairs, turned so that a byte has the bits of one pair: three bytes of the slots
-/// that are there, three of those that are level, one of the faces.
+/// Transposed masks: for each pair three bytes of the filled slots, three of the level ones, and
+/// one of the faces.
 struct Columns([[u8; 8]; 7]);
 
 impl Columns {
@@ -243,7 +252,7 @@ impl Columns {
         self.0[row][lane & 7]
     }
 
-    /// The bits of all slots.
+    /// Returns the 24 bits of the slots of a pair.
     #[inline(always)]
     fn slots(&self, row: usize, lane: usize) -> u32 {
         let bytes = [self.byte(row, lane), self.byte(row + 1, lane), self.byte(row + 2, lane), 0];
@@ -251,7 +260,7 @@ impl Columns {
     }
 }
 
-/// Eight bytes in a row.
+/// Returns eight bytes in a row.
 #[inline(always)]
 fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; 8] {
     filled(
