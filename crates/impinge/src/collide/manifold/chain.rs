@@ -1,7 +1,8 @@
-//! The contacts of a segment of a chain and a 2D solid, without intermediate lists.
+//! Contacts of a segment of a chain and a 2D solid, without intermediate lists.
 //!
-//! The bits are those of [`build_between`](super::build_between) and [`build_along`](super::build_along), which
-//! define them.
+//! The bits are those of [`build_between`](super::build_between) and
+//! [`build_along`](super::build_along), which define them. The separations come from
+//! `collide/separation/chain/`.
 
 use super::along::extremes;
 use super::frame::{Candidate, Candidates, ContactFrame, Which};
@@ -13,7 +14,8 @@ use crate::convex::Separation;
 use crate::math::{Real, Space, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A segment of a chain and a solid that is no half-space, in the order of kinds: behind another segment.
+/// A segment of a chain and a solid that is no half-space, in the order of kinds: another segment
+/// or a ball comes first.
 pub(crate) struct SegmentPair<'a, N: Real> {
     pub(crate) pair: Pair<'a, N, 2>,
     /// Lengths below this are rounding errors.
@@ -23,7 +25,7 @@ pub(crate) struct SegmentPair<'a, N: Real> {
 }
 
 impl<N: Real> SegmentPair<'_, N> {
-    /// The part of the chain's segment that a separation's point lies on.
+    /// Returns the part of the chain's segment that a separation's point lies on.
     pub(crate) fn touched(&self, found: &Separation<N, 2>) -> Option<FeatureId> {
         if let Kind::Ball(_) = self.pair.first {
             return beside_ball(&self.pair, found);
@@ -36,7 +38,7 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(own.at_witness(&frame))
     }
 
-    /// The contacts that belong to a separation; `None` of solids that show more than a side.
+    /// Visits the contacts of a separation; `None` for solids whose feature is no point or side.
     pub(crate) fn between(
         &self,
         witness: &Separation<N, 2>,
@@ -67,7 +69,7 @@ impl<N: Real> SegmentPair<'_, N> {
         Some(())
     }
 
-    /// The contacts along a normal; `None` of solids that show more than a side.
+    /// Visits the contacts along a normal; `None` for solids whose feature is no point or side.
     pub(crate) fn along(
         &self,
         along: &Along<N, 2>,
