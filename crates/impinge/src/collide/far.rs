@@ -1,8 +1,8 @@
 //! Rejects shapes that are certainly too far apart, before anything is rotated.
 //!
 //! ```text
-//!       (  o1  ) - - - - between - - - - (   o2   )      balls around the origins contain the shapes
-//!         extent1                          extent2       at any rotation
+//!     (  o1  ) - - - - between - - - - (   o2   )      balls around the origins hold the shapes
+//!       extent1                          extent2       at any rotation
 //!
 //!       rejected if between² > (extent1 + extent2 + limit)² (1 + 2⁻⁶)
 //! ```

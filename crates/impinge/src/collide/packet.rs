@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   corners[c][axis][lane]     c: corner 0, 1, 2 of the part; a segment has its second end twice
-//!                              lane: part `tile * 8 + lane` of the list; the last part fills the rest
+//!                              lane: part `tile * 8 + lane` of a list; the last part fills up
 //! ```
 //!
 //! `mesh/part_cache.rs` keeps lists of them, called tiles. `mesh/cull.rs`, `separation/triangles`,

@@ -1,8 +1,9 @@
 //! Manifolds as the narrow phase keeps them: small, flat, in the frame of the first solid.
 //!
 //! ```text
-//!   RawManifold  normal | ids | points: [RawPoint; 4 in place] ...      sorted by id
-//!   RawPoint     point1 | distance | feature1, feature2 | id | code     point2 = point1 + normal · distance
+//!   RawManifold  normal | ids | points: [RawPoint; 4 in place] ...    sorted by id
+//!   RawPoint     point1 | distance | feature1, feature2 | id | code
+//!                point2 = point1 + normal · distance
 //! ```
 //!
 //! The `code` of a point names its features and its slot in a batch

@@ -1,7 +1,7 @@
 //! Nearest supporting line of a difference that contains the origin, in 2D.
 //!
 //! ```text
-//!         .-------.            polygon inside the difference; its nearest side has the normal `outward`
+//!         .-------.            polygon inside the difference; outward: normal of its nearest side
 //!        / .-----. \           offset: signed distance of the side from the origin o
 //!       | |   o   |-*          *: support point along outward, at -height
 //!        \ '-----' /           grown there until -height - offset <= tolerance

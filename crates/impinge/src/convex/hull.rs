@@ -3,8 +3,8 @@
 //! ```text
 //!       a ----- b              a ----- b
 //!       | x  /  |              | \   / |      x: faces that the apex * lies beyond: removed
-//!       |  /  x |     --->     |   *   |      horizon: the sides ab, bc, cd, da that only one removed
-//!       d ----- c              | /   \ |      face had; each becomes the face [start, end, apex]
+//!       |  /  x |     --->     |   *   |      horizon: the sides ab, bc, cd, da of one removed face
+//!       d ----- c              | /   \ |      only; each becomes the face [start, end, apex]
 //!                              d ----- c
 //! ```
 //!

@@ -2,10 +2,10 @@
 //!
 //! ```text
 //!         core 1                core 2             difference: all b - a
-//!        .-----.    normal n   .-----.             height h(n) = min n · b - max n · a: the certificate
-//!        |    a|-------------->|b    |             signed distance = max h(n) over all unit vectors n
+//!        .-----.    normal n   .-----.             h(n) = min n · b - max n · a: the certificate
+//!        |    a|-------------->|b    |             signed distance = max h(n) over unit n
 //!        '-----'               '-----'
-//!    found by     apart: `gjk`          overlapping: `epa2`, `epa3`, or `peak` if the caller knows it
+//!    found by     apart: `gjk`          overlapping: `epa2`, `epa3`, or a known `peak`
 //!    improved by  `refine`  `climb`  `newton`  `polish`  `side`        points: `witness`
 //! ```
 //!

@@ -7,8 +7,8 @@
 //!      enclosed         inside a face               inside a side        a corner
 //!      4 weights        3 weights                   2 weights            1 weight
 //!
-//!    The fan: part `i` is the volume (area, length) with corner `i` replaced by the origin. The origin
-//!    lies beyond the facet opposite to corner `i` if part `i` and the whole differ in sign. A simplex
+//!    Part `i` is the volume (area, length) with corner `i` replaced by the origin. The origin lies
+//!    beyond the facet opposite to corner `i` if part `i` and the whole differ in sign. A simplex
 //!    that is flat up to `noise` has no sign, so all its facets compete.
 //! ```
 //!

@@ -3,13 +3,13 @@
 //! to two.
 //!
 //! ```text
-//!   LaneContacts::parts   as masks, row by row        after `turned`, byte of a pair
-//!     ball, box           rows 0..D: free axes        bits 0..D and D..2D, read by
-//!                         rows D..2D: signs           `Cuboid::part_named`
-//!     segments            rows 0, 1: first contact    bits 0, 1 and 2, 3: index of
-//!                         at an end of segment 1,     `END_OR_SIDE` for either segment
-//!                         2, 3: of segment 2
-//!                         rows 4..8: second contact   the high four bits
+//!   row of `LaneContacts::parts`    ball, box     ball, segment   segments
+//!     0, 1                          D free axes   at first end,   1: at first end, at last end
+//!                                                 at last end
+//!     2, 3                          then D signs                  2: likewise
+//!     4 .. 8                                                      second contact: likewise
+//!
+//!   `turned`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
 //! ```
 
 use core::marker::PhantomData;

@@ -3,8 +3,8 @@
 //! ```text
 //!   kept pairs i .. i + L      gather      find (kernel)      settle, lane by lane
 //!    [q][q][q][q]...  ------>  Inputs  ------->  Found  ---+--> raw manifold of pair i + lane
-//!                             rows of L         rows, masks |
-//!                                                           +--> unsupported: `fall_back`, one pair
+//!                             rows of L         rows,   |
+//!                                               masks   +--> unsupported: `fall_back`, one pair
 //! ```
 //!
 //! Each lane of a vector is another pair and never depends on its neighbours, so the bits of a pair

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   key   63 62   61 ... 0
-//!         class   bits of `moved` as an `f64`, less the last two     the smallest key is matched first
+//!         class   bits of `moved` as an `f64`, less the last two    smallest keys match first
 //! ```
 //!
 //! Few points are bits of a `u32`, and all pairs are compared. For many, those that can be near on

@@ -1,10 +1,10 @@
 //! Builds the manifold of a pair from its separation: points that span the area of contact.
 //!
 //! ```text
-//!   Separation --> ContactFrame --> supporting features --> candidates --> reduce --> ids --> RawManifold
-//!   (witness)      `frame`          3D: `ring`, `clip`       corners of     `chosen`   `ids`,
-//!                                   2D: `stretch`            the common                `matching`
-//!                                   half-space: `half_space` area
+//!   separation   `frame`           supporting features           candidates      points and ids
+//!   (witness) -> ContactFrame  ->  3D: `ring`, `clip`        ->  corners of  ->  `reduce`
+//!                                  2D: `stretch`                 the common      `ids`, `matching`
+//!                                  half-space: `half_space`      area
 //! ```
 //!
 //! The separation provides the normal and the witness, its nearest pair of points. The supporting

@@ -1,8 +1,8 @@
 //! Chooses contact points: the candidates that span the most area, projected along the normal.
 //!
 //! ```text
-//!        .-- left --.        `start` is a deepest candidate, `end` any other; the area is that of both
-//!   start -------- end       triangles, each with the candidate farthest from the diagonal on its side
+//!        .-- left --.        `start`: a deepest candidate, `end`: any other; area of both
+//!   start -------- end       triangles, each with the farthest candidate on its side
 //!        '- right --'
 //! ```
 //!

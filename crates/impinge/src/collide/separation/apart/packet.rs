@@ -6,7 +6,7 @@
 //!   rotation  y   pair 0  pair 1  ...  pair 7
 //!   ...                                            lanes without a pair stay zero and unread
 //!   shrink        pair 0  pair 1  ...  pair 7
-//!   limit         pair 0  pair 1  ...  pair 7      hulls and triangles: the same vertices in all lanes
+//!   limit         pair 0  pair 1  ...  pair 7      hulls and triangles: same vertices in all lanes
 //! ```
 //!
 //! A lane is the pair's index in the packet of `collide/batch/convex.rs`.

@@ -5,7 +5,7 @@
 //!    Gauss map: each edge is the arc between the normals of its two faces.
 //!
 //!         n1a                     A pair of edges is a face of the difference if the arc of one
-//!          |                      crosses the negated arc of the other: the ends of each arc lie on
+//!          |                      crosses the negated arc of the other: the ends of each lie on
 //!   -n2a --+-- -n2b               opposite sides of the other's great circle, whose normal is the
 //!          |                      direction of the edge. Signs of four dot products decide.
 //!         n1b

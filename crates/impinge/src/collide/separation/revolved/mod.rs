@@ -7,12 +7,11 @@
 //! programming algorithms", 1977), here over points, chords and triangles.
 //!
 //! ```text
-//!        flat solid   \       /          place.point: point of the flat solid, nearest so far
-//!                      \     /           place.outward: unit, out of the round solid
-//!             point *---\---*  low       place.level: extent of the round solid along outward
-//!                   :                    low: lowest vertex along outward; if not lower than
-//!           nearest *---.                     point, the direction is a supporting plane of both
-//!                | round |               frame: round solid, about the y axis; units of the pair
+//!      point *--------* low      low: lowest vertex of the flat solid along `outward`; if it is
+//!            |                   not lower than `point`, both solids have a plane there
+//!    nearest *  ^ outward        outward: unit, out of the round solid; level: its extent along it
+//!        .-------.
+//!        | round |               frame: of the round solid, axis y; units of the pair
 //! ```
 //!
 //! An answer is accepted only if its direction is a supporting plane of both solids and its two

@@ -5,11 +5,11 @@
 //! inside as well.
 //!
 //! ```text
-//!     y |  Cap          y |  Apex            regions of the half-plane by nearest part;
-//!       |______  Rim      |\    /             x: distance from the axis (`aside`)
-//!       |      |          | \ /  Side         inside, the nearest line counts
-//!       |      | Side     |__\
-//!       +------+--- x     |Cap  Rim
+//!    cylinder  y|  Cap   : Rim         cone  y| Apex .       nearest part, by region;
+//!               |________:......              |\  .          x: distance from the axis, `aside`
+//!               |        |                    | \   Side
+//!               |        | Side               |__\ .         inside: the nearer line
+//!               +--------+----> x             |Cap: Rim
 //! ```
 
 use crate::collide::separation::revolved::cylinder_cylinder::radial;

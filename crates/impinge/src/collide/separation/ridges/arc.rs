@@ -6,12 +6,13 @@
 //! the best depth known, the depth at that direction is computed and the arc split there.
 //!
 //! ```text
-//!   depth  \          /          . true depth, the largest of all sinusoids
-//!           \   ..   /           \ / sinusoids of the points that are highest at the ends
-//!            \.'  './
-//!             '\  /'
-//!               \/               bound: where the two cross
-//!          from    to
+//!    depth   \         /
+//!             \  .-.  /       . the depth: the largest of all sinusoids
+//!              \'   '/        \ and /: those of the points that are highest at `from` and at `to`
+//!               \   /
+//!                \ /
+//!                 v           bound: where these two cross
+//!         from         to
 //! ```
 //!
 //! Growing a polygon by its side nearest to the origin, as `epa2` does, is the case of sinusoids

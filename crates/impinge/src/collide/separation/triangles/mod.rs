@@ -9,8 +9,8 @@
 //! decides whether a pair is within.
 //!
 //! ```text
-//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `near`: bits of the triangles that are meant
-//!                |   | |       |     |
+//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `near`: bits of those that are meant
+//!              |   | |         |     |
 //!   packet  [0 1 2 3 4 ...]                            up to eight of them, packed without gaps;
 //!                                                      the visitor counts on over all packets
 //! ```

@@ -1,13 +1,13 @@
 //! Boxes in 2D: the separating axis test, and the overlap of both sides, in lanes.
 //!
 //! ```text
-//!    upper   3---.___             slot 0, 1   ends of the upper side, by their place along the lower
-//!                ^^^ '---*        slot 2, 3   ends of the lower side: low end, high end
-//!    lower   *===========*        at_ends     two bits for each slot: at the first or the second end
-//!            low       high                   of the other side, in the order of places
+//!    upper   0 *---.___            slot 0, 1   ends of the upper side, by place along the lower
+//!                      '---* 1     slot 2, 3   ends of the lower side: low end, high end
+//!    lower     2 *========* 3      at_ends     two bits for each slot: at the first or second end
+//!                                              of the other side, in the order of places
 //!
-//!   byte `sides` of a pair, from bit 0 on: lower side is across y, and faces up; upper side is across
-//!   its own y, and on its positive side; lower side is the second box's; upper ends are exchanged;
+//!   byte `sides` of a pair, from bit 0 on: lower side is across y, and faces up; upper side is
+//!   across its own y, and on its positive side; lower side is the second box's; upper ends swapped;
 //!   beyond the prediction; slots are filled. `names` encodes bits 0..6 in a code.
 //! ```
 

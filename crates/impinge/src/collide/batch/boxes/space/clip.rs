@@ -5,12 +5,11 @@
 //!         4..8    corner of the rectangle             0 ++   1 -+   2 --   3 +-
 //!         8..24   crossing of two sides:              8 + 8 * arm + 4 * (arm's negative end)
 //!                                                       + 2 * axis + (axis' negative end)
-//!
-//!             1 --------- 0
-//!            /  +--------/-x--+       x: crossing of the side at the positive end of arm 0 with the
-//!           /   |       /     |          side at the negative or positive end of an axis of the
-//!          2 --------- 3      |          rectangle
-//!               +-------------+
+//!           1 ---------- 0
+//!          /  5 --------/x---- 4     x: the side at the positive end of arm 0 crosses that at the
+//!         /   |        /       |        positive end of axis 1: slot 8 + 0 + 0 + 2 + 0
+//!        2 ---------- 3        |
+//!             6 -------------- 7
 //! ```
 //!
 //! `valid` says which of the 24 exist, so nothing is moved until all is known. `names` has the same

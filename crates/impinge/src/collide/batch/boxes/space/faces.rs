@@ -2,14 +2,18 @@
 //! along the normal onto the plane of the rectangle as a parallelogram.
 //!
 //! ```text
-//!        v ^      .------------.          w: across the rectangle; u, v: along its sides; all three
-//!          |     /     c      /              are axes of its box in cyclic order ("in turn")
-//!     +----+----/-.   *      /            center: c; height: of c above the rectangle
-//!     |    |   /  |  arms   /             arms: from c to the middles of two sides, in (u, v)
-//!     |    +--'---|--------'--> u         climbs: how much higher the end of each arm is
-//!     |           |                       across: half the sides of the rectangle
-//!     +-----------+                       widths: half the widths of the parallelogram
+//!    rectangle                          parallelogram
+//!      +-------^ v-----+                     .-----^------.
+//!      |       |       |                    /   arms[1]  /       c: `center`, in (u, v)
+//!      |       o-----> u                   /      c---> arms[0]
+//!      |               |                  /            /
+//!      +---------------+                 '------------'
 //! ```
+//!
+//! `w` is the axis across the rectangle, `u` and `v` those along its sides: the axes of its box in
+//! cyclic order ("in turn"). `across` are half the sides of the rectangle. `height` is that of `c`
+//! above the rectangle along the normal, `climbs` how much higher the end of each arm is, and
+//! `widths` the distances of `c` from the sides at the ends of the arms.
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
