@@ -89,7 +89,9 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
 
 /// Contacts of `L` pairs.
 pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
+    /// Unit normals from the first solid to the second, in the frame of the first.
     pub(super) normal: [[N; L]; D],
+    /// Signed distances of the pairs.
     pub(super) gap: [N; L],
     /// Size of each pair, as `collide::size` defines it.
     pub(super) size: [N; L],
@@ -110,6 +112,7 @@ pub(super) struct LaneContacts<N: Real, const D: usize, const L: usize> {
 }
 
 impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
+    /// Contacts before the first kernel runs: no lane is found or apart.
     const fn new() -> Self {
         let row = [N::ZERO; L];
         Self {
@@ -159,6 +162,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
             return is_apart;
         }
         let (features, point1) = (F::features(self.parts[lane]), vector(&self.points1[0], lane));
+        // A single point on the same features keeps its id, and is moved in place.
         let is_same = |old: &RawPoint<N, D>| {
             [old.feature1, old.feature2] == features
                 && is_same_point(features, &(point1 - old.point1.coords), || self.size[lane])

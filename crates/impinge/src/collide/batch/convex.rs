@@ -29,6 +29,7 @@ use crate::shape::{Geometry, Kind, ShapeKind};
 
 /// A pair of convex solids in canonical order, and the index of its answer in the output.
 pub(crate) struct ConvexPair<'a, N: Real, const D: usize> {
+    /// Index of the answer in the output.
     pub(crate) slot: usize,
     /// The canonical order is the reverse of the given one.
     pub(crate) swapped: bool,
@@ -143,16 +144,20 @@ fn fill<'a, N: Real, T>(
 
 /// Up to eight pairs of segments or capsules.
 struct SegmentPacket<N: Real> {
+    /// Ends of the cores of each lane, in the frame of its first solid.
     ends: [[[Point<N, 3>; 2]; 2]; LANES],
+    /// Radii around both cores of each lane.
     radii: [[N; 2]; LANES],
     /// Nearest points of the cores, by coordinates.
     points: [[[N; LANES]; 3]; 2],
+    /// Distances of the cores, without the radii.
     distances: [N; LANES],
     /// Bit of each lane with known nearest points; other lanes are computed alone.
     is_known: u8,
 }
 
 impl<N: Real> SegmentPacket<N> {
+    /// Gathers a packet and searches all lanes.
     fn new(vectors: Vectors, packet: &[ConvexPair<'_, N, 3>]) -> Self {
         let row = [N::ZERO; LANES];
         let mut found = Self {
@@ -178,6 +183,7 @@ impl<N: Real> SegmentPacket<N> {
         found
     }
 
+    /// Computes nearest points and distances of the cores in all lanes.
     #[inline(always)]
     fn search<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -195,6 +201,7 @@ impl<N: Real> SegmentPacket<N> {
                 coordinate.store(row);
             }
         }
+        // Squared distances close to underflow or overflow are computed alone.
         self.is_known = bits(is_moderate & is_usual(simd, squared));
     }
 

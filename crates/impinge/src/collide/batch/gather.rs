@@ -21,12 +21,17 @@ type LaneRows<N, const D: usize, const L: usize> = [[N; L]; D];
 pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
     /// Columns of the rotation matrices.
     rotations: [[LaneRows<N, D, L>; D]; 2],
+    /// Translations of both poses, in world coordinates.
     translations: [LaneRows<N, D, L>; 2],
     /// Ends of a segment; for a box the first is its half extents.
     ends: [[LaneRows<N, D, L>; 2]; 2],
+    /// Radii of balls or capsules; unused by boxes.
     radii: [[N; L]; 2],
+    /// Largest distance of a contact point; the request's.
     prediction: [N; L],
+    /// Sine of the angle by which the solids may turn; the request's.
     sine: [N; L],
+    /// Largest number of points; the request's.
     pub(super) max_points: [usize; L],
     /// Index of the first pair, and the number of filled lanes.
     pub(super) first: usize,
@@ -36,6 +41,7 @@ pub(super) struct Inputs<N: Real, const D: usize, const L: usize> {
 }
 
 impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
+    /// Rows of zeros, without a pair.
     pub(super) const fn new() -> Self {
         let row = [N::ZERO; L];
         Self {
@@ -128,6 +134,7 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
         V::load(simd, &self.sine)
     }
 
+    /// Loads an end of the core of a solid (`number` 0 or 1), or the half extents of a box (0).
     #[inline(always)]
     pub(super) fn end<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -175,6 +182,7 @@ pub(super) fn put<N: Real, const D: usize, const L: usize>(
     }
 }
 
+/// Puts a matrix into a lane, by columns.
 #[inline(always)]
 fn put_all<N: Real, const D: usize, const L: usize>(
     columns: &mut [LaneRows<N, D, L>; D],
@@ -188,6 +196,7 @@ fn put_all<N: Real, const D: usize, const L: usize>(
     }
 }
 
+/// Loads the columns of a matrix.
 #[inline(always)]
 fn load_all<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize, const L: usize>(
     simd: S,

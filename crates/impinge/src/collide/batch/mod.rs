@@ -5,6 +5,13 @@
 //!    [q][q][q][q]...  ------>  Inputs  ------->  Found  ---+--> raw manifold of pair i + lane
 //!                             rows of L         rows,   |
 //!                                               masks   +--> unsupported: `fall_back`, one pair
+//!
+//!   kinds, in canonical order            2D             3D
+//!   ball, ball                           `BallBall`     `BallBall`
+//!   ball, segment or capsule             `BallSegment`  `BallSegment`
+//!   ball, box                            `BallCuboid`   `BallCuboid`
+//!   two of segment or capsule            `Segments2`    `Segments3`
+//!   box, box                             `Boxes2`       `Boxes3`
 //! ```
 //!
 //! Each lane of a vector is another pair and never depends on its neighbours, so the bits of a pair
@@ -60,7 +67,9 @@ const LANES: usize = 8;
 
 /// A pair of solids in canonical order and the request for its manifold.
 pub(crate) struct PairQuestion<'a, N: Real, const D: usize> {
+    /// Poses of both solids in the world.
     pub(crate) poses: [&'a Pose<N, D>; 2],
+    /// Both solids, copied when the pair began.
     pub(crate) solids: [&'a Solid<N, D>; 2],
     pub(crate) request: &'a ManifoldRequest<N>,
 }
@@ -127,6 +136,7 @@ trait Batch<N: Real, const D: usize> {
 /// An operation that is run once the algorithm for two kinds is known; returns whether it
 /// succeeded.
 trait Task<N: Space<D>, const D: usize> {
+    /// Runs the operation with the algorithm `B`.
     fn run<B: Batch<N, D>>(self) -> bool;
 }
 

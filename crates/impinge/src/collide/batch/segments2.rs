@@ -91,10 +91,15 @@ type PlaneLanes<V> = [V; 2];
 /// The tangent line through the nearest point of the first solid, and the request: a
 /// [`ContactFrame`](crate::collide::manifold::frame::ContactFrame) in lanes.
 struct ContactLine<V> {
+    /// Unit, from the first core to the second.
     normal: PlaneLanes<V>,
+    /// `normal` turned by a quarter, clockwise.
     tangent: PlaneLanes<V>,
+    /// Nearest point of the first solid, on its rounded surface: the origin of the tangent.
     point1: PlaneLanes<V>,
+    /// Signed distance of the solids along the normal.
     distance: V,
+    /// Lengths up to this are rounding errors.
     tolerance: V,
     prediction: V,
     sine: V,
@@ -128,12 +133,14 @@ impl<V> ContactLine<V> {
 
 /// A segment or capsule, projected onto the tangent.
 struct LaneSide<V, M> {
+    /// This is the first solid of the pair, which lies below along the normal.
     is_first: bool,
     /// Ends in the order of their coordinates along the tangent, and these coordinates.
     ends: [PlaneLanes<V>; 2],
     places: [V; 2],
     /// Lanes where that order is the opposite of the segment's.
     is_turned: M,
+    /// Radius around the segment.
     radius: V,
     /// Cosine of the angle between the segment and the tangent.
     cosine: V,
@@ -148,6 +155,7 @@ struct LaneSide<V, M> {
 }
 
 impl<V, M> LaneSide<V, M> {
+    /// Projects a segment onto the tangent; `is_first` if it belongs to the first solid.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -170,6 +178,7 @@ impl<V, M> LaneSide<V, M> {
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
         let is_higher = heights[1].simd_gt(heights[0]);
         let is_last_near = if is_first { is_higher } else { heights[1].simd_lt(heights[0]) };
+        // An end is at the witness within twice the tolerance; of both the first counts.
         let near = lit::<S, N, V>(simd, 2.0) * line.tolerance;
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
@@ -222,6 +231,7 @@ impl<V, M> LaneSide<V, M> {
         let room = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
+        // Up to this squared distance across the normal, the ball around the nearest end is higher.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
         let round = room - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
@@ -244,8 +254,11 @@ impl<V, M> LaneSide<V, M> {
 
 /// A pair of points across from each other.
 struct LaneContact<V, M> {
+    /// Point on the surface of the first solid.
     point1: PlaneLanes<V>,
+    /// Signed distance along the normal, not less than the pair's.
     distance: V,
+    /// Lanes where the request admits the contact.
     is_admitted: M,
     /// Masks: at the first and the last end of the first segment, then of the second.
     parts: [M; 4],
@@ -271,6 +284,7 @@ impl<V, M> LaneContact<V, M> {
             (side.places[end] - place).abs().simd_le(line.tolerance)
         });
         let cores = [first.under(simd, place), second.under(simd, place)];
+        // Both points are moved halfway, so that they lie across from each other along the normal.
         let gap = minus(&cores[1], &cores[0]);
         let across = minus(&gap, &times(&line.normal, dot(&line.normal, &gap)));
         let half = times(&across, V::all(simd, N::HALF));
@@ -313,6 +327,7 @@ impl<V, M> LaneContact<V, M> {
 struct SegmentContacts<V, M> {
     first: LaneContact<V, M>,
     second: LaneContact<V, M>,
+    /// Lanes with a second contact; elsewhere `second` is unused.
     is_two: M,
     /// Lanes where these are all contacts.
     is_known: M,
@@ -333,6 +348,7 @@ impl<V, M> SegmentContacts<V, M> {
         let [first, second] = sides;
         let from = first.places[0].larger(second.places[0]);
         let to = first.places[1].smaller(second.places[1]);
+        // Overlaps and gaps of a few tolerances are decided by rounding: such lanes are not known.
         let few = lit::<S, N, V>(simd, 4.0) * line.tolerance;
         let is_side = !first.is_point & !second.is_point;
         let is_shared = (to - from).simd_gt(few) & is_side;
@@ -343,6 +359,7 @@ impl<V, M> SegmentContacts<V, M> {
         high.is_admitted &= is_shared;
         let is_two = low.is_admitted & high.is_admitted;
         let is_any = low.is_admitted | high.is_admitted;
+        // If neither end is as near as the pair, the nearest points are needed besides: not known.
         let level = line.distance + line.tolerance;
         let is_level = (low.is_admitted & low.distance.simd_le(level))
             | (high.is_admitted & high.distance.simd_le(level));
@@ -362,6 +379,7 @@ impl<V, M> SegmentContacts<V, M> {
         }
     }
 
+    /// Stores the contacts and their parts; see the figure of [`closed_form`](super::closed_form).
     #[inline(always)]
     fn store<S: Simd, N: Real, const L: usize>(&self, found: &mut LaneContacts<N, 2, L>)
     where

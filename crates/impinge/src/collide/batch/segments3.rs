@@ -1,4 +1,8 @@
 //! Segments and capsules in 3D: `collide/separation/segments/segment_segment.rs` in lanes.
+//!
+//! Reads of [`Inputs`]: both poses, both `radii`, the ends of both cores, and `sine`. Lanes whose
+//! answer that file would find by another branch fall back: a normal that is not the direction
+//! between the nearest points, nearly parallel cores, lengths outside 2⁻¹⁶ to 2¹⁶.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
@@ -49,8 +53,10 @@ impl<N: Real> Form<N, 3> for Segments3 {
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
         sizes[0].smaller(sizes[1]).store(&mut found.size);
         let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
+        // From the surface back to the core, with the rounding that the builder for one pair has.
         let core1 = minus(&rounded[0], &times(&normal, radii[0]));
         let core2 = plus(&rounded[1], &times(&normal, radii[1]));
+        // Nearly parallel segments may touch in two points: they fall back.
         let is_crossing = is_crossing(simd, [&ends1, &ends2], &normal, inputs.sine(simd));
         let has_part1 = found.put_end_or_side(0, &core1, &ends1, noise);
         let has_part2 = found.put_end_or_side(2, &core2, &ends2, noise);
@@ -69,6 +75,7 @@ impl<N: Real> Form<N, 3> for Segments3 {
 
 /// Two points and their squared distance.
 struct SegmentPoints<V> {
+    /// On the first and on the second segment, in the frame of the first solid.
     points: SegmentEnds<V>,
     squared: V,
 }

@@ -17,6 +17,7 @@ struct Case<N: Real, const D: usize> {
     poses: [Pose<N, D>; 2],
     solids: [Solid<N, D>; 2],
     request: ManifoldRequest<N>,
+    /// The pair is to be updated.
     is_due: bool,
 }
 
@@ -31,12 +32,16 @@ impl<N: Real, const D: usize> Case<N, D> {
 /// ones. A pair that had points may be asked for again to match these, so its count says nothing.
 struct Kept<'a, N: Real, const D: usize> {
     cases: &'a [Case<N, D>],
+    /// Indices of the cases to update.
     due: Vec<usize>,
+    /// Manifolds of all cases.
     raws: &'a mut [RawManifold<N, D>],
+    /// Pairs without points that began and that fell back, and all that ended.
     counts: [usize; 3],
 }
 
 impl<N: Real, const D: usize> Kept<'_, N, D> {
+    /// Returns whether the pair had no points.
     fn is_new(&self, index: usize) -> bool {
         self.raws[self.due[index]].points.is_empty()
     }
@@ -147,6 +152,7 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
     sums
 }
 
+/// Updates the cases that are due; returns how many new pairs began, and how many fell back.
 fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     level: Level,
     cases: &[Case<N, D>],
@@ -160,6 +166,7 @@ fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     [begun, declined]
 }
 
+/// Kinds of solids to draw.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Sort {
     Ball,

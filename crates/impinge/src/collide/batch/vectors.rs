@@ -39,6 +39,7 @@ pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     for coordinate in &v[1..] {
         sum += coordinate.abs();
     }
+    // Unlike the square, the sum does not underflow.
     let is_zero = sum.simd_le(V::all(simd, N::ZERO));
     (squared.sqrt(), is_usual(simd, squared) | is_zero)
 }

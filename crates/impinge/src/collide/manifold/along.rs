@@ -122,6 +122,7 @@ pub(crate) fn on_face3<N: Real>(
     let frame = ContactFrame::known(&planes, tangents3(&normal), tolerance, prediction);
     let (mut candidates, mut lowest) = (Candidates::new(), N::INFINITY);
     clip::candidates(pair, &frame, &mut candidates);
+    // Below the surface of the face and beside it.
     candidates.retain(|candidate| candidate.distance >= least - tolerance);
     for candidate in &mut candidates {
         candidate.distance = max(candidate.distance, least);

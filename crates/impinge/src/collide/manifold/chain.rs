@@ -17,6 +17,7 @@ use crate::shape::{FeatureId, Kind};
 /// A segment of a chain and a solid that is no half-space, in the order of kinds: another segment
 /// or a ball comes first.
 pub(crate) struct SegmentPair<'a, N: Real> {
+    /// The solids in canonical order, in the frame of the first.
     pub(crate) pair: Pair<'a, N, 2>,
     /// Lengths below this are rounding errors.
     pub(crate) tolerance: N,
@@ -63,6 +64,7 @@ impl<N: Real> SegmentPair<'_, N> {
             let parts = [first.at_witness(&frame), second.at_witness(&frame)];
             add_witness(&frame.witness, parts, &mut candidates);
         }
+        // The smallest distance is that of the separation exactly.
         let nearest = deepest(&candidates, level);
         candidates[nearest].distance = witness.distance;
         candidates.iter().for_each(|candidate| visit(candidate.named(0)));
@@ -104,6 +106,7 @@ impl<N: Real> SegmentPair<'_, N> {
                 }
             }
         }
+        // Nearer than `least` by more than rounding: beside the face and below it.
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
         for candidate in kept {
             let point = candidate.named(0);
@@ -116,6 +119,7 @@ impl<N: Real> SegmentPair<'_, N> {
         ContactFrame::known(witness, tangents2(&witness.normal), self.tolerance, self.prediction)
     }
 
+    /// Returns the supporting feature of the first solid.
     #[inline]
     fn first(&self, frame: &ContactFrame<N, 2>) -> Option<Stretch<N>> {
         match self.pair.first {

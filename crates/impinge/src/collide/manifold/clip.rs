@@ -114,6 +114,7 @@ fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// masks.
 #[derive(Clone, Copy)]
 struct SideRow<N: Real> {
+    /// Signed distance from each side, positive inside.
     inside: [N; LANES],
     /// Bits of the sides that it is inside of by more than the tolerance, outside of, and neither.
     within: u8,
@@ -125,6 +126,7 @@ struct SideRow<N: Real> {
 struct Insides<N: Real> {
     /// Rows for each point: the number of blocks.
     width: usize,
+    /// Point by point, block by block.
     rows: SmallVec<[SideRow<N>; 2 * LANES + 4]>,
 }
 
@@ -138,6 +140,7 @@ impl<N: Real> Insides<N> {
         &self.rows[place * self.width..][..self.width]
     }
 
+    /// Measures the corners of `other` against the sides of `own`, and last the nearest point.
     #[inline(always)]
     fn measure<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -152,6 +155,7 @@ impl<N: Real> Insides<N> {
         for place in 0..=count {
             let flat = match other {
                 Some(other) if place < count => other.flat(place),
+                // The nearest point is the origin of the tangents.
                 _ => Vector::<N, 2>::zeros(),
             };
             let [x, y] = [V::all(simd, flat.x), V::all(simd, flat.y)];
@@ -161,6 +165,7 @@ impl<N: Real> Insides<N> {
                 let inside = inward[0] * (x - from[0]) + inward[1] * (y - from[1]);
                 let within = bits(inside.simd_gt(most));
                 let beyond = bits(inside.simd_lt(least));
+                // Lanes after the last side are no sides.
                 let all = first_bits(sides - at * LANES);
                 let mut row = SideRow {
                     inside: [N::ZERO; LANES],
@@ -224,6 +229,7 @@ struct RingClip<'a, N: Real> {
 }
 
 impl<'a, N: Real> RingClip<'a, N> {
+    /// Creates a clip with blank rings; [`Self::project`] fills them.
     #[inline(always)]
     fn blank(pair: &'a Pair<'_, N, 3>, frame: &'a ContactFrame<N, 3>) -> Self {
         let rings = [
@@ -276,6 +282,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     fn corners(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
+            // Nothing lies inside a point; its own corner is found when the rings are exchanged.
             let count = if other.is_point() { 0 } else { ring.count };
             for at in 0..count {
                 let flat = ring.flat(at);

@@ -77,6 +77,7 @@ pub(in crate::collide) fn lifted<N: Real>(
     top: N,
     away_squared: N,
 ) -> N {
+    // Where the ball around the corner meets the flat part of the surface.
     let turns_squared = radius * radius * (N::ONE - cosine * cosine);
     let lift = if away_squared < turns_squared {
         room - top + (radius * radius - away_squared).sqrt()
@@ -91,19 +92,25 @@ pub(in crate::collide) fn lifted<N: Real>(
 /// In the frame of the first solid. `flat` coordinates are along the tangents, zero at the witness;
 /// in 2D the second is always zero.
 pub(in crate::collide) struct ContactFrame<N: Real, const D: usize> {
+    /// Nearest points, normal and signed distance of the pair.
     pub(in crate::collide) witness: Separation<N, D>,
     tangents: [Vector<N, D>; 2],
     /// Lengths below this are rounding errors for the size of the pair.
     pub(in crate::collide) tolerance: N,
+    /// Largest distance of a contact point.
     prediction: N,
+    /// Sine of the angle by which the solids may turn.
     pub(in crate::collide) sine: N,
 }
 
 /// A point that may enter the manifold.
 #[derive(Clone, Copy)]
 pub(in crate::collide) struct Candidate<N: Real, const D: usize> {
+    /// Point on the surface of the first solid, in its frame.
     pub(in crate::collide) point1: Point<N, D>,
+    /// Signed distance along the normal to the second solid.
     pub(in crate::collide) distance: N,
+    /// Coordinates along the tangents of the frame.
     pub(in crate::collide) flat: Vector<N, 2>,
     /// The part of each solid that it lies on.
     pub(in crate::collide) features: [FeatureId; 2],

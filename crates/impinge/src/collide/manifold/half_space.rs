@@ -51,6 +51,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
             Kind::Triangle(triangle) => {
                 let corners = triangle.corners();
                 for (at, id) in (0_u32..3).enumerate() {
+                    // Corners that coincide count once.
                     if !corners[..at].contains(&corners[at]) {
                         self.push(FeatureId::Vertex(id), corners[at], out);
                     }
@@ -65,7 +66,9 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         BOUNDARY
     }
 
+    /// Adds a corner, if the request admits it.
     fn push(&self, id: FeatureId, point: Point<N, D>, out: &mut Candidates<N, D>) {
+        // The boundary is perpendicular to the normal: heights give distances.
         let distance = self.frame.witness.distance - self.frame.height(&point);
         if distance <= self.frame.most() {
             out.extend(self.frame.candidate(point, distance, [id, BOUNDARY]));
@@ -86,6 +89,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         }
     }
 
+    /// Adds the vertices of a hull: eight at a time, those that may be near are tested again.
     #[inline(always)]
     fn vertices_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

@@ -138,6 +138,7 @@ pub(super) fn moved<N: Real, const D: usize>(
         let is_same = is_one_point(old.names.1) && old.names == new.names;
         return if is_same { N::ZERO } else { N::INFINITY };
     }
+    // On the same vertex of either solid it has not moved.
     let is_on_vertex = |solid: usize| {
         let name = |point: &Anchors<N, D>| (point.names.0[solid], point.names.1[solid]);
         matches!(name(old).1, FeatureId::Vertex(_)) && name(old) == name(new)
@@ -244,6 +245,7 @@ pub(in crate::collide) fn renew<N: Real, const D: usize>(
     if old.len() != candidates.len() || !old.iter().zip(candidates).all(is_same) {
         return false;
     }
+    // Features with several points, as on round rims, are matched by position instead.
     let is_twin = |(at, new): (usize, &Candidate<N, D>)| {
         candidates[..at].iter().any(|other| other.features == new.features)
     };

@@ -104,6 +104,7 @@ fn nearest_first<K: PartialOrd + Copy>(
             // A point without a match now has none later.
             old &= !(u32::from(!has_one) << at);
         }
+        // The new points that are the nearest of some old one.
         let taken = Ones::<FEW>(old).fold(0_u32, |bits, at| bits | 1 << others[at]);
         if taken.count_ones() == old.count_ones() {
             // In most cases each has a match of its own.

@@ -74,6 +74,7 @@ pub(crate) fn between2<N: Real>(
     build_in_plane(pair, separation, request, request.max_points, out);
 }
 
+/// Builds the manifold in 2D with at most `limit` points.
 fn build_in_plane<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
@@ -207,9 +208,11 @@ pub(in crate::collide) struct PointChoice<'a, N: Real, const D: usize> {
     /// Computes the size of the pair (`collide/size.rs`); called if the points are not the old
     /// ones.
     pub(in crate::collide) size: &'a dyn Fn() -> N,
+    /// Signed distance of the pair, which one of the deepest points takes.
     pub(in crate::collide) distance: N,
     /// Lengths below this are rounding errors.
     pub(in crate::collide) tolerance: N,
+    /// Largest number of points; at least one is kept.
     pub(in crate::collide) limit: usize,
 }
 

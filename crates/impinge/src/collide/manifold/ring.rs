@@ -34,6 +34,7 @@ pub(super) struct RingCorner<N: Real> {
     /// Coordinates in the tangents of the frame.
     pub(super) flat: Vector<N, 2>,
     pub(super) id: FeatureId,
+    /// Id of the side from this corner to the next.
     pub(super) side: FeatureId,
 }
 
@@ -51,15 +52,19 @@ pub(super) struct SupportRing<'a, N: Real> {
     which: Which,
     /// Pose of the solid in the frame of the first one; `None` for the first itself.
     pose: Option<&'a Pose<N, 3>>,
+    /// Id of the feature.
     pub(super) id: FeatureId,
     /// Number of corners.
     pub(super) count: usize,
+    /// Corners as `supporting` filled them, in the frame of the solid, with their ids.
     faces: FaceBlocks<N>,
+    /// Corners in the frame of the first solid, filled by [`SupportRing::project`].
     pub(super) blocks: SmallVec<[RingBlock<N>; 2]>,
     /// Outward normal of a face in the frame of the first solid; unspecified for other features.
     normal: Vector<N, 3>,
     /// Sense of rotation in the tangents: 1 for counter-clockwise, -1 for clockwise.
     turn: N,
+    /// Radius around the feature.
     radius: N,
     /// Cosine of the angle between the normals of frame and face, or between a segment and the
     /// contact plane.
@@ -263,6 +268,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     /// Simplifies a feature that has no extent in projection.
     fn settle(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
+        // Corners that coincide have no extent: merged, they may have one.
         let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
         if extent.is_none() && self.is_segment() {
             self.end_on(&outward, tolerance);
@@ -281,6 +287,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
             self.turn = N::ONE;
             self.cosine = self.side(0).norm() / (self.point(1) - self.point(0)).norm();
         }
+        // Tilted by more than 60°.
         if self.count > 1 && self.cosine < N::lit(MIN_COSINE) {
             self.keep_farthest(&outward);
         }

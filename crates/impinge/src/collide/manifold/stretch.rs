@@ -48,7 +48,9 @@ pub(super) fn build<N: Real>(
 /// An end of a side, or a corner.
 #[derive(Clone, Copy)]
 pub(super) struct Corner<N: Real, const D: usize> {
+    /// Position in the frame of the first solid.
     pub(super) point: Point<N, D>,
+    /// Coordinates along the tangents; in 2D the second is zero.
     pub(super) flat: Vector<N, 2>,
     pub(super) id: FeatureId,
 }
@@ -59,7 +61,9 @@ pub(super) struct Stretch<N: Real> {
     id: FeatureId,
     /// Ends of the side; for a point the first counts.
     pub(super) corners: [Corner<N, 2>; 2],
+    /// The feature is a side; otherwise it is the point of the first corner.
     pub(super) is_side: bool,
+    /// Radius around the feature.
     rounding: N,
     /// Cosine of the angle between the side and the tangent.
     cosine: N,
@@ -72,6 +76,8 @@ pub(super) struct Stretch<N: Real> {
 }
 
 impl<N: Real> Stretch<N> {
+    /// Returns the supporting feature of a solid at `pose` in the frame of the first; `None` if it
+    /// is neither a side nor a corner.
     #[inline(always)]
     pub(super) fn of(
         which: Which,
@@ -91,6 +97,7 @@ impl<N: Real> Stretch<N> {
         Self::placed(Which::First, &Shown::of_segment(segment), N::ZERO, None, frame)
     }
 
+    /// Transforms and simplifies a feature.
     #[inline(always)]
     fn placed(
         which: Which,
@@ -126,6 +133,7 @@ impl<N: Real> Stretch<N> {
     #[inline(always)]
     fn settle(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
+        // Long in projection. A side along the normal is not, but it has a length.
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;
         self.is_side &= is_long || max_component(&(from.point - to.point)) > tolerance;
         if !self.is_side {
@@ -142,6 +150,7 @@ impl<N: Real> Stretch<N> {
         }
     }
 
+    /// Finds the corner nearest to the other solid.
     fn find_top(&mut self, frame: &ContactFrame<N, 2>) {
         let [first, second] = &self.corners;
         let depth = self.which.below_witness(&first.point, frame);
@@ -168,6 +177,7 @@ impl<N: Real> Stretch<N> {
     #[inline(always)]
     pub(super) fn under(&self, place: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
+        // Sides run in either direction along the tangent.
         let share = (place - from.flat.x) * self.along / (self.along * self.along);
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
     }

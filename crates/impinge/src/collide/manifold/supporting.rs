@@ -48,6 +48,7 @@ fn fill_point<N: Real>(id: FeatureId, point: &Point<N, 3>, face: &mut FaceRing<N
     true
 }
 
+/// Fills a blank ring with a segment; `id` is that of the segment, and of its side.
 fn fill_ends<N: Real>(
     id: FeatureId,
     ends: [(FeatureId, Point<N, 3>); 2],
@@ -142,10 +143,12 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
 ) -> Option<Point<N, D>> {
     map.core_feature(direction, out);
     let normal = if out.vertices.len() > 2 { map.round_face(direction)? } else { return None };
+    // The corners for the cap's own normal: fixed on the solid.
     map.core_feature(&normal, out);
     let lowest = map.core_support(direction);
     let height = |point: &Point<N, D>| point.coords.dot(direction);
     let top = out.vertices.iter().map(height).fold(-N::INFINITY, max);
+    // How far the lowest point of the rim is below the lowest corner.
     let (lower, reach) = (height(&lowest) - top, map.reach());
     if lower > N::lit(SLACK) * reach {
         map.core_feature(direction, out);

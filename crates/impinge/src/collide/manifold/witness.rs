@@ -58,6 +58,7 @@ fn frame<N: Real, const D: usize>(
     ContactFrame::new(pair, separation, &request, tangents)
 }
 
+/// Returns both features: by position where that decides, else by the supporting feature.
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
@@ -68,6 +69,7 @@ fn features<N: Real, const D: usize>(
     }
     let (noise, normal) = (rounding(pair), separation.normal);
     let first = by_place(pair.first, &separation.point1, &normal, noise);
+    // In the frame of the second solid.
     let second = || {
         let point = pair.pose12.inverse_point(&separation.point2);
         by_place(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
@@ -105,6 +107,7 @@ fn by_place<N: Real, const D: usize>(
     }
 }
 
+/// Returns one feature: for balls and triangles by position, else by the supporting feature.
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,

@@ -75,6 +75,7 @@ pub(super) fn of_flat_cores_near<N: Simplicial<D>, const D: usize>(
     from_start(pair, limit, Some(normal))
 }
 
+/// Computes [`of_flat_cores`] from a first direction, if one is given.
 fn from_start<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

@@ -157,6 +157,8 @@ fn beside_ball<N: Real, const D: usize>(
     Some(apart - radius)
 }
 
+/// Computes the distance by a method; [`is_plain`] pairs prove an overlap first where that is
+/// faster.
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,

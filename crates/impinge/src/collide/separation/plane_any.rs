@@ -42,8 +42,11 @@ pub(super) fn distance<N: Real, const D: usize>(
 /// The point of a core deepest in a half-space, the normal into it, and the solid's distance from
 /// it.
 struct Deepest<N: Real, const D: usize> {
+    /// Unit, into the half-space, in the frame of the solid.
     normal: Vector<N, D>,
+    /// Point of the core, in the frame of the solid.
     core: Point<N, D>,
+    /// Signed distance of the solid, its radius included.
     distance: N,
 }
 

@@ -30,6 +30,7 @@ pub(super) fn settled<N: Real, const D: usize>(
     if is_apart && found.distance <= rounding(pair) { at_corner(pair, found) } else { found }
 }
 
+/// Returns the distance up to which a pair may share a corner.
 fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     let [reach1, reach2] = [pair.first, pair.second]
         .mapped(|kind| Geometry(kind).as_support_map().map_or(N::ZERO, SupportMap::reach));
@@ -37,6 +38,7 @@ fn rounding<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
     N::lit(ROUNDING) * N::EPSILON * size
 }
 
+/// Compares the corners that are highest along the normal, up to rounding, of both solids.
 #[cold]
 fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,

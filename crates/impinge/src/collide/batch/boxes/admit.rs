@@ -47,6 +47,7 @@ pub(super) struct Limits<V> {
     pub(super) prediction: V,
     /// Sine of the angle by which the boxes may turn.
     pub(super) sine: V,
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
 }
 
@@ -70,10 +71,12 @@ pub(super) struct Admission<V> {
     level: V,
     /// Sum of the coordinates of the level candidates, and their number.
     sum: [V; 2],
+    /// Number of level candidates, as a number of the scalar type.
     count: V,
 }
 
 impl<V> Admission<V> {
+    /// State without a candidate.
     #[inline(always)]
     pub(super) fn new<S: Simd, N: Real>(simd: S, limits: Limits<V>) -> Self
     where
@@ -81,6 +84,7 @@ impl<V> Admission<V> {
     {
         let (zero, infinity) = (V::all(simd, N::ZERO), V::all(simd, N::INFINITY));
         let (most, level) = (limits.prediction + limits.tolerance, limits.gap + limits.tolerance);
+        // If the gap is within the tolerance of the prediction, all up to the prediction are level.
         let level = limits.prediction.simd_le(level).select(most, level);
         Self { limits, lowest: infinity, most, level, sum: [zero; 2], count: zero }
     }
@@ -133,6 +137,7 @@ impl<V> Admission<V> {
         V: Wide<S, Scalar = N>,
     {
         let Limits { gap, prediction, sine, .. } = self.limits;
+        // NaN in lanes without a level candidate, where turning admits nothing.
         let pivot = [self.sum[0] / self.count, self.sum[1] / self.count];
         for slot in 0..COUNT {
             if slots.valid[slot] == 0 {

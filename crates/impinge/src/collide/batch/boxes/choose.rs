@@ -21,16 +21,21 @@ use crate::shape::FeatureId;
 
 /// The slots of one pair.
 pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, const L: usize> {
+    /// Slots of all lanes, of which this pair's are read.
     pub(super) slots: &'a Slots<N, D, COUNT, L>,
+    /// Lane of the pair.
     pub(super) lane: usize,
     /// Bits of the slots that hold a candidate.
     pub(super) valid: u32,
     /// Bits of the slots with the smallest distance, up to rounding.
     pub(super) level: u32,
+    /// Signed distance of the boxes, which the deepest point takes.
     pub(super) gap: N,
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: N,
     /// Size of the pair, as `collide::size` defines it.
     pub(super) size: N,
+    /// Normals of all lanes, from the first box to the second, in the frame of the first.
     pub(super) normal: &'a [[N; L]; D],
 }
 
@@ -71,11 +76,13 @@ const fn slot_of(code: u32) -> usize {
 
 /// Ids of old points, by the slots that continue them.
 struct KeptSlots<const COUNT: usize> {
+    /// Bits of the slots that continue an old point.
     slots: u32,
     /// All old points are candidates again, in the same slots.
     is_still: bool,
     /// Bits of the old points that no slot continues.
     left: u32,
+    /// Id of each slot in `slots`.
     ids: [u32; COUNT],
     /// Slot that continues each old point, by index in the manifold.
     heirs: [u8; COUNT],
@@ -95,6 +102,14 @@ impl<const COUNT: usize> KeptSlots<COUNT> {
 
 impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_, N, D, COUNT, L> {
     /// Replaces the points of a manifold, and its normal, by at most `limit` candidates.
+    ///
+    /// 1. Old points find their slots by code, else by features ([`Self::kept`]).
+    /// 2. Slots that jumped lose their ids ([`Self::drop_jumped`]).
+    /// 3. Old points that are left give their ids by position ([`Self::match_places`]).
+    /// 4. If there are too many candidates, some are chosen, with a preference for old points
+    ///    ([`Self::chosen`]); ids of the others pass to chosen ones near them.
+    /// 5. If nothing changed but positions, points are updated in place ([`Self::put_all`]); else
+    ///    new ones get ids, and all are written in the order of ids ([`Self::replace`]).
     #[inline(always)]
     pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
         let mut kept = self.kept(&raw.points, naming);
@@ -102,10 +117,12 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
             self.drop_jumped(&raw.points, &mut kept);
         }
         let normal = self.normal();
+        // By position, only if the normal turned by at most 45°.
         let may_match = normals_agree(&raw.normal, &normal);
         if may_match && kept.left != 0 && kept.slots != self.valid {
             self.match_places(naming, raw, self.valid, &mut kept);
         }
+        // Up to four candidates are all kept, as by `manifold::choose`.
         let is_full = self.valid.count_ones() as usize <= limit.min(ALL);
         let slots = if is_full { self.valid } else { self.chosen(limit, kept.slots) };
         if may_match && !is_full && !raw.points.is_empty() && slots & !kept.slots != 0 {
@@ -136,6 +153,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         for (at, point) in old.iter().enumerate() {
             let own = slot_of(point.code);
             let is_same = point.code == naming.code(own) && self.valid >> own & 1 == 1;
+            // A slot continues one old point at most.
             let free = self.valid & !kept.slots;
             let slot = if is_same { Some(own) } else { naming.slot(point, free) };
             kept.is_still &= is_same;
@@ -205,6 +223,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         for point in &mut raw.points {
             let old = *point;
             self.place(slot_of(point.code), deepest, point);
+            // A crossing of two edges that jumped is a new contact.
             if !self.is_same(&old, &point.point1) {
                 (point.id, has_jumped) = (raw.ids.next(), true);
             }
@@ -234,7 +253,8 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Gives new ids to the slots `new`.
+    /// Gives new ids to the slots `new`, in the order in which the builder for one pair numbers
+    /// points.
     #[inline(never)]
     fn begin(&self, new: u32, kept: &mut KeptSlots<COUNT>, raw: &mut RawManifold<N, D>) {
         for (_, slot) in in_order(Ones::<COUNT>(new).map(|slot| (slot, self.point1(slot)))) {
@@ -247,6 +267,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     fn by_ids(slots: u32, kept: &KeptSlots<COUNT>) -> ([usize; COUNT], usize) {
         let (mut order, mut count) = ([0; COUNT], 0);
         for slot in Ones::<COUNT>(slots) {
+            // Insertion sort of a few slots.
             let mut at = count;
             while at > 0 && kept.ids[order[at - 1]] > kept.ids[slot] {
                 order[at] = order[at - 1];
@@ -313,6 +334,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     /// Returns at most `limit` slots, chosen as `reduce::chosen` does.
     #[inline(always)]
     fn chosen(&self, limit: usize, kept: u32) -> u32 {
+        // Without a candidate at the gap, the lowest ones are level.
         let mut level = self.level;
         if level == 0 {
             let least = self.distance(self.lowest(self.valid));

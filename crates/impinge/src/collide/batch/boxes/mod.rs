@@ -5,7 +5,9 @@
 //! of the points ([`choose`]) goes pair by pair. Flat boxes, and pairs whose nearest points lie off
 //! the faces that face each other, fall back to the builder for one pair.
 //!
-//! The angle by which boxes may turn is a number in the test of each corner.
+//! The angle by which boxes may turn is a number in the test of each corner. Of [`Inputs`] the
+//! kernels read both poses, the half extents in `ends[0][0]` and `ends[1][0]`, `prediction` and
+//! `sine`.
 
 mod admit;
 mod choose;
@@ -46,7 +48,9 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
 pub(super) struct Boxes<V, const D: usize> {
     /// Columns of the rotation: the axes of the second box.
     pub(super) rotation: [[V; D]; D],
+    /// Centre of the second box in the frame of the first.
     pub(super) translation: [V; D],
+    /// Half extents of the first box, and of the second.
     pub(super) half1: [V; D],
     pub(super) half2: [V; D],
 }

@@ -129,6 +129,7 @@ fn nearer<N: Real>(pair: &Pair<'_, N, 3>) -> Algorithm<N, 3> {
 enum GapResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
+    /// The separation of the solids, proved.
     Apart(Separation<N, 3>),
     /// The cores certainly overlap.
     Overlap,
@@ -181,7 +182,9 @@ fn result<N: Real>(pair: &Pair<'_, N, 3>, limit: N, with_overlap: bool) -> GapRe
 /// Two solids with flat cores.
 struct FlatPair<'a, N: Real> {
     solids: [FlatCore<'a, N, 3>; 2],
+    /// Radii around both cores.
     radii: [N; 2],
+    /// Unit of length in which the cores are about 1 large.
     units: Units<N>,
     /// Centres of the cores in their own frames, in units of the pair.
     middles: [Vector<N, 3>; 2],

@@ -26,21 +26,28 @@ type LaneVectors<N> = [[N; LANES]; 3];
 
 /// Input of up to eight pairs of the same kinds. Lanes without a pair stay zero.
 struct Packet<'a, N: Real> {
+    /// Both solids of each pair; `None` for lanes without a pair.
     pairs: [Option<FlatPair<'a, N>>; LANES],
     /// Columns of the rotations of `pose12`.
     rotation: [LaneVectors<N>; 3],
+    /// Translations of `pose12`, in units of each pair.
     translation: LaneVectors<N>,
     /// Half extents of boxes; zero for other kinds.
     half_extents: [LaneVectors<N>; 2],
+    /// Centres of the cores in their own frames, in units of each pair.
     middles: [LaneVectors<N>; 2],
+    /// Factor from lengths of the shapes to units of each pair.
     shrink: [N; LANES],
+    /// Largest distance of the cores of interest, in units of each pair.
     limit: [N; LANES],
 }
 
 /// Output of the search, in units of each lane's pair.
 struct PacketGap<N: Real> {
     distance: [N; LANES],
+    /// Unit, from the first core to the second, in the frame of the first.
     normal: LaneVectors<N>,
+    /// Nearest points of both cores, in the frame of the first.
     points: [LaneVectors<N>; 2],
     /// One bit per lane, as in the other two masks.
     is_apart: u64,
@@ -100,6 +107,7 @@ impl<N: Real> PacketGap<N> {
 }
 
 impl<'a, N: Real> Packet<'a, N> {
+    /// Gathers up to [`LANES`] pairs; more are ignored.
     fn new<'p>(given: impl Iterator<Item = &'p Pair<'a, N, 3>>, limit: N) -> Self
     where
         'a: 'p,
@@ -183,6 +191,7 @@ impl<'a, N: Real> Packet<'a, N> {
         out.is_overlap = found.is_overlap.to_bitmask();
     }
 
+    /// Loads the core of one solid: vertices shared by all lanes, or half extents.
     #[inline(always)]
     fn core<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, which: usize) -> LaneCore<'a, N, V> {
         let solid = self.pairs.iter().flatten().next().map(|solids| solids.solids[which]);

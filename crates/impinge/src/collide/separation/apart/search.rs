@@ -43,9 +43,12 @@ pub(super) struct LaneCores<'a, N: Real, V> {
 
 /// Result of the search, in units of the pair and in the frame of the first core.
 pub(super) struct LaneGap<V, M> {
+    /// Lower bound of the distance of the cores; equal to the distance, up to rounding, where
+    /// apart.
     pub(super) distance: V,
     /// Unit, from the first core to the second.
     pub(super) normal: [V; 3],
+    /// Nearest points of both cores.
     pub(super) points: [[V; 3]; 2],
     /// Lanes whose cores are apart; only there the other fields are proved.
     pub(super) is_apart: M,

@@ -23,11 +23,13 @@ const CLEAR: f64 = 1.0 / 1024.0;
 /// A point of the difference of two cores, and the point of the first core that it comes from.
 #[derive(Clone, Copy)]
 pub(super) struct LaneCorner<V> {
+    /// Second core minus first, in units of the pair and in the frame of the first core.
     pub(super) point: [V; 3],
     pub(super) on1: [V; 3],
 }
 
 impl<V> LaneCorner<V> {
+    /// Selects `other` in the lanes of `is_other`.
     #[inline(always)]
     pub(super) fn or<S: Simd>(&self, other: &Self, is_other: V::Mask) -> Self
     where
@@ -43,9 +45,11 @@ impl<V> LaneCorner<V> {
 /// Up to three corners and the point of their hull nearest to the origin.
 #[derive(Clone, Copy)]
 pub(super) struct LaneSimplex<V> {
+    /// In lanes with fewer corners the last is repeated, with weight zero.
     pub(super) corners: [LaneCorner<V>; 3],
     /// Barycentric weights of the corners; their sum is 1.
     pub(super) weights: [V; 3],
+    /// Nearest point to the origin, and its squared length.
     pub(super) nearest: [V; 3],
     pub(super) squared: V,
 }
@@ -80,6 +84,7 @@ impl<V> BestFeature<V> {
 struct Fan<'a, V> {
     old: &'a LaneSimplex<V>,
     newest: &'a LaneCorner<V>,
+    /// Vectors from the newest corner to the old ones.
     edges: [[V; 3]; 3],
     /// Squared lengths of the edges.
     squares: [V; 3],

@@ -32,6 +32,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 
 /// Half of the cone's axial section: `x` is the distance from the axis, `y` the height.
 struct Section<N: Real> {
+    /// Corners of the section: the apex and the rim.
     apex: Vector<N, 2>,
     rim: Vector<N, 2>,
     /// Unit normal of the slanted side; the x axis for a cone of no size.

@@ -27,6 +27,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 pub(in crate::collide::separation) struct HalfPlane<N: Real> {
     /// `x` is the distance from the axis, `y` the height.
     pub(in crate::collide::separation) point: Vector<N, 2>,
+    /// Unit vector away from the axis, as (x, z).
     away: Vector<N, 2>,
 }
 

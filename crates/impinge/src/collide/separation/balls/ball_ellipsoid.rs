@@ -81,6 +81,7 @@ impl<N: Real, const D: usize> ScaledEllipsoid<N, D> {
         Self { half_axes: *half_axes, least, excess, point: *point }
     }
 
+    /// Projects the point, by the root or, where the shortest axis alone decides, directly.
     fn project(&self) -> Projection<N, D> {
         let low = (0..D).fold(N::ZERO, |low, axis| {
             let alone = self.half_axes[axis] * self.point[axis].abs() - self.excess[axis];

@@ -47,6 +47,7 @@ pub(in crate::collide::separation) fn project<N: Real, const D: usize>(
 /// Nearest point of a segment to a given point.
 pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
     ends: [Point<N, D>; 2],
+    /// The nearest point of the segment.
     point: Point<N, D>,
     /// Vector from `point` to the given point; `distance` is its length.
     offset: Vector<N, D>,
@@ -56,6 +57,7 @@ pub(in crate::collide::separation) struct Foot<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> Foot<N, D> {
+    /// Finds the nearest point of the segment to `center`.
     #[inline]
     pub(in crate::collide::separation) fn new(
         ends: [Point<N, D>; 2],
@@ -71,6 +73,8 @@ impl<N: Real, const D: usize> Foot<N, D> {
         Projection { distance: self.distance, outward: self.outward(), point: self.point }
     }
 
+    /// Returns the unit direction from the segment to the point; a perpendicular of the segment
+    /// where the offset is rounding.
     fn outward(&self) -> Vector<N, D> {
         let direct = if self.is_inside { None } else { unit(&self.offset) };
         if let Some((outward, _)) = direct {

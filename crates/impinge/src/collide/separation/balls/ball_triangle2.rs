@@ -26,6 +26,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
 /// A side of a triangle whose inside is on its left.
 #[derive(Clone, Copy)]
 struct DirectedEdge<N: Real> {
+    /// Start of the side, unit direction to its end, and its length.
     from: Point<N, 2>,
     along: Vector<N, 2>,
     length: N,

@@ -15,6 +15,7 @@ use crate::math::{Matrix, Pose, Real, Vector, cross, max, min};
 
 /// Two boxes, the second at `pose12` in the frame of the first.
 pub(crate) struct BoxPair<N: Real> {
+    /// Half extents of both boxes.
     pub(crate) half1: Vector<N, 3>,
     pub(crate) half2: Vector<N, 3>,
     pub(crate) pose12: Pose<N, 3>,
@@ -35,7 +36,9 @@ pub(crate) enum AxisKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BoxAxis<N: Real> {
     pub(crate) kind: AxisKind,
+    /// Unit, from the first box to the second, in the frame of the first.
     pub(crate) normal: Vector<N, 3>,
+    /// Signed distance along the normal.
     pub(crate) gap: N,
 }
 

@@ -57,6 +57,7 @@ const fn rank(axis: usize, is_positive: bool) -> usize {
     }
 }
 
+/// Gap, position in the outline, axis, and whether the other box is on its positive side.
 type FoundAxis<N> = (N, usize, usize, bool);
 
 /// Returns the larger gap; of equals the one that comes first.

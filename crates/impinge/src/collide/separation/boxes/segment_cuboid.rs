@@ -55,7 +55,9 @@ struct LocalSegment<'a, N: Real> {
     ends: [Vector<N, 3>; 2],
     /// Vector from the first end to the second.
     along: Vector<N, 3>,
+    /// Pose of the solid in the frame of the segment, in lengths of the caller.
     pose12: &'a Pose<N, 3>,
+    /// Length of one unit: a power of two.
     scale: N,
     /// 1 / `scale`, exactly.
     shrink: N,
@@ -66,8 +68,10 @@ struct LocalSegment<'a, N: Real> {
 struct Parting<N: Real> {
     /// Unit vector from the solid to the segment.
     outward: Vector<N, 3>,
+    /// Points of the segment and of the solid, across from each other.
     on_segment: Vector<N, 3>,
     on_solid: Vector<N, 3>,
+    /// Signed distance of the core from the solid.
     distance: N,
 }
 
@@ -147,10 +151,12 @@ impl<'a, N: Real> LocalSegment<'a, N> {
 /// A box and the segment in its frame.
 struct LocalBox<'a, N: Real> {
     segment: &'a LocalSegment<'a, N>,
+    /// Half extents of the box, in units of the segment.
     half: Vector<N, 3>,
 }
 
 impl<N: Real> LocalBox<'_, N> {
+    /// Returns the result for the core; distances above `most` are beyond.
     fn solve(&self, most: N) -> SegmentResult<N> {
         let (axis, sign, gap) = self.best_face();
         if gap > most {

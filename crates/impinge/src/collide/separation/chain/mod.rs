@@ -32,6 +32,7 @@ use crate::shape::Kind;
 
 /// Segments of a chain, and a solid near them.
 pub(crate) struct ChainQuestion<'a, N: Real> {
+    /// Corners of the segments, eight per packet, in the frame of the chain.
     pub(crate) tiles: &'a [PartPacket<N, 2>],
     /// Number of segments; the rest of the last tile is ignored.
     pub(crate) count: usize,
@@ -69,6 +70,7 @@ pub(crate) fn links<N: Real>(question: &ChainQuestion<'_, N>, links: &mut Links<
     links_at(Level::new(), question, links)
 }
 
+/// Runs [`links`] with the vectors of an instruction set.
 fn links_at<N: Real>(
     level: Level,
     question: &ChainQuestion<'_, N>,
@@ -96,6 +98,7 @@ impl<N: Real> ChainQuestion<'_, N> {
 
 /// Eight segments relative to the origin of the pairs.
 struct EightSegments<V> {
+    /// First and second ends.
     ends: [[V; 2]; 2],
     /// Vector from the first end to the second, and its squared length.
     side: [V; 2],

@@ -18,6 +18,7 @@ pub(super) fn links<N: Real>(
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
 }
 
+/// Culls eight segments at a time by their best axis, then computes the rest one by one along it.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -52,8 +53,11 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// A polygon in the frame of the segments, with its extents along its own directions.
 struct PolygonExtents<N: Real> {
     outline: PolygonOutline<N>,
+    /// Bound of the distance of its vertices from the origin.
     size: N,
+    /// Extent along the normal of each side.
     reaches: Row<N>,
+    /// Direction of the tip at each vertex, and the extent along it.
     tips: [Row<N>; 2],
     tip_reaches: Row<N>,
     /// Bit of each vertex with a tip.
@@ -61,6 +65,7 @@ struct PolygonExtents<N: Real> {
 }
 
 impl<N: Real> PolygonExtents<N> {
+    /// Computes the extents of a polygon along its own directions.
     #[inline(always)]
     fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
         let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
@@ -83,8 +88,11 @@ impl<N: Real> PolygonExtents<N> {
 
 /// Best directions from eight segments to a polygon.
 struct SegmentAxes<N> {
+    /// Signed distance along the best direction of each segment.
     gaps: Row<N>,
+    /// Unit, from the segment to the polygon.
     normals: [Row<N>; 2],
+    /// Rounding error of lengths of each pair.
     noise: Row<N>,
     /// Bit of each segment that is beyond the limit.
     beyond: u8,
@@ -110,6 +118,7 @@ impl<V> BestDirection<V> {
 }
 
 impl<N: Real> SegmentAxes<N> {
+    /// Tries the directions of the segments, then those of the polygon.
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,

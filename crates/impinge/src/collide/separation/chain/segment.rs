@@ -56,8 +56,11 @@ fn alone<N: Real>(
 
 /// Separations of eight segments from another, by rows.
 struct SegmentGaps<N> {
+    /// Signed distances of the cores.
     gaps: [N; LANES],
+    /// Unit normals from the first core of each pair to the second.
     normals: [[N; LANES]; 2],
+    /// Nearest points of both cores, in the frame of the first.
     points: [[[N; LANES]; 2]; 2],
     /// Bit of each lane whose values hold.
     known: u8,
@@ -66,6 +69,7 @@ struct SegmentGaps<N> {
 }
 
 impl<N: Real> SegmentGaps<N> {
+    /// Computes the gaps of a packet, with the cores in the order of each pair.
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,

@@ -28,6 +28,7 @@ pub(super) const MAX_EDGES: usize = 90;
 /// An edge of the solid with the reference face, in the frame of that solid.
 pub(super) struct ReferenceEdge<N: Real> {
     pub(super) index: usize,
+    /// First end, vector to the second end, and its squared length; in units of the pair.
     pub(super) from: Vector<N, 3>,
     pub(super) along: Vector<N, 3>,
     pub(super) squared: N,
@@ -35,6 +36,7 @@ pub(super) struct ReferenceEdge<N: Real> {
 
 /// Eight edges of the other solid, in the same frame.
 pub(super) struct EdgeBlock<N: Real> {
+    /// Index of the edge in each lane.
     pub(super) indices: [u8; LANES],
     pub(super) from: [[N; LANES]; 3],
     pub(super) along: [[N; LANES]; 3],
@@ -75,6 +77,7 @@ pub(super) struct CandidateEdges {
 }
 
 impl CandidateEdges {
+    /// Collects the indices of the edges that `is_candidate` accepts.
     #[inline(always)]
     pub(super) fn of(edges: &[PolytopeEdge], is_candidate: impl Fn(&PolytopeEdge) -> bool) -> Self {
         let mut candidates = Self { indices: [0; MAX_EDGES], len: 0 };
@@ -128,6 +131,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         ]
     }
 
+    /// Loads an edge of the solid with the reference face.
     #[inline(always)]
     fn edge(&self, index: u8) -> ReferenceEdge<N> {
         let index = usize::from(index);

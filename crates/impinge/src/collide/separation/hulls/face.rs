@@ -13,6 +13,7 @@ use crate::math::{Mapped, Point, Pose, Real, Vector, Wide, cross, max, min};
 /// One of the two solids, in the frame of the solid with the reference face.
 pub(super) struct LocalSolid<'s, 'a, N: Real> {
     pub(super) solid: &'s Polyhedral<'a, N>,
+    /// Vertices in the frame of the reference face, in units of the pair.
     pub(super) vertices: &'s Vertices<N>,
     /// Heights of the vertices: along the normal of the face for the other solid, against it for
     /// its own.
@@ -25,8 +26,11 @@ pub(super) struct ReferenceFace<'s, 'a, N: Real> {
     pub(super) other: LocalSolid<'s, 'a, N>,
     /// Pose of the other solid in the frame of the face's own solid.
     pub(super) pose: Pose<N, 3>,
+    /// Index of the face among those of its solid.
     index: usize,
+    /// Outward unit normal of the face.
     normal: Vector<N, 3>,
+    /// Factor from lengths of the shapes to units of the pair.
     shrink: N,
 }
 

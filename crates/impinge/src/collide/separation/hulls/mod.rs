@@ -59,6 +59,7 @@ use crate::math::{Pose, Real, Wide};
 const LANES: usize = 8;
 /// Blocks for 32 vertices, and for the 60 faces that 32 vertices have at most.
 const BLOCKS: usize = 4;
+/// Blocks of planes: 64 faces, the bits of a `u64` in `segment`.
 pub(super) const PLANE_BLOCKS: usize = 8;
 
 /// Returns the separation of two solids with flat faces: triangles, boxes and convex hulls.
@@ -97,6 +98,7 @@ fn result<N: Real>(level: Level, pair: &Pair<'_, N, 3>, limit: N) -> SatResult<N
 enum SatResult<N: Real> {
     /// The solids are farther apart than the limit.
     Beyond,
+    /// The separation of the cores or solids, proved.
     Found(Separation<N, 3>),
     /// No answer is proved.
     Unproved,
@@ -127,6 +129,7 @@ fn sat<N: Real>(
     with_lanes!(level, simd => sat_in_lanes::<_, N, N::Lanes<_>>(simd, solids, pose12, limit))
 }
 
+/// Queries the faces of both solids, then resolves the better one.
 #[inline(always)]
 fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

@@ -19,11 +19,13 @@ use crate::shape::{Cuboid, Kind, Planes, Polytope, PolytopeEdge, SupportMap, Tri
 pub(in crate::collide::separation) struct Polyhedral<'a, N: Real> {
     /// Vertices in blocks of eight; the last vertex fills the rest.
     pub(in crate::collide::separation) blocks: &'a [[[N; LANES]; 3]],
+    /// Number of vertices.
     pub(in crate::collide::separation) vertices: usize,
     /// Planes of the faces in blocks of eight; the last plane fills the rest.
     pub(in crate::collide::separation) planes: &'a [Planes<N, 3>],
     pub(in crate::collide::separation) edges: &'a [PolytopeEdge],
     rings: Rings<'a, N>,
+    /// Largest distance of a vertex from the origin.
     pub(in crate::collide::separation) reach: N,
     /// Least half extent of a box or height of a triangle; infinite for hulls.
     thickness: N,

@@ -97,9 +97,11 @@ fn sat<N: Real>(
 /// segment.
 struct SegmentQuery<'a, N: Real> {
     solid: &'a Polyhedral<'a, N>,
+    /// Ends in the frame of the solid, in units of the pair.
     ends: [Vector<N, 3>; 2],
     /// Vector from the first end to the second.
     along: Vector<N, 3>,
+    /// Factor from lengths of the shapes to units of the pair.
     shrink: N,
 }
 
@@ -107,6 +109,7 @@ struct SegmentQuery<'a, N: Real> {
 struct FaceHeights<N> {
     /// The face that the lower end is highest above, the first of equals, and that height.
     index: usize,
+    /// Signed height of the segment's lower end above that face.
     separation: N,
     /// Bit of each face: the second end is higher above its plane than the first.
     climbed: u64,
@@ -115,6 +118,7 @@ struct FaceHeights<N> {
 }
 
 impl<N: Real> SegmentQuery<'_, N> {
+    /// Queries faces, then edges; returns the answer in the frame of the solid.
     #[inline(always)]
     fn sat_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, beyond: N) -> SatResult<N> {
         let faces = self.query_faces::<S, V>(simd);

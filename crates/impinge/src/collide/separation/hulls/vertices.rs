@@ -17,7 +17,9 @@ use crate::shape::Planes;
 /// The vertices of a solid in some frame, in units of the pair.
 pub(super) struct Vertices<N: Real> {
     blocks: [[[N; LANES]; 3]; BLOCKS],
+    /// Number of blocks that hold vertices.
     used: usize,
+    /// Number of vertices.
     count: usize,
 }
 
@@ -26,6 +28,7 @@ pub(super) struct Heights<N: Real> {
     blocks: [[N; LANES]; BLOCKS],
     used: usize,
     count: usize,
+    /// Least height.
     pub(super) low: N,
 }
 

@@ -32,6 +32,7 @@ pub(in crate::collide::separation) struct PolygonOutline<N: Real> {
     blocks: SmallVec<[OutlineBlock<N>; MAX_BLOCKS]>,
     /// Number of vertices.
     pub(in crate::collide::separation) count: usize,
+    /// Radius around the outline.
     pub(in crate::collide::separation) rounding: N,
 }
 

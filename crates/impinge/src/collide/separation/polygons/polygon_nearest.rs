@@ -13,6 +13,7 @@ use crate::math::{Point, Real, Vector, Wide, perp, unit};
 /// Two outlines and the direction from the first to the second with its gap, which may be negative.
 pub(in crate::collide::separation) struct Facing<'a, N: Real> {
     outlines: [&'a PolygonOutline<N>; 2],
+    /// Unit direction from the first outline to the second, with its gap.
     axis: Axis<N>,
     /// The vertex of each outline that is farthest toward the other.
     tops: [usize; 2],
@@ -21,6 +22,7 @@ pub(in crate::collide::separation) struct Facing<'a, N: Real> {
 }
 
 impl<'a, N: Real> Facing<'a, N> {
+    /// Finds the tops of both outlines along an axis.
     #[inline(always)]
     pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,

@@ -86,6 +86,7 @@ fn known_axis<N: Real>(pair: &Pair<'_, N, 2>) -> Option<Axis<N>> {
     Some(Rectangles { half1, half2, pose12: pair.pose12 }.best_axis())
 }
 
+/// Tries the normals of sides, then the tips of corners if these do not decide.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

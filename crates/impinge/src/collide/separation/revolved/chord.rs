@@ -12,12 +12,16 @@ const HALVINGS: usize = 4;
 
 /// A search along a chord: `bounds` are the parameters between which the slope changes its sign.
 struct ChordSearch<N: Real> {
+    /// Ends in the frame of the round solid, in units of the pair.
     ends: [Vector<N, 3>; 2],
+    /// Vector from the first end to the second, and its length.
     along: Vector<N, 3>,
     length: N,
+    /// Parameters from 0 to 1 between which the slope changes its sign.
     bounds: [N; 2],
     /// Whether the slope is known to fall at the lower bound and to rise at the upper one.
     is_known: [bool; 2],
+    /// Number of bisections so far.
     halvings: usize,
 }
 

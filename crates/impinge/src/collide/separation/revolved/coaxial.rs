@@ -45,6 +45,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     found.filter(|found| found.distance <= limit)
 }
 
+/// Two solids of which the normals of an overlap are known if they are coaxial.
 struct CoaxialPeaks<'a, 'b, N: Real> {
     pair: &'b Pair<'a, N, 3>,
 }
@@ -71,6 +72,7 @@ pub(in crate::collide::separation) fn peak<N: Real>(
 /// A solid about an axis, in the frame of the first solid and in units of the pair: in a half-plane
 /// of the axis, the hull of both corners and their mirror images.
 struct AxialOutline<N: Real> {
+    /// Middle of the solid, in the frame of the first.
     middle: Vector<N, 3>,
     /// Unit vector along the axis.
     axis: Vector<N, 3>,
@@ -158,6 +160,8 @@ struct Coaxial<N: Real> {
 }
 
 impl<N: Real> Coaxial<N> {
+    /// Turns the second axis into the direction of the first; `None` unless the solids are nearly
+    /// coaxial.
     fn new(first: AxialOutline<N>, mut second: AxialOutline<N>) -> Option<Self> {
         if first.axis.dot(&second.axis) < N::ZERO {
             let [top, bottom] = second.corners;
@@ -230,6 +234,7 @@ struct AxialExit<N: Real> {
     normal: Vector<N, 2>,
     /// Unit vector in the frame of the first solid.
     along: Vector<N, 3>,
+    /// Depth of the overlap along the direction.
     depth: N,
 }
 

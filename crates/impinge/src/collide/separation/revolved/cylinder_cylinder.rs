@@ -137,6 +137,7 @@ struct CylinderPair<N: Real> {
 }
 
 impl<N: Real> CylinderPair<N> {
+    /// Places each cylinder in the frame of the other, in units of the pair.
     fn new(first: &Cylinder<N>, second: &Cylinder<N>, pose12: &Pose<N, 3>, shrink: N) -> Self {
         let [size1, size2] = [first, second].mapped(|solid| Size {
             half: solid.half_height() * shrink,
@@ -159,6 +160,7 @@ impl<N: Real> CylinderPair<N> {
         }
     }
 
+    /// Tries the directions in order: caps, both axes, sides, rims.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let [first, second] = &self.views;
         let tries: [(Attempt<'_, N>, bool); 6] = [

@@ -111,8 +111,11 @@ fn seen_from_second<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<
 /// pair.
 struct RevolvedMeeting<'a, N: Real> {
     flat: FlatCore<'a, N, 3>,
+    /// Pose of the round solid in the frame of the flat one.
     pose12: &'a Pose<N, 3>,
+    /// Translation of `pose12` in units of the pair.
     shift: Vector<N, 3>,
+    /// Factor from lengths of the shapes to units of the pair.
     shrink: N,
     profile: Profile<N>,
 }
@@ -120,6 +123,7 @@ struct RevolvedMeeting<'a, N: Real> {
 /// A point of the flat solid with the direction along which it is nearest to the round one.
 #[derive(Clone, Copy)]
 struct RevolvedPlace<N: Real> {
+    /// In the frame of the round solid, in units of the pair.
     point: Vector<N, 3>,
     /// The point of the round solid across from `point`.
     nearest: Vector<N, 3>,
@@ -137,6 +141,8 @@ enum NearestHull<N: Real> {
 }
 
 impl<N: Real> RevolvedMeeting<'_, N> {
+    /// Runs the search from the vertex nearest along the first direction; then tries faces and
+    /// caps.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
         let first = self.lowest(&self.profile.seen_from(middle).outward);
@@ -165,6 +171,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         self.placed(&self.flat.core_support(&toward).coords)
     }
 
+    /// Returns the place of a single point.
     fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, RevolvedPlace<N>) {
         (
             NearestHull::Point(point),

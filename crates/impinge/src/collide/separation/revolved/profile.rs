@@ -82,6 +82,7 @@ impl<N: Real> Profile<N> {
         ProfileView { point, distance, outward, part, aside, away, offset }
     }
 
+    /// Returns the nearest part of a cylinder, the distance, and the `offset` of the view.
     fn of_cylinder(&self, x: N, y: N) -> (ProfilePart, N, Vector<N, 2>) {
         let up = if y < N::ZERO { -N::ONE } else { N::ONE };
         let (beside, above) = (x - self.round.radius, y.abs() - self.round.half);
@@ -95,6 +96,7 @@ impl<N: Real> Profile<N> {
         }
     }
 
+    /// Returns the nearest part of a cone, the distance, and the `offset` of the view.
     fn of_cone(&self, x: N, y: N) -> (ProfilePart, N, Vector<N, 2>) {
         let from_rim = Vector::<N, 2>::new(x - self.round.radius, y + self.round.half);
         let (below, above) = (-from_rim.y, self.slant.dot(&from_rim));

@@ -41,8 +41,11 @@ pub(super) fn resolve<N: Real>(
 
 /// A solid in the frame of another.
 struct RoundView<N: Real> {
+    /// The solid at the origin of the frame, about the y axis.
     own: Profile<N>,
+    /// The solid whose corners are tried.
     other: Profile<N>,
+    /// Middle of the other solid, and its rotation.
     center: Vector<N, 3>,
     rotation: Matrix<N, 3>,
     /// Axis of the other solid, towards its apex or positive end.

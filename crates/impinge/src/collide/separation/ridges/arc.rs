@@ -150,6 +150,7 @@ impl<N: Real> ArcSearch<N> {
         Self { least, best: None, gap }
     }
 
+    /// Records the depth along `u`, given the highest line there.
     pub(super) fn note(&mut self, u: &Vector<N, 2>, highest: &RidgeLine<N>) {
         let depth = highest.at(u);
         if depth < self.least {

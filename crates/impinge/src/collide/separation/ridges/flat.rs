@@ -79,6 +79,7 @@ impl<N: Real> Flat<N> {
         lowest
     }
 
+    /// Transforms vertices and normals to the frame of the round solid; normals are negated.
     fn place(&mut self, turn: &Matrix<N, 3>, translation: &Vector<N, 3>) {
         for vertex in &self.own_vertices {
             self.vertices.push(turn * (vertex - translation));
@@ -98,6 +99,8 @@ impl<N: Real> Flat<N> {
         self.edges.push(Edge { vertices, normals });
     }
 
+    /// Extracts a segment: four normals across it, and four arcs between them. `None` if it has no
+    /// length.
     fn fill_segment(&mut self, ends: [&Point<N, 3>; 2], shrink: N) -> Option<()> {
         self.own_vertices.extend(ends.mapped(|end| end.coords * shrink));
         let along = self.own_vertices[1] - self.own_vertices[0];
@@ -108,6 +111,7 @@ impl<N: Real> Flat<N> {
         Some(())
     }
 
+    /// Extracts a triangle: both of its normals and those of its side planes. `None` if it is thin.
     fn fill_triangle(&mut self, triangle: &Triangle<N, 3>, shrink: N) -> Option<()> {
         let corners = triangle.corners().mapped(|corner| corner.coords * shrink);
         self.own_vertices.extend(corners);
@@ -148,6 +152,7 @@ impl<N: Real> Flat<N> {
         }
     }
 
+    /// Extracts a hull: all faces and edges. `None` above [`MAX_VERTICES`].
     fn fill_polytope(&mut self, polytope: &Polytope<N, 3>, shrink: N) -> Option<()> {
         if polytope.vertices().len() > MAX_VERTICES {
             return None;

@@ -10,15 +10,20 @@ use crate::shape::Kind;
 /// The unit normals of a round side: their components away from the axis and along it, and the
 /// extent of the solid along each of them.
 pub(super) struct Slope<N> {
+    /// Component of the unit normals away from the axis.
     pub(super) aside: N,
+    /// Component along the axis.
     pub(super) along: N,
+    /// Extent of the solid along the normals.
     pub(super) reach: N,
 }
 
 /// A cylinder, or a cone with its apex up, in units of the pair.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Round<N: Real> {
+    /// Half the height.
     pub(in super::super) half: N,
+    /// Radius of cylinder or base.
     pub(in super::super) radius: N,
     pub(in super::super) is_cone: bool,
 }

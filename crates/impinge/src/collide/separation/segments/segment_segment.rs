@@ -87,11 +87,14 @@ fn best_normal<N: Real>(
 struct Widest<'a, N: Real> {
     ends1: &'a [Point<N, 3>; 2],
     ends2: &'a [Point<N, 3>; 2],
+    /// Gaps that differ by less count as equal.
     noise: N,
+    /// Largest gap so far and its normal.
     best: Option<(N, Vector<N, 3>)>,
 }
 
 impl<N: Real> Widest<'_, N> {
+    /// Takes a normal if its gap is larger by more than noise.
     fn consider(&mut self, normal: Option<Vector<N, 3>>) {
         let Some(normal) = normal else { return };
         let gap = gap_along(&normal, self.ends1, self.ends2);

@@ -48,6 +48,7 @@ pub(super) struct TriangleAxes<N> {
     pub(super) corners: [[[N; LANES]; 3]; 3],
     /// Unit vectors from the triangle to the solid, in the frame of the solid.
     pub(super) normals: [[N; LANES]; 3],
+    /// Signed distances along `normals`, in units of each pair.
     pub(super) gaps: [N; LANES],
     /// Feature numbers, decoded by [`AxisFeature`].
     pub(super) features: [N; LANES],
@@ -55,6 +56,7 @@ pub(super) struct TriangleAxes<N> {
 
 /// The features that a direction is perpendicular to.
 pub(super) enum AxisFeature {
+    /// The triangle's own normal.
     Triangle,
     /// A face of the solid.
     Face(usize),
@@ -141,6 +143,7 @@ impl<N: Real> TriangleQuery<'_, N> {
 /// The best directions so far, unit vectors from the triangles to the solid.
 #[derive(Clone, Copy)]
 struct TriangleAxis<V> {
+    /// Signed distance along the direction, in units of the pair.
     gap: V,
     normal: [V; 3],
     feature: V,
@@ -177,6 +180,7 @@ struct PlacedPacket<'a, S, N: Real, V> {
     given: [[V; 3]; 3],
     /// Corners in the frame of the solid, in units of the pairs.
     corners: [[V; 3]; 3],
+    /// Unit of each pair and its reciprocal, as rows and as vectors.
     scales: [N; LANES],
     shrinks: [N; LANES],
     scale: V,
@@ -186,6 +190,7 @@ struct PlacedPacket<'a, S, N: Real, V> {
 }
 
 impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
+    /// Loads a packet, computes the units, and transforms the corners to the frame of the solid.
     #[inline(always)]
     fn new(simd: S, query: &TriangleQuery<'a, N>, tiles: &PartPacket<N, 3>) -> Self {
         let origin: [V; 3] = spread(simd, &query.parts.origin);
@@ -215,6 +220,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         (gap * self.scale).simd_gt(self.beyond) & has_units
     }
 
+    /// Writes the best directions and the masks to rows.
     #[inline(always)]
     fn stored(&self, best: &TriangleAxis<V>, beyond: V::Mask, known: V::Mask) -> TriangleAxes<N> {
         let blank = [N::ZERO; LANES];

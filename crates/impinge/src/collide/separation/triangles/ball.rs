@@ -49,6 +49,7 @@ pub(crate) struct BallQuestion<'a, N: Real> {
     /// Triangles farther than `limit` from the surface of the ball are skipped, and those whose
     /// boxes do not overlap `within`.
     pub(crate) limit: N,
+    /// Box of interest, in the frame of the triangles.
     pub(crate) within: Aabb<N, 3>,
 }
 
@@ -76,6 +77,7 @@ fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) ->
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
+/// Finds near triangles packet by packet, then which of them a neighbour hides.
 #[inline(always)]
 fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -153,6 +155,7 @@ struct NearestFeatures<N> {
 
 /// Eight triangles relative to the centre of the ball.
 struct TrianglePacket<V> {
+    /// Corners relative to the centre of the ball.
     corners: [[V; 3]; 3],
     /// Squared lengths of the sides, from each corner to the next.
     squares: [V; 3],
@@ -170,6 +173,7 @@ struct TrianglePacket<V> {
 }
 
 impl<V> TrianglePacket<V> {
+    /// Computes nearest points and barycentric coordinates of a packet.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,

@@ -59,6 +59,7 @@ pub(crate) struct TiledTriangles<'a, N: Real> {
 /// Distance of a triangle and a solid, in the frame of the triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleGap<N: Real> {
+    /// Signed distance along the normal.
     pub(crate) distance: N,
     /// Unit, from the triangle to the solid.
     pub(crate) normal: Vector<N, 3>,
@@ -103,11 +104,14 @@ struct TriangleQuery<'a, N: Real> {
     parts: &'a TiledTriangles<'a, N>,
     solid: &'a Polyhedral<'a, N>,
     pose12: &'a Pose<N, 3>,
+    /// Distance up to which contacts are asked for; close to it a case is not plain.
     prediction: N,
+    /// Triangles farther than this are skipped.
     limit: N,
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
+    /// Packs the triangles that are meant, eight at a time, and visits those within the limit.
     fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut places, mut first) = (self.parts.places(), 0);
         loop {

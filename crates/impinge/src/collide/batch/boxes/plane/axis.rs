@@ -14,7 +14,9 @@ pub(super) struct BestSide<V, M> {
     pub(super) is_y: M,
     /// Unit vector from the first box to the second.
     pub(super) normal: [V; 2],
+    /// Signed distance along the normal.
     pub(super) gap: V,
+    /// Rounding error of lengths of the pair.
     pub(super) noise: V,
     /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
@@ -22,7 +24,9 @@ pub(super) struct BestSide<V, M> {
 
 /// The side of one box with the larger gap.
 struct AxisSide<V, M> {
+    /// Signed distance along the best axis of the box.
     gap: V,
+    /// It is the box's second axis.
     is_y: M,
     /// The other box is on the positive side of the axis.
     is_positive: M,
@@ -86,6 +90,8 @@ impl<V> Boxes<V, 2> {
             |i| t[i].abs() - self.half1[i] - reach2[i],
         );
         let is = [t[0].simd_ge(zero), t[1].simd_gt(zero)];
+        // Ties go by the outline: below, right, above, left. So x is first only for right and
+        // above.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
         let first = side(gaps, is_y, is);
         let seen = [dot(&r[0], t), dot(&r[1], t)];
@@ -94,11 +100,13 @@ impl<V> Boxes<V, 2> {
             |j| seen[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
         );
         let is = [seen[0].simd_gt(zero), seen[1].simd_ge(zero)];
+        // The side of the second box is opposite to the normal: x is first only for left and below.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & (is[0] | is[1]));
         (first, side(gaps, is_y, is))
     }
 }
 
+/// Selects the side on the second axis where `is_y`.
 #[inline(always)]
 fn side<S: Simd, V: Wide<S, Mask = M>, M: SimdMask<S>>(
     gaps: [V; 2],

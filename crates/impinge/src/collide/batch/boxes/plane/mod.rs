@@ -33,9 +33,13 @@ const SLOTS: usize = 4;
 /// Results of the kernel for `L` pairs.
 pub(in super::super) struct LaneSides<N: Real, const L: usize> {
     slots: Slots<N, 2, SLOTS, L>,
+    /// Signed distance of the boxes.
     gap: [N; L],
+    /// Lengths up to this are rounding errors.
     tolerance: [N; L],
+    /// Half the diagonal of the smaller box.
     size: [N; L],
+    /// Unit, from the first box to the second, in the frame of the first.
     normal: [[N; L]; 2],
     /// Masks, after `turn` a byte for each pair: the axis across the lower side is the second; that
     /// side is on its positive side; both for the upper side, in its own box; the lower side is the
@@ -106,6 +110,7 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
 }
 
 impl<N: Real, const L: usize> LaneSides<N, L> {
+    /// Runs the kernel: axis, sides, slots. Lanes beyond the prediction stop after the axis.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -114,6 +119,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
         let is_asked = bits(is_near) & inputs.is_usable;
+        // Valid for batches that end here.
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
         if is_asked == 0 {
             return;
@@ -156,6 +162,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         (self.sides, self.at_ends) = (turned(self.sides), turned(self.at_ends));
     }
 
+    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
     fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
         let names = SideNames { sides: self.sides[lane], at_ends: self.at_ends[lane] };

@@ -43,7 +43,9 @@ fn part(parts: &PartNames, id: FeatureId) -> Option<usize> {
 /// whether it is at the first or the second end of the other side.
 #[derive(Clone, Copy)]
 pub(super) struct SideNames {
+    /// Byte of the pair in `LaneSides::sides`.
     pub(super) sides: u8,
+    /// Byte of the pair in `LaneSides::at_ends`: two bits for each slot.
     pub(super) at_ends: u8,
 }
 

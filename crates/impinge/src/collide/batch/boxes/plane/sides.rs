@@ -38,10 +38,12 @@ pub(super) struct BoxSides<V, M> {
     pub(super) is_turned: M,
     /// Ends of the upper side, the one with the smaller place first.
     ends: [End<V>; 2],
+    /// Length of the upper side along the lower one.
     length: V,
     /// Lanes where the upper side is tilted too far; where its second end faces the other box.
     is_corner: M,
     is_second_lower: M,
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
     /// Lanes where neither side is too short.
     pub(super) is_fit: M,
@@ -50,13 +52,16 @@ pub(super) struct BoxSides<V, M> {
 /// A point by its place along the lower side and its height above it.
 #[derive(Clone, Copy)]
 struct End<V> {
+    /// Coordinate along the lower side, zero at its middle.
     place: V,
+    /// Height above the lower side, outward from its box.
     height: V,
 }
 
 /// An end of one side, compared with the other side.
 struct SideCandidate<V, M> {
     end: End<V>,
+    /// It lies beside the other side's inside or its ends, up to rounding.
     is_inside: M,
     /// Lanes where it is at the first end of the other side, and at the second.
     at_end: [M; 2],
@@ -226,6 +231,7 @@ impl<V, M> BoxSides<V, M> {
 
 /// The side of the other box that is most aligned with the lower one.
 struct Upper<V, M> {
+    /// Masks and ends as in [`BoxSides`].
     is_own_y: M,
     is_positive: M,
     is_turned: M,
@@ -259,6 +265,7 @@ impl<V, M> Upper<V, M> {
         );
         let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
         let (across, lean) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
+        // The limit of supporting features: `FACING_SINE_SQUARED`.
         let is_aligned = (lean * lean).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
         let zero = V::all(simd, N::ZERO);
         let is_positive = across.simd_gt(zero);

@@ -15,7 +15,9 @@ pub(super) struct BestAxis<V, M> {
     pub(super) is_edges: M,
     /// Unit vector from the first box to the second.
     pub(super) normal: [V; 3],
+    /// Signed distance along the normal.
     pub(super) gap: V,
+    /// Rounding error of lengths of the pair.
     pub(super) noise: V,
     /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
@@ -72,6 +74,7 @@ impl<V> Boxes<V, 3> {
         let (face, is_second, gap) = self.best_face(simd, &leans);
         let noise = self.noise(simd);
         let (edges, bound) = self.best_edges(simd, &leans, (gap + noise).larger(gap));
+        // The axes are negative if no pair of edges is better.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
         let ends = [is_edges.select(edges[0], face), is_edges.select(edges[1], face)];
@@ -131,6 +134,8 @@ impl<V> Boxes<V, 3> {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[j][i1] - t[i1] * r[j][i2];
                 let reach1 = self.half1[i1] * leans[j][i2] + self.half1[i2] * leans[j][i1];
+                // Components of the product on the other axes of the second box; see
+                // `BoxPair::best_edges`.
                 let lean1 = (r[j][i1] * r[j1][i2] - r[j][i2] * r[j1][i1]).abs();
                 let lean2 = (r[j][i1] * r[j2][i2] - r[j][i2] * r[j2][i1]).abs();
                 let reach2 = self.half2[j1] * lean1 + self.half2[j2] * lean2;

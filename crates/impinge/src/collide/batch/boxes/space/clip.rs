@@ -46,10 +46,15 @@ impl Corners {
 
 /// A corner of one face, relative to the other face.
 struct CornerPlace<V, M> {
+    /// Coordinates along the axes `u` and `v` of the rectangle.
     flat: [V; 2],
+    /// Height above the rectangle along the normal.
     height: V,
+    /// It lies inside the other face, or outside by at most twice the tolerance.
     is_inside: M,
+    /// For each axis of the other face: it is at one of its ends, up to the tolerance.
     at_end: [M; 2],
+    /// For each axis of the other face: it is on the positive side.
     beyond: [M; 2],
 }
 
@@ -69,6 +74,7 @@ pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     faces: &'a FacesInLanes<V, M>,
     /// Supporting features of the rectangle and of the parallelogram.
     shown: [ShownFaces<M>; 2],
+    /// Collects heights and level candidates while the slots are filled.
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS, L>,
     corners: &'a mut Corners,
@@ -134,6 +140,7 @@ where
     fn above(&self, corner: usize) -> CornerPlace<V, M> {
         let (flat, height) = self.arm_end(SIGNS[corner]);
         let across = &self.faces.across;
+        // Distances inside the sides of the rectangle, along both of its axes.
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
         let mut place = self.place((flat, height), inside, flat);
         if self.is_partial {
@@ -148,6 +155,7 @@ where
         let signs = SIGNS[corner];
         let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
         let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
+        // Coordinates along the arms are 1 and -1 at the sides of the parallelogram.
         let arm = [flat[0] - faces.center[0], flat[1] - faces.center[1]];
         let along =
             [cross(&arm, &faces.arms[1]) / faces.area, cross(&faces.arms[0], &arm) / faces.area];
@@ -184,6 +192,7 @@ where
         }
     }
 
+    /// Stores a corner in its slot, and its position relative to the other face.
     #[inline(always)]
     fn corner(&mut self, slot: usize, place: &CornerPlace<V, M>) {
         for axis in 0..2 {
@@ -221,6 +230,7 @@ where
         let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
         let at = signed(across[axis], is_positive);
         let (before, after) = (from.0[axis] - at, to.0[axis] - at);
+        // Both ends farther than the tolerance from the line, on opposite sides.
         let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
         let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
         if M::LEN == 1 && !(leaves | enters).any_true() {

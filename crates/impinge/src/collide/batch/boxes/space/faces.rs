@@ -32,6 +32,7 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) is_w: [M; 3],
     /// Normal away from the rectangle's box, by its axes in turn.
     toward: [V; 3],
+    /// Lanes where the rectangle is on the positive side of its axis.
     pub(super) is_upward: M,
     /// Half extent of the rectangle's box across it, and along its sides.
     pub(super) half: V,
@@ -42,15 +43,23 @@ pub(super) struct FacesInLanes<V, M> {
     /// positive side.
     pub(super) is_m: [M; 3],
     pub(super) is_positive: M,
+    /// Components of the normal along the axes of the parallelogram, as it faces the rectangle.
     leans_above: [V; 2],
     /// Lanes where neither face is tilted too far, so that all of both is used.
     pub(super) is_whole: M,
+    /// Centre of the parallelogram in the coordinates `u`, `v` of the rectangle.
     pub(super) center: [V; 2],
+    /// Vectors from the centre to the middles of two sides of the parallelogram.
     pub(super) arms: [[V; 2]; 2],
+    /// Height of the centre above the rectangle, along the normal.
     pub(super) height: V,
+    /// How much higher the end of each arm is than the centre.
     pub(super) climbs: [V; 2],
+    /// Cross product of the arms: a quarter of the area, with a sign.
     pub(super) area: V,
+    /// Distances of the centre from the sides at the ends of the arms.
     pub(super) widths: [V; 2],
+    /// Lengths up to this are rounding errors.
     pub(super) tolerance: V,
     /// Lanes where neither face is too narrow.
     pub(super) is_fit: M,
@@ -82,16 +91,21 @@ fn sign<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, is_positive: V::Mask)
 
 /// The rectangle of the two faces.
 struct Below<V, M> {
+    /// Lanes where the rectangle is the second box's.
     is_second: M,
+    /// Masks of the axis across the rectangle.
     is_w: [M; 3],
     /// Normal away from the rectangle's box, by the axes of the box.
     toward: [V; 3],
     /// Components of `toward` by the axes in turn.
     in_turn: [V; 3],
     is_upward: M,
+    /// Half extents of the rectangle's box, by the axes in turn.
     half: [V; 3],
 }
 
+/// Chooses the rectangle: the face of the separating axis, or, between edges, the most aligned face
+/// of the first box. If that is tilted too far and the second box's is not, it is the second box's.
 #[inline(always)]
 fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
@@ -192,6 +206,7 @@ impl<V, M> FacesInLanes<V, M> {
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
         let half = in_turn(&is_m, &either(below.is_second, &boxes.half1, &boxes.half2));
         let [x, y, z] = &rotation;
+        // From the centre of the box to that of its face.
         let up = arm(&is_m, [x, y, z], half[0]);
         let outward: V = sign(simd, is_positive);
         let from_plane =

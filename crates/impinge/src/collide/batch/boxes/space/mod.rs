@@ -34,9 +34,13 @@ const SLOTS: usize = 24;
 pub(in super::super) struct LaneFaces<N: Real, const L: usize> {
     slots: Slots<N, 3, SLOTS, L>,
     corners: Corners,
+    /// Signed distance of the boxes.
     gap: [N; L],
+    /// Lengths up to this are rounding errors.
     tolerance: [N; L],
+    /// Half the diagonal of the smaller box.
     size: [N; L],
+    /// Unit, from the first box to the second, in the frame of the first.
     normal: [[N; L]; 3],
     /// Masks: the axis across the rectangle is the first, or the second; the rectangle is on the
     /// positive side of it; these three for the parallelogram; the rectangle is the second box's.
@@ -106,6 +110,7 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
 }
 
 impl<N: Real, const L: usize> LaneFaces<N, L> {
+    /// Runs the kernel: axis, faces, slots. Lanes beyond the prediction stop after the axis.
     #[inline(always)]
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
@@ -121,6 +126,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         let faces = FacesInLanes::meeting(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
+        // If no face of the batch is tilted too far, nothing of the faces has to be excluded.
         let is_partial = bits(!faces.is_whole) & is_asked != 0;
         let is_found = self.fill::<S, V>(simd, &boxes, &faces, &limits, is_partial);
         self.is_built = bits(is_found & faces.is_fit) & is_asked;
@@ -148,6 +154,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         self.columns = Columns::of(self);
     }
 
+    /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
     fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {

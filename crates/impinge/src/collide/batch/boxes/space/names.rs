@@ -29,6 +29,7 @@ const NONE: u8 = u8::MAX;
 
 /// Features of a face of a box.
 struct FaceNames {
+    /// Feature of each part.
     parts: [FeatureId; PARTS],
     /// Part of each feature, by kind and number.
     part_of: [u8; 3 * NUMBERS],
@@ -42,6 +43,7 @@ static FACES: [[FaceNames; 2]; 3] = [
 ];
 
 impl FaceNames {
+    /// Lists the features of the face of `axis`.
     const fn new(axis: usize, is_positive: bool) -> Self {
         let mut parts = [face(axis, is_positive); PARTS];
         let mut part_of = [NONE; 3 * NUMBERS];
@@ -90,6 +92,7 @@ const fn face(axis: usize, is_positive: bool) -> FeatureId {
     FeatureId::Face(FIRST[axis] + !is_positive as u32)
 }
 
+/// Returns the feature of a part of the face across `w`, given 0, 1 or 2 for both axes.
 const fn part_of_face(w: usize, is_positive: bool, [first, second]: [u8; 2]) -> FeatureId {
     let (u, v) = ((w + 1) % 3, (w + 2) % 3);
     match (first, second) {
@@ -141,6 +144,7 @@ const fn own_pairs() -> [u8; PLACES] {
 /// Both parts of each pair.
 static PARTS_OF: [[u8; 2]; PAIRS] = parts_of();
 
+/// Computes [`PARTS_OF`].
 const fn parts_of() -> [[u8; 2]; PAIRS] {
     let mut all = [[0; 2]; PAIRS];
     let mut pair: u8 = 0;
@@ -155,6 +159,7 @@ const fn parts_of() -> [[u8; 2]; PAIRS] {
 /// corner of the rectangle.
 static SLOTS_OF: [[u8; 2]; PAIRS] = slots_of();
 
+/// Computes [`SLOTS_OF`]: each slot is entered for all pairs that it may have.
 const fn slots_of() -> [[u8; 2]; PAIRS] {
     let mut all = [[NONE; 2]; PAIRS];
     let mut slot: u8 = 0;
@@ -183,9 +188,11 @@ const ONES: u64 = 0x0101_0101_0101_0101;
 pub(super) struct BoxPairNames {
     rectangle: &'static FaceNames,
     parallelogram: &'static FaceNames,
+    /// The rectangle is the second box's.
     is_second: bool,
     /// Bits of the faces, at their position in a code.
     faces: u32,
+    /// Pair of parts of each slot.
     pairs: [u8; PLACES],
 }
 
@@ -203,6 +210,7 @@ impl BoxPairNames {
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
         let mut pairs = OWN_PAIRS;
+        // A byte for each corner: its own part, and the part of the other face that it lies on.
         let own = u64::from_le_bytes([
             pairs[0], pairs[1], pairs[2], pairs[3], pairs[4], pairs[5], pairs[6], pairs[7],
         ]);
@@ -278,6 +286,7 @@ pub(super) fn parts_at(
     at_end: &[[u8; CORNERS]; 2],
     beyond: &[[u8; CORNERS]; 2],
 ) -> u64 {
+    // 0 at the negative end, 1 between, 2 at the positive end.
     let third = |axis: usize| {
         let at_end = u64::from_le_bytes(at_end[axis]) >> lane & ONES;
         let beyond = u64::from_le_bytes(beyond[axis]) >> lane;

@@ -37,6 +37,7 @@ impl<M> ShownFaces<M> {
         let squares = [leans[0] * leans[0], leans[1] * leans[1]];
         let is_all = Self::is_all(simd, leans);
         let [one, other] = [leans[0].abs(), leans[1].abs()];
+        // The weaker tilt is free first; ties go by the order of the box's axes.
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
             is_free: [
@@ -96,6 +97,8 @@ impl<M> ShownFaces<M> {
             & (self.is_free[1] | (at_end[1] & !y & self.is_free[0]))
     }
 
+    /// Returns the lanes where the feature is at this end of an axis, if it does not extend along
+    /// it.
     #[inline(always)]
     fn is_at<S: Simd>(&self, axis: usize, is_positive: bool) -> M
     where
