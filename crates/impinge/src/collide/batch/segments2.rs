@@ -11,6 +11,8 @@
 //! ```
 //!
 //! `from` is the larger of the low places, `to` the smaller of the high ones. Each gives a contact.
+//! Reads of [`Inputs`]: both poses, both `radii`, the ends of both cores, `prediction` and `sine`.
+//! Lanes whose contacts rounding would decide, and requests for a single point, fall back.
 
 use super::PairQuestion;
 use super::closed_form::{Form, LaneContacts};
