@@ -4,7 +4,7 @@
 //!                 lane 0  lane 1  ...  lane 7
 //!   rotation  x   pair 0  pair 1  ...  pair 7      rows of coordinates; `rotation` by columns
 //!   rotation  y   pair 0  pair 1  ...  pair 7
-//!   ...                                            lanes without a pair stay zero and unread
+//!   ...                                            lanes without a pair: zeros, results unread
 //!   shrink        pair 0  pair 1  ...  pair 7
 //!   limit         pair 0  pair 1  ...  pair 7      hulls and triangles: same vertices in all lanes
 //! ```

@@ -81,9 +81,10 @@ impl<N: Real> TiledTriangles<'_, N> {
     }
 }
 
-/// Visits the triangles within `limit` of a solid, with the gap where the case is plain. The solid
-/// lies at `pose12` in the frame of the triangles, relative to their origin. Returns `false` for
-/// solids without a kernel here. `limit` is `prediction` plus what turning adds to it.
+/// Visits the triangles that are not certainly farther than `limit` from a solid, with the gap
+/// where the case is plain. The solid lies at `pose12` in the frame of the triangles, relative to
+/// their origin. Returns `false` for solids without a kernel here. `limit` is `prediction` plus
+/// what turning adds to it.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
