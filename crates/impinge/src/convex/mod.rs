@@ -12,9 +12,9 @@
 //! [`separation`] returns the signed distance of two convex solids with radii. It runs on their
 //! cores: the difference of the cores (all `b − a`) is searched for its point nearest to the origin
 //! ([`gjk`]) or, if it contains the origin, for its nearest supporting plane (`epa2`, `epa3`). A
-//! normal `n` is never trusted for how it was found, only for its *certificate*: the height `h(n) =
-//! min n·b − max n·a`, by two support points, up to which `n` separates the cores. The signed
-//! distance is the largest height over all unit vectors. For curved cores that provide their
+//! normal `n` is never trusted for how it was found, only for its *certificate*: the height
+//! `h(n) = min n·b − max n·a`, by two support points, up to which `n` separates the cores. The
+//! signed distance is the largest height over all unit vectors. For curved cores that provide their
 //! curvature, Newton's method computes the last digits (`polish`).
 //!
 //! All this happens in units in which the pair is about 1 large (`difference`), reached by an exact
@@ -67,14 +67,14 @@ use gjk::Answer;
 /// it always is, for finite input. NaN or infinity in the pose gives `None`.
 ///
 /// `distance` is the certificate of `normal`. Let `s` be the sum of the reaches of the cores and of
-/// the distance of their origins. `distance` falls short of the exact value by a few `N::EPSILON ·
-/// s` for flat-faced cores and for curved ones that provide their curvature
-/// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and `2⁻⁴⁰ ·
-/// s`. If a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or cones,
-/// the ring of a round side is searched ([`SupportMap::round_side`]). Only if there is none, and
-/// all normals around are about as good, as in the middle of a ball, a local search ends the work,
-/// which may fall short by more. The points lie on the cores to the same accuracy; on curved cores
-/// without curvature to about its square root at worst. Of several equally good normals (for
+/// the distance of their origins. `distance` falls short of the exact value by a few
+/// `N::EPSILON · s` for flat-faced cores and for curved ones that provide their curvature
+/// ([`SupportMap::curved_support`]); for other curved ones by about the larger of that and
+/// `2⁻⁴⁰ · s`. If a whole ring of normals is nearly as good, as deep in nearly coaxial cylinders or
+/// cones, the ring of a round side is searched ([`SupportMap::round_side`]). Only if there is none,
+/// and all normals around are about as good, as in the middle of a ball, a local search ends the
+/// work, which may fall short by more. The points lie on the cores to the same accuracy; on curved
+/// cores without curvature to about its square root at worst. Of several equally good normals (for
 /// coincident centres, say) the same one is chosen each time. Cores that are single coincident
 /// points have no direction: the first axis is taken.
 ///

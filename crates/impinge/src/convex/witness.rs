@@ -1,9 +1,9 @@
 //! The points of the two cores that a normal and its height belong to.
 //!
 //! A mix of points of the difference is the difference of the mixes of the points of the cores that
-//! they come from. These lie in the cores, which are convex. If the mix is the point `height ·
-//! normal`, both lie on the supporting planes of the normal: none of the mixed points is lower than
-//! the height, so none is higher. So the error is the distance of a mix from that point.
+//! they come from. These lie in the cores, which are convex. If the mix is the point
+//! `height · normal`, both lie on the supporting planes of the normal: none of the mixed points is
+//! lower than the height, so none is higher. So the error is the distance of a mix from that point.
 
 use super::Separation;
 use super::candidate::SupportCandidate;

@@ -84,6 +84,10 @@ impl<N: Space<D>, const D: usize> PairQuestion<'_, N, D> {
 }
 
 /// Pairs of the same kinds whose manifolds the caller keeps.
+///
+/// For each index in order, [`update`] calls `begin` while it gathers, then `raw`, then `parts` if
+/// the pair falls back, and last `end`. The pairs of the next batch begin before those of this one
+/// end.
 pub(crate) trait KeptPairs<N: Real, const D: usize> {
     /// The number of pairs.
     fn len(&self) -> usize;
@@ -302,6 +306,7 @@ fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const
 ) {
     let (mut now, mut next) = (&mut Inputs::<N, D, L>::new(), &mut Inputs::new());
     let mut found = B::blank::<L>();
+    // Two buffers: one is computed while the other is already gathered.
     now.gather::<B, P>(pairs, 0);
     while now.count > 0 {
         next.gather::<B, P>(pairs, now.first + now.count);

@@ -30,11 +30,11 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
 ///
 /// After D. Eberly, "Distance from a Point to an Ellipse, an Ellipsoid, or a Hyperellipsoid"
 /// (2013): the point `x` of the surface nearest to `y` has `x = e² y / (e² + s)` in each
-/// coordinate, where `e` is the half axis and `s` the root of one convex function. Here `t = s +
-/// least²` is solved for, counted from the shortest half axis, so that flat and needle-like
-/// ellipsoids are as accurate as round ones. Newton's method runs on the inverse of the function's
-/// square root, which is nearly straight (J. Moré and D. Sorensen, "Computing a Trust Region Step",
-/// 1983).
+/// coordinate, where `e` is the half axis and `s` the root of one convex function. Here
+/// `t = s + least²` is solved for, counted from the shortest half axis, so that flat and
+/// needle-like ellipsoids are as accurate as round ones. Newton's method runs on the inverse of the
+/// function's square root, which is nearly straight (J. Moré and D. Sorensen, "Computing a Trust
+/// Region Step", 1983).
 pub(crate) fn project<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,
