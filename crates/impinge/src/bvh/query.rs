@@ -1,16 +1,16 @@
-//! Many boxes against a tree at once, breadth first.
+//! Queries of many boxes against a tree together, breadth first.
 //!
-//! A single search waits for memory at every block; a few hundred together do not, because the
-//! tests of one layer do not depend on each other.
+//! A single search waits for memory at every block; with a few hundred queries together the tests
+//! of one layer are independent, so their loads overlap.
 
 use super::LANES;
 use super::join::{JoinBoxes, JoinSides, Scratch};
 use super::kernel::Kernel;
 use super::tree::small;
 
-/// Appends `(slot of the first tree, slot of the second)` for each pair that began or ended with one
-/// of the listed changed slots. In a tree of its own, a pair of two changed slots is reported by the
-/// lower one.
+/// Appends `(slot of the first tree, slot of the second)` for each pair of one of the listed
+/// changed slots that began or ended. If both trees are the same, a pair of two changed slots is
+/// reported by the lower one.
 #[inline(always)]
 pub(super) fn ask<K: Kernel, const D: usize>(
     kernel: K,
@@ -48,7 +48,7 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     }
 }
 
-/// The lanes of the block whose slots are above `slot`.
+/// Returns the lanes of the block whose slots are above `slot`.
 #[inline(always)]
 fn later_lanes(slot: u32, block: u32) -> u32 {
     let own = slot / small(LANES);

@@ -1,24 +1,25 @@
-//! Trees of boxes without a past: made at once, in an order that costs more and serves longer, and changed box by box.
+//! Trees of static boxes: built at once, in an order that costs more to compute and less to search, and then changed
+//! box by box.
 //!
-//! Ranges of slots are cut where the surface area heuristic likes it best (Goldsmith and Salmon 1987;
-//! binned as by Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), but only
-//! between whole blocks of the layer at hand: all blocks but the last stay full, and child and parent
-//! arithmetic. Above a few hundred boxes a sample decides.
+//! Ranges of slots are cut by the surface area heuristic (Goldsmith and Salmon 1987; binned as by Wald, "On fast
+//! construction of SAH-based bounding volume hierarchies", 2007), but only between whole blocks of the layer: so all
+//! blocks but the last are full, and child and parent are computed from the index. Ranges of more than [`SAMPLE`] boxes
+//! are cut by a sample.
 
 use super::order::key;
 use super::tree::small;
 use super::{Bounds, LANES, Lanes, NONE, Tree};
 use crate::math::filled;
 
-/// Bins along each axis.
+/// Number of bins along each axis.
 const BINS: usize = 16;
-/// Boxes that are looked at to choose a cut.
+/// Greatest number of boxes by which a cut is chosen.
 const SAMPLE: usize = 512;
-/// From this many boxes on the two parts are sorted on two threads.
+/// Number of boxes from which both parts are sorted on two threads.
 #[cfg(feature = "parallel")]
 const PARALLEL_SORT: usize = 4096;
 
-/// A box to be given a place.
+/// A box to be sorted.
 #[derive(Clone, Copy, Debug)]
 struct StillItem<const D: usize> {
     bounds: Bounds<D>,
@@ -31,7 +32,7 @@ impl<const D: usize> StillItem<D> {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
     }
 
-    /// Orders by the middle, ties by id: a total order, so that the result is unique.
+    /// Returns the sort key on an axis: the centre, ties by id. A total order, so that the result is unique.
     #[inline]
     fn key(&self, axis: usize) -> u64 {
         key(self.middle(axis), self.id)
@@ -39,7 +40,7 @@ impl<const D: usize> StillItem<D> {
 }
 
 impl<const D: usize> Tree<D> {
-    /// The tree of boxes with different ids, settled.
+    /// Builds the tree of boxes with different ids, settled.
     pub(crate) fn of_still(lanes: Lanes, boxes: impl Iterator<Item = (u32, Bounds<D>)>) -> Self {
         let mut items: Vec<_> = boxes.map(|(id, bounds)| StillItem { bounds, id }).collect();
         arrange(&mut items);
@@ -62,10 +63,10 @@ impl<const D: usize> Tree<D> {
         tree
     }
 
-    /// Gives an object a box as if it had always had it, whether it is in the tree or not. Searches are right at
-    /// once: what is above its block follows, which takes as many steps as there are layers.
+    /// Sets the box of an object, new or known, as if it had always had it. Searches are valid at once: the path from
+    /// its block to the top is refitted.
     ///
-    /// An object that would make its block much larger gets another place.
+    /// An object that would enlarge its block much moves to another one.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.slot(id);
         if slot.is_some_and(|slot| self.has_room_for(slot / LANES, bounds)) {
@@ -81,8 +82,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-/// Brings items that start at a whole subtree into order. Each call leaves fewer or smaller children, so
-/// it ends.
+/// Sorts items that start at the boundary of a whole subtree. Ends, since each call has fewer or smaller children.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     let mut child = LANES;
     while child * LANES < items.len() {
@@ -104,8 +104,8 @@ fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     arrange(second);
 }
 
-/// The axis to cut along, and how many of the children go left; the middle of the longest axis, the
-/// first of equals, where no cut has a cost.
+/// Returns the axis to cut and the number of children on the left. If no cut has a finite cost, halves the longest
+/// axis, the first of equals.
 fn best_cut<const D: usize>(
     items: &[StillItem<D>],
     child: usize,
@@ -133,7 +133,7 @@ fn best_cut<const D: usize>(
     best
 }
 
-/// The boxes of a sample by the place of their middles.
+/// The boxes of a sample, in bins by their centres.
 struct Bins<const D: usize> {
     bounds: [Bounds<D>; BINS],
     counts: [usize; BINS],
@@ -161,8 +161,8 @@ impl<const D: usize> Bins<D> {
         bins
     }
 
-    /// Calls `visit` with the number of children on the left and the cost of each cut: what is left of
-    /// it up to the end of the bin that it falls into, and what is right of it from there on.
+    /// Calls `visit` with the number of children on the left and the cost of each cut. A cut within a bin counts that
+    /// bin on both sides.
     #[expect(clippy::cast_precision_loss, reason = "counts that weigh a heuristic")]
     fn each_cut(
         &self,
@@ -199,7 +199,7 @@ impl<const D: usize> Bins<D> {
 mod tests {
     use super::*;
 
-    /// Unit boxes in rows, and every tenth a thousand times as large.
+    /// Returns unit boxes at scattered places, and every tenth a thousand times as large.
     fn boxes(count: u32) -> Vec<Bounds<3>> {
         let place = |id: u32| {
             let x = f32::from(u16::try_from(id * 7919 % 1000).expect("small"));

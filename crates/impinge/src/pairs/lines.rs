@@ -15,7 +15,7 @@ use crate::memory::{Look, clone_fields};
 const PER_LINE: usize = 8;
 /// Links in a head, which uses the rest of its line to describe the run.
 const INLINE: usize = PER_LINE - 1;
-/// Number of idle heads beyond which, if they outnumber the others, memory is released.
+/// Idle heads are dropped when they exceed half of all heads by more than `MAX_IDLE`.
 const MAX_IDLE: usize = 256;
 /// Entry in `owned` of an object without links.
 const NO_HEAD: u32 = u32::MAX;
