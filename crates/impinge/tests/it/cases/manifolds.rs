@@ -154,7 +154,7 @@ fn turned(outline: &[[f64; 2]], angle: f64, at: [f64; 2]) -> Outline {
     outline.iter().map(|&corner| place(corner)).collect()
 }
 
-/// A solid from 0.5 below to 0.5 above its origin, and the outline of its flat ends seen from above, in coordinates x
+/// A solid from `-0.5 scale` to `0.5 scale` in height, and the outline of its flat ends seen from above, in coordinates x
 /// and z.
 struct Flat<N: Space<3>> {
     shape: ShapeHandle<N, 3>,
@@ -183,7 +183,7 @@ fn prism<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     Flat { shape: ShapeHandle::new(ConvexHull::from_points(&points)), outline }
 }
 
-/// A square of nine cells at the height 0.5, as a height field or a mesh.
+/// A square of nine cells at the height `0.5 scale`, as a height field or a mesh.
 fn floor<N: Space<3>>(random: &mut Random, scale: f64) -> Flat<N> {
     let side = 3.0 * scale;
     let outline = rectangle([0.5 * side; 2]);
@@ -219,14 +219,14 @@ fn turn_about<N: Real>(axis: [f64; 3], angle: f64) -> UnitQuaternion<N> {
 }
 
 impl<N: Space<3, Isometry = Isometry<N, UnitQuaternion<N>, 3>>> Rest<N> {
-    /// Draws a random pose that overlaps by 0.01; `None` if the ends overlap little, or if the lowest corner of the
+    /// Draws a random pose that overlaps by `0.01 scale`; `None` if the ends overlap little, or if the lowest corner of the
     /// tilted solid lies beside the lower solid.
     fn draw(makes: [Make<N>; 2], tilt: f64, scale: f64, random: &mut Random) -> Option<Self> {
         let [low, high] = makes.map(|make| make(random, scale));
         let (at, angle) = ([0.0; 2].map(|_| 1.5 * scale * random.signed()), TAU * random.signed());
         let axis = TAU * random.signed();
         let (sine, cosine) = (axis.sin(), axis.cos());
-        // The touching end is 0.5 below the axis of the tilt, so the tilt moves it aside.
+        // The touching end is `0.5 scale` below the axis of the tilt, so the tilt moves it aside.
         let slide = 0.5 * scale * tilt.sin();
         let upper = turned(&high.outline, angle, [at[0] + slide * sine, at[1] - slide * cosine]);
         let overlap = overlap(&upper, &low.outline);

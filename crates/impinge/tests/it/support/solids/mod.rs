@@ -284,7 +284,7 @@ pub(crate) fn plane_solids<N: Real>(rng: &mut Rng) -> Vec<Solid<N, 2>> {
     solids
 }
 
-/// Eight random corners, and two on each axis at both sides, so that the hull contains the origin.
+/// Eight random corners, and one on each half axis, so that the hull contains the origin.
 fn hull_corners<const D: usize>(rng: &mut Rng) -> Vec<Vector<f64, D>> {
     let mut corners: Vec<_> = (0..8).map(|_| rng.vector::<D>(2.0)).collect();
     for axis in 0..D {
