@@ -32,6 +32,7 @@ const ENDED: u32 = 1 << 31;
 pub(super) struct JoinSides<'a, const D: usize> {
     pub(super) first: &'a Tree<D>,
     pub(super) second: &'a Tree<D>,
+    /// Both are the same tree: each pair of blocks or slots is then considered once.
     pub(super) is_self: bool,
 }
 
@@ -55,8 +56,11 @@ impl Changes {
 /// Finds the pairs that began and ended; keeps the memory of task lists from call to call.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Joiner<const D: usize> {
+    /// Tasks of the present layer: pairs of blocks.
     tasks: TaskList,
+    /// Tasks of the layer below.
     next: TaskList,
+    /// Pairs of slots that began or, with [`ENDED`], ended.
     found: TaskList,
     /// Scratch: changed slots.
     slots: Vec<u32>,
@@ -66,13 +70,16 @@ pub(crate) struct Joiner<const D: usize> {
 /// Scratch lists for one chunk.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch<const D: usize> {
+    /// Pairs of a query and a block, or of a leaf block and a slot.
     pub(super) tasks: TaskList,
+    /// Pairs of a query and a block of the layer below.
     pub(super) next: TaskList,
     /// Query boxes of a chunk.
     pub(super) reaches: Vec<Bounds<D>>,
 }
 
 impl<const D: usize> Scratch<D> {
+    /// Releases the memory of lists that have been short for some time.
     fn give_back(&mut self, look: Look) {
         self.tasks.give_back();
         self.next.give_back();
@@ -134,6 +141,7 @@ impl<const D: usize> Joiner<D> {
         }
     }
 
+    /// Finds the pairs of the changed objects of the first tree by queries, and reports them.
     fn ask_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
         self.ask_changed(sides);
         self.report(sides, changes);
@@ -170,6 +178,7 @@ impl<const D: usize> Joiner<D> {
         self.slots = slots;
     }
 
+    /// Finds the pairs that began or ended by a join, layer by layer.
     fn join(&mut self, sides: JoinSides<'_, D>) {
         let nothing_changed = sides.first.changed == 0 && sides.second.changed == 0;
         if nothing_changed || sides.first.live == 0 || sides.second.live == 0 {
@@ -234,6 +243,7 @@ impl Chunks {
         }
     }
 
+    /// Returns the tasks of a chunk.
     fn range(&self, chunk: usize) -> Range<usize> {
         chunk * self.size..self.count.min((chunk + 1) * self.size)
     }
@@ -278,6 +288,7 @@ fn expand<K: Kernel, const D: usize>(
         let changed_a = u32::from(changed_a[a as usize]);
         let changed_b = u32::from(changed_b[b as usize]);
         let mut lanes = kernel.overlaps(&blocks_a[a as usize], &bounds_b[b as usize]);
+        // One of the two children must have changed.
         if changed_b == 0 {
             lanes &= changed_a;
         }
@@ -287,7 +298,10 @@ fn expand<K: Kernel, const D: usize>(
             lanes &= lanes - 1;
             let child = a * small(LANES) + lane;
             let mask = kernel.overlaps(block_b, &children[child as usize]);
+            // On the diagonal only lanes from `lane` on: each pair of children once, and each child
+            // with itself.
             let upper = u32::MAX << lane | u32::from(is_diagonal).wrapping_sub(1);
+            // All lanes of `b` if child `lane` changed, else the changed ones.
             let changed = changed_b | 0_u32.wrapping_sub(changed_a >> lane & 1);
             kernel.push(out, child, b * small(LANES), mask & upper & changed);
         }
@@ -312,6 +326,7 @@ fn join_leaves<K: Kernel, const D: usize>(
     for (&a, &b) in first.iter().zip(second) {
         let reach = &reach_b[b as usize];
         let changed = u32::from(changed_a[a as usize]);
+        // Lanes of `a` whose boxes, now or before, overlap the reach of `b`.
         let mut mask = kernel.overlaps(&blocks_a[a as usize], reach);
         if changed != 0 {
             mask |= kernel.overlaps(&before_a[a as usize], reach);
@@ -323,7 +338,8 @@ fn join_leaves<K: Kernel, const D: usize>(
     }
     let [blocks, slots] = lanes.parts();
     for (&b, &slot) in blocks.iter().zip(slots) {
-        // Arithmetic instead of an unpredictable branch.
+        // On the diagonal only lanes above that of the slot: each pair once. Arithmetic instead of an
+        // unpredictable branch.
         let is_diagonal = sides.is_self & (slot / small(LANES) == b);
         let upper = 0xfffe << (slot % small(LANES)) | u32::from(is_diagonal).wrapping_sub(1);
         let masks = boxes.differing(kernel, slot, b);
@@ -367,6 +383,7 @@ impl Overlaps {
 }
 
 impl<'a, const D: usize> JoinBoxes<'a, D> {
+    /// Borrows the leaf blocks of both trees, now and at the last settle.
     #[inline(always)]
     pub(super) fn of(sides: JoinSides<'a, D>) -> Self {
         let (first, second) = (sides.first, sides.second);
@@ -398,6 +415,7 @@ impl<const D: usize> Tree<D> {
     pub(super) fn slot_reach(&self, slot: u32) -> Bounds<D> {
         let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
         let (now, before) = (self.lane(slot as usize), self.was()[block].lane(lane));
+        // The reach of an escaped block covers the present boxes alone.
         let is_near = self.layers[0].reach[block].contains(&before);
         if is_near { now.merged(&before) } else { now }
     }

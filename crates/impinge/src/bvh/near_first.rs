@@ -73,6 +73,7 @@ pub(super) struct Open {
 }
 
 impl Open {
+    /// A block without children left to visit.
     const NOTHING: Self = Self { keys: [0.0; LANES], mask: 0, first: 0 };
 
     /// Removes and returns the child with the least key, unless that is beyond the limit.
@@ -113,6 +114,7 @@ impl Lanes {
         self.visit_near_first(trees, gaps, limit, found);
     }
 
+    /// Searches the trees one after the other; the limit that one search leaves bounds the next.
     #[inline(always)]
     fn visit_near_first<const D: usize>(
         self,
@@ -170,13 +172,16 @@ impl<const D: usize> Tree<D> {
         if top == 0 {
             return leaf(0, limit);
         }
+        // The open blocks by layer; those from `top` down to `layer` are in use.
         let (mut path, mut layer) = ([Open::NOTHING; LAYERS], top);
         path[top] = self.opened(kernel, probe, top, 0, limit);
         loop {
             match path[layer].next(kernel, limit) {
+                // No child within the limit is left: the search goes on in the parent, or ends.
                 None if layer == top => return limit,
                 None => layer += 1,
                 Some(block) if layer == 1 => {
+                    // Prefetches one of the remaining leaf blocks, though another one may come next.
                     if path[1].mask != 0 {
                         touch(path[1].first + path[1].mask.trailing_zeros());
                     }
@@ -190,6 +195,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
+    /// Opens block `number` of a layer: computes the keys of its lanes, and marks those whose child exists and may have
+    /// a key of at most `limit`.
     #[inline(always)]
     fn opened<K: Kernel>(
         &self,
@@ -222,6 +229,7 @@ impl<const D: usize> Tree<D> {
     fn touch_leaf(&self, block: u32) {
         let block = block as usize;
         let Block { lo, hi } = &self.layers[0].blocks[block];
+        // `black_box` keeps these loads, whose results are not used.
         for axis in 0..D {
             core::hint::black_box((lo[axis][0], hi[axis][0]));
         }
@@ -259,6 +267,7 @@ fn hand_out<K: Kernel>(
 ) -> f32 {
     while open.mask != 0 {
         let (mut group, mut count) = ([(NONE, 0.0); GROUP], 0);
+        // Collects the nearest lanes left. `None` means that all others are beyond the limit.
         while count < GROUP {
             let Some(slot) = open.next(kernel, limit) else {
                 open.mask = 0;
@@ -266,6 +275,7 @@ fn hand_out<K: Kernel>(
             };
             let lane = (slot - open.first) as usize % LANES;
             group[count] = (ids[lane], open.keys[lane]);
+            // An empty slot is overwritten by the next object.
             count += usize::from(ids[lane] != NONE);
         }
         if count > 0 {
@@ -299,6 +309,8 @@ impl Tree<3> {
         }
     }
 
+    /// Searches the tree; see [`Self::visit_triangles`]. In a leaf block the triangles themselves are tested, not their
+    /// boxes, and reported by ascending lane.
     #[inline(always)]
     fn near_triangles<K: Kernel>(
         &self,

@@ -23,10 +23,12 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     let Scratch { tasks, next, reaches } = scratch;
     tasks.clear();
     reaches.clear();
+    // Each query starts at the top block, with the reach of its slot.
     for (query, &slot) in (0..).zip(slots) {
         tasks.push(query, 0);
         reaches.push(sides.first.slot_reach(slot));
     }
+    // In each layer, the children that a query overlaps become the tasks of the layer below.
     for layer in sides.second.layers.iter().skip(1).rev() {
         next.clear();
         let [queries, blocks] = tasks.parts();
@@ -40,6 +42,7 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     let [queries, blocks] = tasks.parts();
     for (&query, &block) in queries.iter().zip(blocks) {
         let slot = slots[query as usize];
+        // A changed partner is left to the query with the lower slot.
         let mut lanes = 0xffff;
         if sides.is_self {
             lanes = !u32::from(leaves.changed[block as usize]) | later_lanes(slot, block);

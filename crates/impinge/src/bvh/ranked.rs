@@ -56,6 +56,7 @@ struct RankedNode {
     is_rough: bool,
 }
 
+/// A search under way.
 struct RankedSearch<'a, 'q, N: Real, const D: usize> {
     tree: &'a Tree<D>,
     gaps: Gaps<D>,
@@ -112,6 +113,7 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
         }
     }
 
+    /// Passes the object in a slot to the question, if there is one.
     fn visit(&mut self, slot: u32) {
         if let Some(id) = self.tree.id_in(slot) {
             self.question.visit(id);

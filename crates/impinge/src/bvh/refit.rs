@@ -35,6 +35,8 @@ impl<const D: usize> Tree<D> {
         self.refit_layers(by_id);
     }
 
+    /// Refits the touched leaf blocks and the layers above them, and lists the escaped blocks.
+    /// Reads changed boxes from `by_id`, unless that is empty or the tree has them already.
     pub(super) fn refit_layers(&mut self, by_id: &[Bounds<D>]) {
         self.escaped.clear();
         if !self.touched.is_empty() || self.is_restructured {
@@ -60,6 +62,7 @@ impl<const D: usize> Tree<D> {
         if self.touched.is_sorted() {
             return;
         }
+        // If many blocks are touched, a pass over the flags replaces the sort.
         let are_many = self.touched.len() * 4 > self.leaf_count();
         if are_many {
             self.touched.clear();
@@ -70,6 +73,8 @@ impl<const D: usize> Tree<D> {
         }
     }
 
+    /// Reads the changed boxes of the touched blocks from `by_id`, unless that is empty or the tree
+    /// has them already.
     fn fetch_boxes(&mut self, by_id: &[Bounds<D>]) {
         if by_id.is_empty() || !self.is_stale {
             return;
@@ -131,6 +136,7 @@ impl<const D: usize> Tree<D> {
                 parent.reaches[above].set_lane(lane, &layer.reach[block]);
                 parent.changed[above] |= u16::from(layer.changed[block] != 0) << lane;
             }
+            // Bounds of parents are computed once all their lanes are written.
             to_parents(blocks);
             for &block in blocks.iter() {
                 let block = block as usize;
@@ -155,6 +161,7 @@ impl<const D: usize> Tree<D> {
             }
             self.is_touched[block] = false;
         }
+        // Without changes there is no change bit in any layer.
         if self.changed > 0 {
             let mut dirty = core::mem::take(&mut self.touched);
             for layer in &mut self.layers {
@@ -183,9 +190,12 @@ struct Leaves<'a, const D: usize> {
 
 /// Read-only input of the refit of leaf blocks.
 struct RefitSource<'a, const D: usize> {
+    /// Boxes at the last settle.
     before: &'a [Block<D>],
     ids: &'a [u32],
+    /// Change bits by block.
     changed: &'a [u16],
+    /// Present boxes by id; empty if the blocks have them already.
     by_id: &'a [Bounds<D>],
     is_stale: bool,
     lanes: Lanes,
@@ -213,6 +223,8 @@ impl<const D: usize> Leaves<'_, D> {
         });
     }
 
+    /// Refits one leaf block: its bounds enclose the present boxes, and its reach also the old
+    /// ones, unless the block is escaped.
     #[inline(always)]
     fn refit_block<K: Kernel>(
         &mut self,
@@ -263,6 +275,7 @@ fn fetch<const D: usize>(mut changed: u16, ids: &[u32], block: &mut Block<D>, by
 }
 
 impl<const D: usize> Layer<D> {
+    /// Clears the change bits of a block; its reach becomes its bounds.
     fn settle(&mut self, block: usize) {
         self.changed[block] = 0;
         self.reach[block] = self.bounds[block];

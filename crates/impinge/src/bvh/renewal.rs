@@ -47,6 +47,7 @@ pub(super) struct Renewal<const D: usize> {
     last_of: Vec<u32>,
     before: Vec<u32>,
     ids: Vec<u32>,
+    /// The tree being filled.
     other: Tree<D>,
     /// Objects that came since the renewal began. Some may be gone.
     late: Vec<u32>,
@@ -54,16 +55,19 @@ pub(super) struct Renewal<const D: usize> {
     asked: usize,
 }
 
+/// A stage, with its progress.
 #[derive(Clone, Copy, Debug)]
 enum Stage {
     /// Route the slots from the first number up to the second.
     Route(usize, usize),
     /// Copy the list that ends with this object ([`NONE`]: empty), then the regions from this one on.
     Copy(u32, usize),
+    /// Add the objects that came in the meantime.
     Follow,
 }
 
 impl<const D: usize> Renewal<D> {
+    /// Begins a renewal: chooses the regions by a sample of the objects.
     pub(super) fn begin(tree: &Tree<D>) -> Self {
         let wanted = tree.live.div_ceil(COPIED).next_power_of_two();
         let depth = wanted.trailing_zeros().min(MAX_DEPTH);
@@ -111,6 +115,7 @@ impl<const D: usize> Renewal<D> {
         (0..steps).any(|_| self.step(tree))
     }
 
+    /// Does one step of the present stage; the other tree is settled afterwards. Returns `true` if it is complete.
     fn step(&mut self, tree: &Tree<D>) -> bool {
         match self.stage {
             Stage::Route(slot, end) => self.route(tree, slot, end),
@@ -127,10 +132,12 @@ impl<const D: usize> Renewal<D> {
         self.other
     }
 
+    /// Routes the objects in the next slots, from `slot` on, to their regions.
     fn route(&mut self, tree: &Tree<D>, slot: usize, end: usize) {
         let next = end.min(slot + ROUTED);
         for item in tree.ids[slot..next].iter().filter_map(|&id| tree.item(id)) {
             let mut at = 0;
+            // Down the tree of cuts: an index beyond the cuts is that of a region.
             while let Some(cut) = self.cuts.get(at) {
                 at = 2 * at + 1 + usize::from(cut.is_beyond(&item));
             }
@@ -141,6 +148,7 @@ impl<const D: usize> Renewal<D> {
         self.stage = if next < end { Stage::Route(next, end) } else { Stage::Copy(NONE, 0) };
     }
 
+    /// Copies the next objects of a region, sorted, to the end of the other tree.
     fn copy(&mut self, tree: &Tree<D>, mut object: u32, mut region: usize) {
         if object == NONE {
             object = self.last_of[region];

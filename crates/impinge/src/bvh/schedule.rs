@@ -208,6 +208,7 @@ impl<const D: usize> Tree<D> {
         self.settle();
     }
 
+    /// Takes a snapshot of all objects, to be sorted in steps, if the order should be renewed.
     fn start_if_worn(&mut self) {
         if self.wants_order() {
             let mut snapshot = core::mem::take(&mut self.schedule.snapshot);
@@ -226,6 +227,8 @@ impl<const D: usize> Tree<D> {
         self.is_spoilt() || (looks && self.is_worn())
     }
 
+    /// Returns `true` if the surface of leaf blocks for each object exceeds [`WORN`] times that of
+    /// the first check since the renewal.
     #[expect(clippy::cast_precision_loss, reason = "a count that weighs a heuristic")]
     fn is_worn(&mut self) -> bool {
         let surface = self.leaf_surface() / self.live as f64;

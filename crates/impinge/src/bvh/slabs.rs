@@ -48,8 +48,10 @@ impl<const D: usize> Slabs<D> {
     #[inline(always)]
     pub(crate) fn new<N: Real>(moving: &Aabb<N, D>, velocity: &Vector<N, D>, size: f32) -> Self {
         let speed = max_component(velocity);
+        // Division by a power of two changes exponents alone.
         let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
         let direction = velocity.map(|x| (x / unit).as_f32());
+        // The largest finite magnitude of a coordinate of the tree or the box.
         let mut reach = size;
         for axis in 0..D {
             for face in [moving.mins()[axis], moving.maxs()[axis]] {
@@ -102,6 +104,7 @@ impl<const D: usize> Slabs<D> {
 const STRETCH: f32 = 1.0 + QUOTIENT * f32::EPSILON;
 
 impl Scalar {
+    /// One lane after another; see [`Kernel::enter`](super::kernel::Kernel::enter).
     #[inline(always)]
     pub(super) fn enter_block<const D: usize>(
         self,
@@ -128,6 +131,7 @@ impl Scalar {
 }
 
 impl<S: Simd> WideBlock<S> {
+    /// All lanes at once; see [`Kernel::enter`](super::kernel::Kernel::enter).
     #[inline(always)]
     pub(super) fn enter_block<const D: usize>(
         self,
@@ -154,6 +158,8 @@ impl<S: Simd> WideBlock<S> {
         let (enter, leave) = self.times(block, slabs, limit);
         let is_entered = enter.simd_le(leave);
         let lanes = u32x16::load_array_ref(simd, &IOTA);
+        // The lowest four bits of each time are replaced by the lane, so that one minimum gives the
+        // nearest lane. Times are not negative: their bits have the order of the times.
         let with_lane = enter.bitcast::<u32x16<S>>() & u32x16::splat(simd, !15) | lanes;
         let all = is_entered.select(with_lane, u32x16::splat(simd, u32::MAX));
         all.store_slice(keys);

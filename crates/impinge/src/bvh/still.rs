@@ -27,6 +27,7 @@ struct StillItem<const D: usize> {
 }
 
 impl<const D: usize> StillItem<D> {
+    /// Returns the centre on an axis. Halves come first, so that the sum does not overflow.
     #[inline]
     fn middle(&self, axis: usize) -> f32 {
         self.bounds.lo[axis] * 0.5 + self.bounds.hi[axis] * 0.5
@@ -84,6 +85,7 @@ impl<const D: usize> Tree<D> {
 
 /// Sorts items that start at the boundary of a whole subtree. Ends, since each call has fewer or smaller children.
 fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
+    // The boxes in one child: the least power of 16 with which at most 16 children hold all items.
     let mut child = LANES;
     while child * LANES < items.len() {
         child *= LANES;
@@ -93,6 +95,7 @@ fn arrange<const D: usize>(items: &mut [StillItem<D>]) {
     }
     let children = items.len().div_ceil(child);
     let (axis, left) = best_cut(items, child, children);
+    // Whole children go to the left; only the last child on the right may be partial.
     items.select_nth_unstable_by_key(left * child, |item| item.key(axis));
     let (first, second) = items.split_at_mut(left * child);
     #[cfg(feature = "parallel")]
@@ -117,6 +120,7 @@ fn best_cut<const D: usize>(
         let middle = filled(|axis| item.middle(axis));
         middles = middles.merged(&Bounds { lo: middle, hi: middle });
     }
+    // Halves come first, so that the difference does not overflow.
     let spread = |axis: usize| middles.hi[axis] * 0.5 - middles.lo[axis] * 0.5;
     let longest =
         (1..D).fold(0, |best, axis| if spread(axis) > spread(best) { axis } else { best });
@@ -135,11 +139,14 @@ fn best_cut<const D: usize>(
 
 /// The boxes of a sample, in bins by their centres.
 struct Bins<const D: usize> {
+    /// Union of the boxes in each bin.
     bounds: [Bounds<D>; BINS],
+    /// Number of sampled boxes in each bin.
     counts: [usize; BINS],
 }
 
 impl<const D: usize> Bins<D> {
+    /// Sorts boxes into bins of equal width on an axis; `middles` are the bounds of their centres.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -171,6 +178,7 @@ impl<const D: usize> Bins<D> {
         children: usize,
         mut visit: impl FnMut(usize, f64),
     ) {
+        // `right[bin]` becomes the half surface of the boxes in `bin` and all later bins.
         let mut right = [0.0; BINS];
         let mut all = Bounds::EMPTY;
         for bin in (0..BINS).rev() {
@@ -180,14 +188,17 @@ impl<const D: usize> Bins<D> {
         let (mut all, mut count, mut next) = (Bounds::EMPTY, 0, 1);
         for (bin, bounds) in self.bounds.iter().enumerate() {
             all = all.merged(bounds);
+            // Each sampled box stands for `step` boxes.
             count += self.counts[bin] * step;
             if next >= children || next * child > count {
                 continue;
             }
             let left = all.half_surface();
             while next < children && next * child <= count {
+                // A cut at the end of this bin; one within it counts the bin on the right too.
                 let is_even = next * child == count && bin + 1 < BINS;
                 let rest = right[if is_even { bin + 1 } else { bin }];
+                // The heuristic: surface times number of children, summed over both sides.
                 visit(next, left * next as f64 + rest * (children - next) as f64);
                 next += 1;
             }

@@ -61,6 +61,7 @@ struct List {
 }
 
 impl List {
+    /// A list without rays.
     const EMPTY: Self = Self { rays: [0; 2 * RAYS], len: 0 };
 
     /// Appends a ray if `is_in`, without a branch.
@@ -70,6 +71,7 @@ impl List {
         self.len += usize::from(is_in);
     }
 
+    /// Returns the rays in the list.
     fn rays(&self) -> &[u8] {
         &self.rays[..self.len]
     }
@@ -114,6 +116,7 @@ impl Tree<3> {
         with_widest_kernel!(self.lanes, kernel => self.run(kernel, triangles, &mut stream, visitor));
     }
 
+    /// Advances all rays until every list is empty.
     #[inline(always)]
     fn run<K: Kernel>(
         &self,
@@ -143,6 +146,7 @@ impl Tree<3> {
                     kernel.enter_nearest(block, &walk.probe.slabs, walk.limit, keys);
                 let (first, lane) = (walk.block * small(LANES), least % small(LANES));
                 keys[lane as usize] = u32::MAX;
+                // With a second lane to visit, the ray will return to this block.
                 let (is_any, has_more) = (mask != 0, mask & mask.wrapping_sub(1) != 0);
                 walk.open |= u32::from(has_more) << layer;
                 walk.first[layer] = first;

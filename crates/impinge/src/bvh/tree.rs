@@ -24,12 +24,14 @@ pub(super) struct Layer<const D: usize> {
     pub(super) reach: Vec<Bounds<D>>,
     /// Above the lowest layer: the reach of the blocks below, as blocks.
     pub(super) reaches: Vec<Block<D>>,
+    /// By block: the lanes with a change in or below them.
     pub(super) changed: Vec<u16>,
 }
 
 clone_fields!([const D: usize] Layer<D> { blocks, bounds, reach, reaches, changed });
 
 impl<const D: usize> Layer<D> {
+    /// Creates a layer without blocks.
     pub(super) const fn new() -> Self {
         Self {
             blocks: Vec::new(),
@@ -245,11 +247,13 @@ impl<const D: usize> Tree<D> {
         self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
 
+    /// Returns the slot of an object; `None` if the tree does not have it.
     pub(super) fn slot(&self, id: u32) -> Option<usize> {
         let slot = self.slots.get(id as usize).copied().filter(|&slot| slot != NONE)?;
         Some(slot as usize)
     }
 
+    /// Returns the slot of an object that the tree must have.
     fn expect_slot(&self, id: u32) -> usize {
         self.slot(id).expect("the object is in the tree")
     }

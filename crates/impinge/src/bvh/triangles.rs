@@ -135,7 +135,9 @@ impl Scalar {
             let times = seen.mapped(|corner| corner[2] * line.inverse);
             let first = smaller(smaller(times[0], times[1]), times[2]);
             let last = larger(larger(times[0], times[1]), times[2]);
+            // Areas of both signs, by more than rounding: the line passes beside the triangle.
             let beside = (most > margin) & (least < -margin);
+            // All corners lie beyond the limit, or all behind the origin.
             let outside = (first - slack > limit) | (last + slack < 0.0);
             mask |= u32::from(!(beside | outside)) << lane;
         }
@@ -181,11 +183,13 @@ fn seen<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> [f3
     [x - depth * line.shear[0], y - depth * line.shear[1], depth]
 }
 
+/// Returns the cross product of two corners across the line.
 #[inline(always)]
 fn area<S: Simd>(p: [f32x16<S>; 3], q: [f32x16<S>; 3]) -> f32x16<S> {
     p[0] * q[1] - p[1] * q[0]
 }
 
+/// Returns the larger of the distances of a corner from the line on the two axes across it.
 #[inline(always)]
 fn wide<S: Simd>(p: [f32x16<S>; 3]) -> f32x16<S> {
     p[0].abs().max(p[1].abs())

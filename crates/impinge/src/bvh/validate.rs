@@ -63,6 +63,7 @@ impl<const D: usize> Tree<D> {
 
     /// Checks that every layer has the bounds of the one below, up to one block.
     fn validate_layers(&self) -> Result<(), String> {
+        // Until the next refit, bounds above a touched block may be too large.
         let is_exact = self.touched.is_empty();
         let agrees = |kept: &Bounds<D>, real: &Bounds<D>| {
             let is_empty = *real == Bounds::EMPTY;
@@ -70,6 +71,7 @@ impl<const D: usize> Tree<D> {
         };
         for (index, layer) in self.layers.iter().enumerate() {
             let lengths = [layer.bounds.len(), layer.reach.len(), layer.changed.len()];
+            // The lowest layer has no `reaches`.
             let reaches = if index > 0 { layer.blocks.len() } else { 0 };
             if lengths != [layer.blocks.len(); 3] || layer.reaches.len() != reaches {
                 return Err(format!("the arrays of layer {index} differ in length"));
@@ -87,6 +89,7 @@ impl<const D: usize> Tree<D> {
             if parent.blocks.len() != layer.blocks.len().div_ceil(LANES) {
                 return Err(format!("layer {} has the wrong length", index + 1));
             }
+            // Lanes without a child must be empty.
             for lane in 0..parent.blocks.len() * LANES {
                 let kept = parent.blocks[lane / LANES].lane(lane % LANES);
                 let real = layer.bounds.get(lane).copied().unwrap_or(Bounds::EMPTY);
@@ -139,6 +142,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
+/// Returns the union of the boxes of a block.
 fn bounds_of<const D: usize>(block: &Block<D>) -> Bounds<D> {
     (0..LANES).fold(Bounds::EMPTY, |all, lane| all.merged(&block.lane(lane)))
 }

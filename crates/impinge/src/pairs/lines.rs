@@ -50,22 +50,27 @@ struct Head {
 }
 
 impl Head {
+    /// The line of an object without links.
     const EMPTY: Self =
         Self { links: [Link { partner: 0, pair: 0 }; INLINE], start: 0, count_and_class: NO_RUN };
 
+    /// Returns the number of links.
     const fn count(&self) -> u32 {
         self.count_and_class >> 5
     }
 
+    /// Returns the class of the run, or [`NO_RUN`].
     const fn class(&self) -> u32 {
         self.count_and_class & 31
     }
 
+    /// Sets the number of links; the class stays.
     fn set_count(&mut self, count: u32) {
         assert!(count < 1 << 27, "an object has fewer than 2^27 partners");
         self.count_and_class = count << 5 | self.class();
     }
 
+    /// Sets the first line and the class of the run; the number of links stays.
     fn set_run(&mut self, start: u32, class: u32) {
         self.start = start;
         self.count_and_class = self.count_and_class & !31 | class;
@@ -315,6 +320,7 @@ impl Lines {
         }
     }
 
+    /// Returns the first line and the class of an object's run.
     fn run(&self, at: usize) -> (u32, u32) {
         let head = &self.heads[at];
         (head.start, head.class())

@@ -97,6 +97,7 @@ impl Places {
         (mixed >> 32) as usize & (self.entries.len() - 1)
     }
 
+    /// Doubles the number of slots and enters all keys again.
     fn grow(&mut self) {
         let length = (2 * self.entries.len()).max(LEAST);
         let free = PlaceEntry { key: 0, place: FREE };
