@@ -4,11 +4,11 @@
 //! Near an edge that is wrong for one of two faces:
 //!
 //! ```text
-//!       ┌──────────┐
-//!       │     ·    │      · centre of a box: in front of the top,
-//!   ────┴────┐─────┘        but behind the plane of the side, whose inside
-//!    top     │              it would seem to touch: the side is hidden
-//!            │ side
+//!      ┌───────────┐
+//!      │     ·     │      · centre of a box: in front of the top,
+//!  ────┴─────────┐─┘        but behind the plane of the side, whose inside
+//!   top          │          it would seem to touch: the side is hidden
+//!                │ side
 //! ```
 //!
 //! Two faces that meet are each behind the other (a ridge), each in front of the other (a valley),

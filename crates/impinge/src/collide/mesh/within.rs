@@ -1,4 +1,4 @@
-//! The contacts of two shapes at one time, of which nothing is kept.
+//! The contacts of two shapes at one time, without a cache.
 
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartStatus};
@@ -16,11 +16,11 @@ pub(crate) struct FoundContact<N: Real, const D: usize> {
     pub(crate) parts: [u32; 2],
 }
 
-/// What is done with each contact.
+/// Receives each contact.
 type Visit<'a, N, const D: usize> = dyn FnMut(&FoundContact<N, D>) + 'a;
 
-/// Calls `visit` with each contact of what is within `reach`, by the way that the pair has of its own if there is
-/// one.
+/// Calls `visit` with each contact of the parts within `reach`, by the kernel of the pair if there
+/// is one.
 pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
@@ -42,7 +42,7 @@ pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     each_in_general(between, &request, visit);
 }
 
-/// [`each_contact_within`] of any two shapes.
+/// [`each_contact_within`] by the generic path.
 fn each_in_general<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     request: &ManifoldRequest<N>,
@@ -69,7 +69,7 @@ impl<N: Real, const D: usize> FoundContact<N, D> {
     }
 }
 
-/// The deepest contact of what is within reach, the first of equals.
+/// Returns the deepest contact of the parts within `reach`, the first in a tie.
 pub(super) fn deepest_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     reach: N,
@@ -77,7 +77,7 @@ pub(super) fn deepest_within<N: Space<D>, const D: usize>(
     deepest_of(|visit| each_contact_within(between, reach, visit))
 }
 
-/// [`deepest_within`] without the way that some pairs have of their own.
+/// [`deepest_within`] by the generic path alone.
 #[cfg(test)]
 pub(super) fn deepest_in_general<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
