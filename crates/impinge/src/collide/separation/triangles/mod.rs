@@ -1,11 +1,12 @@
-//! Triangles of a surface against one solid, eight at a time: boxes and hulls ([`axes`]), and balls ([`ball`]);
-//! and two triangles ([`pair`]).
+//! Triangles of a surface and one solid, eight at a time: boxes and hulls ([`axes`]), and balls
+//! ([`ball`]); and two triangles ([`pair`]).
 //!
-//! Of most triangles a surface asks no more than which of its sides or corners is touched, and contacts along
-//! its face are made anew. Where a side and an edge cross well inside both, or one corner alone is nearest to
-//! a face and over its inside, that is plain, and it is certain that the direction gives the distance. All other
-//! triangles are left to the separation of the pair, and so are those whose distance differs from the prediction by
-//! rounding alone: the separation decides whether a pair is within it, for queries and manifolds alike.
+//! For most triangles a surface needs only the side or corner that is touched; contacts along the
+//! face are computed separately. Where a side and an edge cross well inside both, or one corner
+//! alone is nearest to a face and over its inside, this feature is certain, and so is the distance
+//! along the axis. All other triangles are left to the separation of the pair. So are those whose
+//! distance differs from the prediction by rounding error alone: the separation decides whether a
+//! pair is within the prediction, for queries and manifolds alike.
 
 mod axes;
 mod ball;
@@ -20,46 +21,47 @@ use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
+/// A side and an edge cross well inside if the crossing is farther from the ends than this share of
+/// their lengths.
 const INSIDE: f64 = 1.0 / 256.0;
-/// The least square of the sine of the angle between the two.
+/// The least squared sine of the angle between the two.
 const MIN_SINE: f64 = 1.0 / 1024.0;
-/// A triangle with less than this ratio of height to longest side may have its other sides as near.
+/// A triangle with a smaller ratio of height to longest side may have two sides equally near.
 const TALL: f64 = 1.0 / 32.0;
-/// One corner is the nearest where the others are farther by so many times what counts as rounding; and a side
-/// that is so many times shorter than another is too short to tell.
+/// A corner is the nearest if the others are farther by this many times [`noise`]; and a side
+/// shorter than `LONG` times [`noise`] is undecided.
 const CLEAR: f64 = 64.0;
 const LONG: f64 = 8192.0;
 
-/// What arithmetic on numbers of size 2 cannot resolve.
+/// Rounding error of numbers up to 2.
 fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
-/// Some of the triangles of many tiles.
+/// Selected triangles of many packets.
 pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// For each of the tiles a bit for each triangle that is meant.
+    /// For each packet a bit for each triangle that is selected.
     pub(crate) near: &'a [u8],
-    /// Where the triangles are to be seen from.
+    /// The point that corners are taken relative to.
     pub(crate) origin: Vector<N, 3>,
 }
 
-/// How far a triangle and a solid are apart, in the frame of the triangle.
+/// The separation of a triangle and a solid, in the frame of the triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleGap<N: Real> {
     pub(crate) distance: N,
     /// Unit, from the triangle to the solid.
     pub(crate) normal: Vector<N, 3>,
-    /// The side or corner of the triangle that is nearest; `None` where the normal is that of the triangle.
+    /// The nearest side or corner of the triangle; `None` if the normal is that of the triangle.
     pub(crate) touched: Option<FeatureId>,
 }
 
-/// Is called with the number of a triangle, counted among those that are meant, and what is plain of it.
+/// Receives the index of a triangle among those selected, and its gap if that is certain.
 pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap<N>>);
 
 impl<N: Real> TiledTriangles<'_, N> {
-    /// The tile and the lane of each triangle that is meant.
+    /// The packet and the lane of each selected triangle.
     fn places(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
         let all = self.tiles.iter().zip(self.near);
         all.flat_map(move |(tiles, near)| {
@@ -68,9 +70,10 @@ impl<N: Real> TiledTriangles<'_, N> {
     }
 }
 
-/// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
-/// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
-/// that have no kernel here. The limit is the `prediction` and what turning adds to it.
+/// Visits the selected triangles that are not beyond `limit`, with their gaps where these are
+/// certain. The solid has the pose `pose12` in the frame of the triangles, relative to their
+/// origin. Returns false for solids without a kernel here. `limit` is `prediction` plus the margin
+/// for rotation.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
@@ -86,7 +89,7 @@ pub(crate) fn gaps3<N: Real>(
     true
 }
 
-/// Triangles against one solid.
+/// Triangles and one solid.
 struct TriangleQuery<'a, N: Real> {
     parts: &'a TiledTriangles<'a, N>,
     solid: &'a Polyhedral<'a, N>,
@@ -117,7 +120,7 @@ impl<N: Real> TriangleQuery<'_, N> {
         }
     }
 
-    /// What the axis of a triangle says, if that is plain.
+    /// Returns the gap along the axis of a lane, if the feature and the distance are certain.
     fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
         let triangle = PlacedTriangle {
             corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
@@ -158,8 +161,9 @@ impl<N: Real> PlacedTriangle<'_, N> {
         self.solid.vertex(vertex as usize) * self.shrink
     }
 
-    /// A side of the triangle, which is not thin, if it and an edge of the solid, along whose common
-    /// perpendicular the two are parted, cross well inside of both.
+    /// Returns the side of the triangle if it crosses an edge of the solid well inside of both,
+    /// seen along their common perpendicular. `None` if not, and if the triangle is thin or the
+    /// side too short.
     fn crossing(&self, edge: usize, side: usize) -> Option<FeatureId> {
         let [from, to] = self.solid.edges[edge].vertices.mapped(|end| self.vertex(end));
         let start = &self.corners[side];
@@ -176,7 +180,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
             share1 > room && share1 < det - room && share2 > room && share2 < det - room;
         let longest = max(own, max(third.norm_squared(), (third - way).norm_squared()));
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * noise::<N>());
-        // Written so that NaN is not plain.
+        // False for NaN.
         let is_plain = is_inside
             && det > N::lit(MIN_SINE) * own * other
             && own > long * long
@@ -184,7 +188,8 @@ impl<N: Real> PlacedTriangle<'_, N> {
         is_plain.then(|| FeatureId::Edge([0, 1, 2][side]))
     }
 
-    /// The corner of the triangle that alone is nearest to a face of the solid, and over its inside.
+    /// Returns the corner of the triangle that alone is nearest to a face of the solid, if it is
+    /// over the inside of the face.
     fn corner_over(&self, face: usize) -> Option<FeatureId> {
         let outward = -self.normal;
         let heights = self.corners.each_ref().mapped(|corner| outward.dot(corner));
