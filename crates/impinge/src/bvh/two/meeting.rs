@@ -71,6 +71,7 @@ pub(crate) trait TreeMeeting<N: Real, const D: usize> {
     fn visit(&mut self, which: usize, own: u32, others: &[u32]);
 }
 
+/// A depth-first search of two trees, best first if it is for the nearest pair.
 struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
     turns: [Turn<D>; 2],
@@ -112,6 +113,8 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
+    /// Opens pairs of blocks until the queue is empty or the question ends the search. Of two inner
+    /// blocks the one with the larger surface is opened.
     fn run(&mut self, whole: OpenPair, mut agenda: impl Agenda) {
         agenda.put(whole);
         while let Some(pair) = agenda.take() {
@@ -182,6 +185,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         }
     }
 
+    /// The box around block `which` of a pair, in the frame of its tree.
     fn bounds(&self, which: usize, pair: &OpenPair) -> &Bounds<D> {
         &self.trees[which].layers[usize::from(pair.layers[which])].bounds
             [pair.blocks[which] as usize]

@@ -100,6 +100,7 @@ struct BlockPair {
     is_rough: bool,
 }
 
+/// A best-first search of two trees.
 struct PairSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
     queue: BinaryHeap<Reverse<BlockPair>>,
@@ -126,6 +127,8 @@ pub(crate) fn visit_pairs<N: Real, const D: usize>(
 }
 
 impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
+    /// Guesses two objects if the limit is positive and the trees are near each other. Then opens
+    /// pairs of blocks, nearest first, until the next is beyond the bound.
     fn run(&mut self, whole: BlockPair) {
         self.queue.push(Reverse(whole));
         let near = || self.near(0, whole.layers[0], 0, &self.other_box(0, &whole));
@@ -178,6 +181,7 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         Some(pair)
     }
 
+    /// Block `which` of a pair: its box and slab, in the frame of its tree.
     fn slab_box(&self, which: usize, pair: &BlockPair) -> SlabBox<'_, D> {
         self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which])
     }
@@ -186,6 +190,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         *self.slab_box(which, pair).bounds
     }
 
+    /// Lower bound of the signed distance of the contents of two blocks, by the gap along a
+    /// direction.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
         let reaches = [0, 1].mapped(|which| self.slab_box(which, pair).reach(&toward[which]));
         self.question.gap(toward, reaches)

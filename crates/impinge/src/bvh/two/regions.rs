@@ -5,7 +5,7 @@
 //!    own frame            the other tree's frame
 //!   +--------+               /\_               along the axes of both frames ([`TurnedBox::bounds`], `slabs`)
 //!   |  box   |  -- Turn -->  \  \_   gap  [ ]  across the slab of what is in the box
-//!   +--------+                \__/ ------>[ ]  along the way to the middle of each box ([`Extent`])
+//!   +--------+                \__/ ------>[ ]  along the line to the centre of each box ([`Extent`])
 //! ```
 //!
 //! Boxes and slabs separate blocks that face each other. In a search for the nearest pair most
@@ -58,11 +58,13 @@ pub(super) struct Held {
 }
 
 impl<const D: usize> Turn<D> {
+    /// Rounds a pose to `f32`.
     pub(super) fn of<N: Real>(pose: &Pose<N, D>) -> Self {
         let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));
         Self { axes, shift: filled(|row| pose.translation[row].as_f32()) }
     }
 
+    /// Rotates a vector into the frame of the other tree.
     pub(super) fn vector(&self, local: &[f32; D]) -> [f32; D] {
         filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
     }

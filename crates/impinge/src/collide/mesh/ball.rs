@@ -69,7 +69,9 @@ struct Rolling<'b, 'a, N: Real> {
 /// A triangle relative to the centre of the ball, in the axes of the surface.
 struct SeenTriangle<N: Real> {
     part: u32,
+    /// Relative to the centre of the ball.
     triangle: Triangle<N, 3>,
+    /// Bound of the rounding errors of lengths.
     tolerance: N,
 }
 

@@ -11,7 +11,9 @@ use crate::collide::separation::hulls::tests::Random;
 use crate::math::{Point, Pose, Real, Space, Vector};
 use crate::shape::{Ball, ConvexHull, Cuboid, HeightField, Shape, TriMesh};
 
+/// Updates of each solid.
 const STEPS: usize = 6;
+/// Solids that move.
 const ROUNDS: usize = 400;
 /// Points along each side of a terrain.
 const POINTS: u32 = 9;

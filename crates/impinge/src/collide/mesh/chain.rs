@@ -68,6 +68,7 @@ struct Chain<'b, 'a, N: Real> {
     solid: Kind<'a, N, 2>,
     parts: &'a dyn CompositeShape<N, 2>,
     surface: SurfaceAccess<'a, N, 2>,
+    /// `None` if only the surface itself can decide.
     sidedness: Option<Sidedness>,
     /// The rotation from the frame of the chain to that of the solid, without a translation.
     turn: Pose<N, 2>,
@@ -94,6 +95,7 @@ struct KeptLinks<'t, N: Real> {
 }
 
 impl<N: Real> KeptLinks<'_, N> {
+    /// The ends of the segment at an index in `parts`.
     fn ends(&self, index: usize) -> [Point<N, 2>; 2] {
         let [a, b, _] = self.tiles[index / LANES].corners(index % LANES);
         [a, b]
@@ -129,10 +131,15 @@ impl<N: Real> KnownSegments<N> for KeptLinks<'_, N> {
 /// A segment of the chain within reach of the solid.
 struct ChainLink<'c, 'b, 'a, N: Real> {
     chain: &'c Chain<'b, 'a, N>,
+    /// 0 for the solid, and the index of the segment.
     parts: [u32; 2],
+    /// Relative to the origin of the solid.
     segment: Segment<N, 2>,
+    /// The segment as a surface.
     known: KnownSegment<'c, N>,
+    /// The separation of the pair, in the order of kinds.
     found: Separation<N, 2>,
+    /// Bound of the rounding errors of lengths.
     tolerance: N,
 }
 

@@ -17,6 +17,7 @@ use crate::shape::{
     Ball, Capsule, ConvexPolygon, Cuboid, HeightField, Polyline, Segment, Shape, Triangle,
 };
 
+/// Updates of each solid.
 const STEPS: usize = 6;
 
 /// Heights along a line: rough, gentle, or flat with steps.

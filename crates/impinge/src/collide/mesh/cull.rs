@@ -49,6 +49,7 @@ pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
     pub(super) turn: Matrix<N, D>,
     /// Half the extents of its core along these axes.
     pub(super) half: Vector<N, D>,
+    /// The radius around the core.
     pub(super) rounding: N,
     /// Parts beyond this distance, or outside the box from `low` to `high`, are rejected.
     pub(super) reach: N,
@@ -117,6 +118,8 @@ fn at<N: Real, const D: usize>(
     all
 }
 
+/// The bounds for the lanes of `V`: a mask of those that may be near, and the least distance from
+/// the centre to those in the box.
 #[inline(always)]
 fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -215,6 +218,7 @@ fn from_side<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     )
 }
 
+/// Returns the shorter of two vectors, the first in a tie.
 #[inline(always)]
 fn shorter<S: Simd, V: Wide<S>, const D: usize>(first: &[V; D], second: &[V; D]) -> [V; D] {
     either(dot(second, second).simd_lt(dot(first, first)), second, first)

@@ -41,6 +41,7 @@ enum PlaneSide {
 
 /// A face in contact.
 struct TouchedFace<N: Real, const D: usize> {
+    /// Its index among the contacts.
     contact: usize,
     /// The distance of its part from the solid.
     distance: N,

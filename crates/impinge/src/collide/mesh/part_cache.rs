@@ -58,6 +58,7 @@ enum KeptSeams<N: Real> {
 /// each triangle around the solid with `f32`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PartCache<N: Real, const D: usize> {
+    /// The box with all its parts in the cache; `None` before the first search.
     within: Option<Aabb<N, D>>,
     /// The indices of all parts that overlap `within`, ascending.
     parts: SmallVec<[u32; 8]>,
@@ -65,9 +66,11 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     tiles: Vec<PartPacket<N, D>>,
     /// The seams of all parts, filled where a solid was near; empty if no solid needs them.
     seams: Vec<KeptSeams<N>>,
+    /// Whether the corners in `tiles` are those of segments.
     are_segments: bool,
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
+    /// The margin of the next search; it never grows.
     room: CacheRoom,
 }
 
@@ -118,6 +121,8 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.within.as_ref().is_some_and(|within| within.contains(aabb))
     }
 
+    /// Searches the parts around a box with a margin and copies their corners. Once the large
+    /// margin holds more than `most` parts, the small one is used from then on.
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
         let with_room = |room: CacheRoom| aabb.loosened(half * N::lit(room.share()));
@@ -152,6 +157,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.seams = kept;
     }
 
+    /// Replaces the list of parts by those that overlap `within`, unsorted.
     fn search(&mut self, composite: &dyn CompositeShape<N, D>, within: &Aabb<N, D>) {
         self.parts.clear();
         composite.search().overlapping(within, &mut |part| self.parts.push(part));

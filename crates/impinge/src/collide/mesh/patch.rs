@@ -37,13 +37,16 @@ use crate::math::{Pose, Real, Space, Vector};
 pub(crate) struct Patch<N: Real, const D: usize> {
     /// Unit, from the first shape to the second.
     pub(crate) normal: Vector<N, D>,
+    /// Sorted by id.
     pub(crate) points: SmallVec<[PatchPoint<N, D>; 4]>,
 }
 
 /// A point of a manifold, and the parts it lies on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PatchPoint<N: Real, const D: usize> {
+    /// In the frame of the first shape.
     pub(crate) raw: RawPoint<N, D>,
+    /// The part of the first shape and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
@@ -53,7 +56,9 @@ pub(crate) struct PatchPoint<N: Real, const D: usize> {
 pub(crate) struct Piece<N: Real, const D: usize> {
     /// Unit, from the first shape to the second.
     pub(crate) normal: Vector<N, D>,
+    /// The part of the first shape and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
+    /// Its points, as a range of `Merging::points`.
     pub(crate) points: Range<usize>,
 }
 
@@ -65,6 +70,7 @@ pub(crate) struct Merging<'a, N: Real, const D: usize> {
     pub(crate) tolerance: N,
     /// Sorted by their parts; each pair of parts occurs once.
     pub(crate) pieces: &'a [Piece<N, D>],
+    /// The points of all pieces.
     pub(crate) points: &'a [RawPoint<N, D>],
     /// Cache of [`Self::size`].
     pub(crate) size: OnceCell<N>,
@@ -123,6 +129,8 @@ fn merge_one<N: Real, const D: usize>(
     patches.truncate(1);
 }
 
+/// Returns what identifies a point between updates: its position on both shapes, its parts and its
+/// features.
 fn anchors<N: Real, const D: usize>(
     pose: &PairPose<'_, N, D>,
     raw: &RawPoint<N, D>,

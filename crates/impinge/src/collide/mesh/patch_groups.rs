@@ -186,6 +186,7 @@ fn square_of_same<N: Real>() -> N {
 
 /// An interval of the axis that contains the component of some normals.
 struct NormalCell {
+    /// The position of the interval, in lengths of a cell.
     number: i32,
     /// The patches whose lead is in this cell, the deepest first.
     patches: SmallVec<[usize; 2]>,
@@ -202,6 +203,7 @@ struct NormalCells {
 }
 
 impl NormalCells {
+    /// Sorts pieces into cells, unless they are few.
     fn of<N: Real, const D: usize>(pieces: &[Piece<N, D>]) -> Self {
         let (mut cells, mut of_pieces, mut order) = (SmallVec::new(), Vec::new(), Vec::new());
         let empty = |number| NormalCell { number, patches: SmallVec::new() };

@@ -29,6 +29,7 @@ const FEW: usize = 16;
 /// A point of a patch, projected along its normal.
 #[derive(Clone, Copy)]
 pub(super) struct Member<N> {
+    /// The coordinates along both tangents, relative to the deepest point.
     flat: Vector<N, 2>,
     /// The index of its piece in `Merging::pieces`; `point` is its index in `Merging::points`.
     piece: usize,
@@ -200,6 +201,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
         }
     }
 
+    /// Whether `new` replaces `old` at one position: by depth if it differs by more than the
+    /// tolerance, else by an inherited id, then by the lower parts.
     fn is_better(&self, new: &Member<N>, old: &Member<N>) -> bool {
         let tolerance = self.merging.tolerance;
         let rank = |member: &Member<N>| {
@@ -241,6 +244,7 @@ fn sort<N: Real>(members: &mut [Member<N>]) {
     sort_few(members, |one, other| by_place(one, other).is_lt());
 }
 
+/// Orders by the first coordinate, then by the second.
 #[inline]
 fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);

@@ -55,9 +55,11 @@ struct Lying<N: Real, const D: usize> {
 struct PlacedPart<'a, N: Real, const D: usize> {
     /// The pose in the frame of its shape, translated to the anchor.
     pose: Pose<N, D>,
+    /// If it has corners, these are relative to the anchor.
     solid: WholeOrPart<'a, N, D>,
 }
 
+/// A whole convex shape, or a part of a composite.
 enum WholeOrPart<'a, N: Real, const D: usize> {
     Whole(Kind<'a, N, D>),
     Part(PartSolid<'a, N, D>),
@@ -273,6 +275,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         Some(PlacedPair { is_usual: true, ..PlacedPair::of(bodies, usual.lying, usual.origins) })
     }
 
+    /// Returns the placement of a part, which serves all parts with the same pose and kind.
     fn usual(&self, part: &Part<'a, N, D>) -> Usual<N, D> {
         let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
         let rotation = part.pose.rotation;

@@ -13,6 +13,7 @@ use crate::tables::ByDimension;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FoundContact<N: Real, const D: usize> {
     pub(crate) separation: Separation<N, D>,
+    /// The part of the first shape and of the second; 0 for a convex solid.
     pub(crate) parts: [u32; 2],
 }
 
@@ -62,6 +63,8 @@ fn each_in_general<N: Space<D>, const D: usize>(
 }
 
 impl<N: Real, const D: usize> FoundContact<N, D> {
+    /// Makes a separation of a contact point; the second point follows from the first by `normal *
+    /// distance`.
     fn new(normal: &Vector<N, D>, point: &RawPoint<N, D>, parts: [u32; 2]) -> Self {
         let (normal, RawPoint { distance, point1, .. }) = (*normal, *point);
         let point2 = point1 + normal * distance;
@@ -86,6 +89,7 @@ pub(super) fn deepest_in_general<N: Space<D>, const D: usize>(
     deepest_of(|visit| each_in_general(between, request, visit))
 }
 
+/// Returns the deepest of the contacts that `each` visits, the first in a tie.
 fn deepest_of<N: Real, const D: usize>(
     each: impl FnOnce(&mut Visit<'_, N, D>),
 ) -> Option<Separation<N, D>> {

@@ -31,6 +31,7 @@ struct AnchoredPart<'a, N: Real, const D: usize> {
     pose: Pose<N, D>,
 }
 
+/// A whole convex shape, or a part of a composite.
 #[derive(Clone, Copy)]
 enum PartOf<'a, N: Real, const D: usize> {
     Whole(Kind<'a, N, D>),
@@ -168,6 +169,7 @@ pub(crate) fn by_number<'a, N: Real, const D: usize>(
 }
 
 impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
+    /// Places `piece`, or the whole convex shape if there is none, relative to the anchor `origin`.
     fn new(whole: Kind<'a, N, D>, piece: Option<Part<'a, N, D>>, origin: &Point<N, D>) -> Self {
         let Some(piece) = piece else {
             let pose = Pose::from_translation(-origin.coords);

@@ -50,6 +50,7 @@ const BEYOND: f64 = 1.0 / 64.0;
 /// Rounding error of lengths, in units of epsilon times the coordinates.
 const ROUNDING: f64 = 64.0;
 
+/// The pieces of both shapes that are inside bodies.
 pub(crate) type InsidePieces<N, const D: usize> = SmallVec<[InsidePiece<N, D>; 1]>;
 
 /// The exit plane: through the nearest point of the boundary, perpendicular to the way out; in the
@@ -169,6 +170,7 @@ struct NearestBoundary<'p, 'a, N: Real, const D: usize> {
 }
 
 impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestBoundary<'_, '_, N, D> {
+    /// The largest known distance of a piece from its boundary.
     fn limit(&self) -> N {
         self.pieces.iter().fold(-N::INFINITY, |most, piece| max(most, piece.distance()))
     }
@@ -205,6 +207,7 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
         self.boundary.contains(&parts[1 - self.inner]) && self.is_own(between, parts[self.inner])
     }
 
+    /// Whether a part of the inner shape belongs to the piece.
     fn is_own(&self, between: &Between<'_, N, D>, part: u32) -> bool {
         let composite = between.composites()[self.inner];
         composite.is_none_or(|composite| composite.piece_of(part) == self.piece)

@@ -82,6 +82,7 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     true
 }
 
+/// A search of two trees for pairs of parts, with up to eight pairs waiting for the lanes.
 struct PartMeetings<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
@@ -122,6 +123,7 @@ impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
         gap2 - gap1 > (reach + self.slack) * way.norm()
     }
 
+    /// Passes a pair to the visitor, which returns the new reach.
     fn found(&mut self, pair: [u32; 2]) {
         self.reach = self.reach.and_then(|_| self.visitor.visit(pair));
     }
@@ -178,6 +180,7 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
         Some([normal, self.pose(0).vector(&-normal)])
     }
 
+    /// Also keeps the transformed corners of the part in `own`.
     fn object_in_other(&mut self, which: usize, id: u32) -> Aabb<N, D> {
         let pose = self.pose(which);
         let own = self.corners_of(which, id);
@@ -195,6 +198,8 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
         self.own
     }
 
+    /// Rejects pairs along the line through their centroids, puts those with corners into the
+    /// lanes, and visits all others at once.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         for &other in others {
             let pair = if which == 0 { [own, other] } else { [other, own] };

@@ -83,6 +83,7 @@ impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for TouchingPart<'_, '_, 
 }
 
 impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for NearestPart<'_, N, D> {
+    /// Ends the search at contact: overlaps need the search by depth.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);
         Some(self.limit()).filter(|reach| *reach > N::ZERO)
@@ -98,6 +99,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.best.map_or(self.limit, |best| best.separation.distance)
     }
 
+    /// Negative, to end the search, once there is a contact and any is enough.
     fn bound(&self) -> N {
         let limit = self.limit();
         let is_known = self.best.is_some() && limit <= N::ZERO && self.wanted == Wanted::Touching;
@@ -112,6 +114,7 @@ impl<N: Space<D>, const D: usize> PairVisitor<N, D> for NearestPart<'_, N, D> {
         self.wanted == Wanted::Touching
     }
 
+    /// Computes the separation of two parts, unless they are the best pair already.
     fn visit(&mut self, parts: [u32; 2]) {
         if self.best.is_some_and(|best| best.parts == parts) {
             return;

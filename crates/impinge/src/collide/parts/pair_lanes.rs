@@ -49,6 +49,7 @@ pub(crate) struct PairVerdicts {
 }
 
 impl<N: Real, const D: usize> PartPairs<N, D> {
+    /// An empty batch; rounding errors are in proportion to `place` at least.
     pub(crate) fn new(place: N) -> Self {
         Self { ones: PartPacket::blank(), others: PartPacket::blank(), count: 0, place }
     }
@@ -70,6 +71,7 @@ pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairVer
     )
 }
 
+/// Tests the lanes in use, one SIMD run after another.
 #[inline(always)]
 fn verdicts(count: usize, of_run: impl Fn(Run) -> PairVerdicts) -> PairVerdicts {
     let mut all = PairVerdicts::default();
@@ -81,6 +83,7 @@ fn verdicts(count: usize, of_run: impl Fn(Run) -> PairVerdicts) -> PairVerdicts 
     all
 }
 
+/// Tests the axes in 2D: perpendicular to each side of both parts.
 #[inline(always)]
 fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -94,6 +97,7 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     held.verdicts(false)
 }
 
+/// Tests the axes in 3D, in the order of the table at the head of this file.
 #[inline(always)]
 fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -159,6 +163,8 @@ struct HeldPairs<S: Simd, V: Wide<S>, const D: usize> {
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D> {
+    /// The rounding error is that of the coordinates as given, before the translation to the first
+    /// corner.
     #[inline(always)]
     fn new(simd: S, pairs: &PartPairs<N, D>, limit: N) -> Self {
         let [a, b, c] = &pairs.ones.corners;
@@ -217,11 +223,13 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         dot(along, along).simd_gt(squares * V::all(self.simd, least))
     }
 
+    /// Marks the pairs whose direction is not exact as unsure.
     #[inline(always)]
     fn ask_width(&mut self, along: &[V; D], squares: V) {
         self.unsure |= !self.is_wide(along, squares);
     }
 
+    /// Returns the results. `within` takes exact directions, and all axes (`has_all`).
     #[inline(always)]
     fn verdicts(&self, has_all: bool) -> PairVerdicts {
         let beyond = bits(self.beyond & self.is_precise);
@@ -230,6 +238,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
     }
 }
 
+/// The vectors from each corner to the next.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3]) -> [[V; D]; 3] {
     [minus(b, a), minus(c, b), minus(a, c)]

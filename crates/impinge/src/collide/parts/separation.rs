@@ -65,6 +65,7 @@ pub(crate) trait PairVisitor<N: Real, const D: usize> {
         false
     }
 
+    /// Receives a pair of parts; a guessed pair may come twice.
     fn visit(&mut self, parts: [u32; 2]);
 }
 
@@ -112,6 +113,7 @@ struct TreeParts<'a, 'q, N: Real, const D: usize> {
     slabs: Option<PartSlabs<N, D>>,
 }
 
+/// The slabs around a part of the first (0) or the second (1) composite.
 struct PartSlabs<N: Real, const D: usize> {
     which: usize,
     part: u32,
@@ -119,6 +121,8 @@ struct PartSlabs<N: Real, const D: usize> {
 }
 
 impl<'a, 'q, N: Space<D>, const D: usize> TreeParts<'a, 'q, N, D> {
+    /// Gaps along directions are used only if neither shape moves and their rounding error is
+    /// finite.
     fn new(
         between: &'a Between<'a, N, D>,
         parts: [&'a dyn CompositeShape<N, D>; 2],
@@ -155,6 +159,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.visitor.limit()
     }
 
+    /// Parts deeper than a negative limit have boxes that overlap as deep, but for rounding error.
     fn depth(&self) -> N {
         max(-self.visitor.limit() - self.slack, N::ZERO)
     }
@@ -163,6 +168,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &self.visitor.normal()?)
     }
 
+    /// Transforms the opposite vector into the frame of the other shape.
     fn toward(&self, which: usize, along: &Vector<N, D>) -> Option<Toward<N, D>> {
         let pose12 = &self.between.pair.pose12;
         let toward = match which {
@@ -177,12 +183,14 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         self.toward(0, &unit(&way)?.0)
     }
 
+    /// Infinite for parts without corners.
     fn reach(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
         let part = self.parts[which].part(id);
         let Some(corners) = corners(&part.solid, &part.pose) else { return N::INFINITY };
         range(&corners, along)[1]
     }
 
+    /// Minus the rounding error, so that it is a lower bound.
     fn gap(&self, toward: &Toward<N, D>, [reach1, reach2]: [N; 2]) -> N {
         let offset = toward[0].dot(&self.between.pair.pose12.translation);
         offset - reach1 - reach2 - self.slack
@@ -194,6 +202,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
         }
     }
 
+    /// Rejects parts by the best direction, by the line through the centroids and by slabs; visits
+    /// the rest in the order of their lower bounds.
     fn visit(&mut self, which: usize, own: u32, others: &[u32]) {
         let pair = |other: u32| if which == 0 { [own, other] } else { [other, own] };
         let (best, mut near) = (self.best(), PartGaps::new());
@@ -234,6 +244,7 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
 type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
+    /// The gap of two parts along a direction; minus infinity without corners.
     fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
         self.gap(toward, [0, 1].mapped(|which| self.reach(which, parts[which], &toward[which])))
     }
@@ -287,6 +298,7 @@ impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     }
 }
 
+/// The search of [`visit_near_pairs`] for shapes that are not both searched by trees.
 struct NearestSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     visitor: &'q mut dyn PairVisitor<N, D>,

@@ -46,6 +46,7 @@ pub(crate) fn part_gaps3<N: Real>(
     gaps
 }
 
+/// Gaps in 2D: along the slabs, then across the sides of the other parts.
 #[inline(always)]
 fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -65,6 +66,8 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
+/// Gaps in 3D: along the slabs, then across the planes of the other parts, then perpendicular to a
+/// side of each.
 #[inline(always)]
 fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -100,6 +103,7 @@ struct SlabGaps<S, V, const D: usize> {
 }
 
 impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D> {
+    /// Adds the gaps along the slabs.
     #[inline(always)]
     fn along(&mut self, slabs: &AxisSlabs<N, D>) {
         for slab in &slabs.slabs {
@@ -122,6 +126,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
         self.gaps = is_length.select(gap, -V::all(simd, N::INFINITY)).larger(self.gaps);
     }
 
+    /// Whether some part may still be within the limit.
     #[inline(always)]
     fn are_within(&self, slabs: &AxisSlabs<N, D>, limit: N) -> bool {
         let beyond = V::all(self.simd, limit) + self.slack(slabs);
@@ -154,6 +159,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
     }
 }
 
+/// Translates the corners of eight parts to the origin of the slabs.
 #[inline(always)]
 fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -166,6 +172,7 @@ fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     [minus(&a, &origin), minus(&b, &origin), minus(&c, &origin)]
 }
 
+/// Copies the corners of one part into all lanes.
 #[inline(always)]
 fn spread_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
@@ -174,6 +181,7 @@ fn spread_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     [spread(simd, a), spread(simd, b), spread(simd, c)]
 }
 
+/// The vectors from each corner to the next.
 #[inline(always)]
 fn sides<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &Corners<V, D>) -> Corners<V, D> {
     [minus(b, a), minus(c, b), minus(a, c)]

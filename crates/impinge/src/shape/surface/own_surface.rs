@@ -5,7 +5,7 @@ use core::fmt;
 use crate::math::{Point, Real, Vector};
 use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
-/// A surface of this library. No answer of it changes a contact, only what finding it costs.
+/// A surface of this library. Its methods change the cost of contacts, never the contacts.
 pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     /// Calls [`Surface::admits`] for two normals, for the second only if the first is rejected
     /// (else the second result is false). The neighbourhood of the feature is evaluated once.
@@ -45,7 +45,7 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     }
 
     /// Whether the part bounds a body: a solid that overlaps it touches its front, whichever side
-    /// of the surface the middle of the solid is on.
+    /// of the surface the centre of the solid is on.
     fn is_body(&self, part: u32) -> bool {
         let _ = part;
         false

@@ -56,7 +56,7 @@ pub(in crate::shape) fn is_across<N: Real, const D: usize>(
 /// A vector at a corner rises or sinks clearly if its sine exceeds `slack` by this factor.
 const CLEAR: f64 = 8.0;
 
-/// The sides that leave a corner, held against a normal there. They decide most cases without the
+/// The sides that leave a corner, compared with a normal there. They decide most cases without the
 /// faces: the normal is rejected if a side rises along it, and admitted if all sink.
 pub(in crate::shape) struct CornerWays<'a, N: Real, const D: usize> {
     normal: &'a Vector<N, D>,

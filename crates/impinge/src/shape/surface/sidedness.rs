@@ -45,6 +45,7 @@ pub(crate) trait KnownSegments<N: Real>: Sync {
 }
 
 impl Sidedness {
+    /// The unit normal on the front of a segment with the unit direction `along`.
     fn front<N: Real>(self, along: &Vector<N, 2>) -> Vector<N, 2> {
         let left = perp(along);
         if self.is_left { left } else { -left }

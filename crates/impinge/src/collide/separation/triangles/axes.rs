@@ -184,6 +184,7 @@ struct PlacedPacket<'a, S, N: Real, V> {
 }
 
 impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
+    /// Transforms triangles into the frame of the solid and scales them to the unit of each pair.
     #[inline(always)]
     fn new(simd: S, query: &TriangleQuery<'a, N>, tiles: &PartPacket<N, 3>) -> Self {
         let origin: [V; 3] = spread(simd, &query.parts.origin);
@@ -213,6 +214,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         (gap * self.scale).simd_gt(self.beyond) & has_units
     }
 
+    /// Stores the lanes as arrays.
     #[inline(always)]
     fn stored(&self, best: &TriangleAxis<V>, beyond: V::Mask, known: V::Mask) -> TriangleAxes<N> {
         let blank = [N::ZERO; LANES];

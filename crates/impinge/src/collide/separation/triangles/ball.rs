@@ -75,6 +75,7 @@ fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) ->
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
+/// Tests all packets first, then searches neighbours that hide the triangles found near.
 #[inline(always)]
 fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -170,6 +171,8 @@ struct TrianglePacket<V> {
 }
 
 impl<V> TrianglePacket<V> {
+    /// Finds the nearest points: the foot on the plane if it is over the inside, else the nearest
+    /// point of the sides.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -379,6 +382,7 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     )
 }
 
+/// Returns the shorter of two vectors, the first in a tie.
 #[inline(always)]
 fn shorter<S: Simd, V: Wide<S>>(first: &[V; 3], second: &[V; 3]) -> [V; 3] {
     either(dot(second, second).simd_lt(dot(first, first)), second, first)

@@ -99,6 +99,7 @@ struct TriangleQuery<'a, N: Real> {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
+    /// Collects the selected triangles in packets of eight and tests these.
     fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut places, mut first) = (self.parts.places(), 0);
         loop {
@@ -157,6 +158,7 @@ struct PlacedTriangle<'a, N: Real> {
 }
 
 impl<N: Real> PlacedTriangle<'_, N> {
+    /// A vertex of the solid in units of the pair.
     fn vertex(&self, vertex: u32) -> Vector<N, 3> {
         self.solid.vertex(vertex as usize) * self.shrink
     }

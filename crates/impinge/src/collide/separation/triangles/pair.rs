@@ -56,6 +56,7 @@ enum Axes<N: Real> {
     Unproved,
 }
 
+/// Tests the axes in the frame of the first triangle, in units of the pair.
 fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit: N) -> Axes<N> {
     let [reach1, reach2] = triangles.mapped(SupportMap::reach);
     let units = Units::of(reach1, reach2, &pose12.translation);
@@ -116,6 +117,7 @@ impl<N: Real> PlacedTriangle<N> {
         is_wide.then(|| Self { corners, sides, squared, normal: across / area })
     }
 
+    /// Transforms the triangle by a pose.
     fn at(self, pose: &Pose<N, 3>) -> Self {
         Self {
             corners: self.corners.mapped(|corner| pose.point(&Point::from(corner)).coords),
@@ -149,6 +151,7 @@ struct FaceAxis<N: Real> {
 }
 
 impl<N: Real> FaceAxis<N> {
+    /// Takes the direction with the larger gap, the front in a tie.
     fn new(own: &PlacedTriangle<N>, other: &PlacedTriangle<N>) -> Self {
         let up = other.corners.mapped(|corner| own.normal.dot(&(corner - own.corners[0])));
         let (low, high) = (min(min(up[0], up[1]), up[2]), max(max(up[0], up[1]), up[2]));
