@@ -1,20 +1,12 @@
 //! The separating axes of eight triangles and one convex polyhedron.
 //!
 //! Two polyhedra overlap iff no normal of a face and no direction perpendicular to an edge of each
-//! separates them. If they overlap, the shortest way out is along the one of these axes with the
-//! least overlap (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). An edge of the solid and a side
-//! of the triangle decide along a direction only if the edge is the highest feature of the solid
-//! and the side the lowest of the triangle. That is so if the side rises over the plane of one face
-//! beside the edge and sinks below the other's, and the triangle lies on the outer side (Gregorius,
-//! "The Separating Axis Test between Convex Polyhedra", GDC 2013, prunes pairs of edges by their
-//! arcs of normals).
-//!
-//! A lane keeps the axis as one number of the scalar type, [`AxisFeature`]:
-//!
-//! ```text
-//!  0           1 + face             1024 + 3 * edge + side
-//!  triangle    face of the solid    edge of the solid, side of the triangle
-//! ```
+//! parts them, and if they do, the one of these along which they overlap least is the shortest way out
+//! (Gottschalk, Lin and Manocha, "`OBBTree`", 1996). An edge of the solid and a side of the triangle decide
+//! along a direction only where the one is its highest and the other its lowest: where the side climbs
+//! over the plane of one face beside the edge and sinks below the other's, and the triangle lies on
+//! the outer side (Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC 2013, prunes
+//! pairs of edges by their arcs of normals).
 
 use super::{TriangleQuery, noise};
 use crate::collide::packet::{LANES, PartPacket};
@@ -25,20 +17,19 @@ use crate::math::lanes::{
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Mapped, Matrix, Real, Wide, max, max_component};
 
-/// The sine below which two edges count as parallel, in units of epsilon.
+/// The sine below which two edges count as parallel, in rounding units.
 const PARALLEL: f64 = 16.0;
-/// The number of faces that the lanes of a [`Polyhedral`] hold.
+/// As many faces as the lanes of a [`Polyhedral`] hold.
 const MAX_FACES: usize = PLANE_BLOCKS * LANES;
 
-/// For eight triangles, the axes with the largest gaps to a solid.
+/// The directions that leave the largest gaps between a solid and eight triangles.
 pub(super) struct TriangleAxes<N> {
-    /// A bit for each triangle that is beyond the limit by more than rounding error.
+    /// A bit for each triangle that is beyond the limit by more than rounding.
     pub(super) beyond: u8,
-    /// A bit for each triangle that is not thin and whose axis has its gap over all vertices of the
-    /// solid.
+    /// A bit for each triangle that is not thin, and whose direction leaves its gap between all vertices.
     pub(super) known: u8,
-    /// The unit of length of each pair, a power of two, in which the triangle, the solid and the
-    /// translation between them are at most 2 large; and its exact reciprocal.
+    /// The length of a unit of each pair, in which neither of the two, nor the way between their origins, is
+    /// larger than 2; and 1 / `scale`, exactly.
     pub(super) scale: [N; LANES],
     pub(super) shrink: [N; LANES],
     /// In the frame of the solid, in units of the pair.
@@ -46,11 +37,11 @@ pub(super) struct TriangleAxes<N> {
     /// Unit, from the triangle to the solid.
     pub(super) normals: [[N; LANES]; 3],
     pub(super) gaps: [N; LANES],
-    /// The codes of [`AxisFeature`].
+    /// See [`AxisFeature`].
     pub(super) features: [N; LANES],
 }
 
-/// The features that an axis is perpendicular to.
+/// What a direction is perpendicular to.
 pub(super) enum AxisFeature {
     Triangle,
     /// A face of the solid.
@@ -59,13 +50,13 @@ pub(super) enum AxisFeature {
     Edges(usize, usize),
 }
 
-/// Codes of the features: of the triangle, of the first face, and of the first edge with side 0.
+/// The number of the triangle in a lane; faces follow, then three for each edge, one for each side.
 const TRIANGLE: f64 = 0.0;
 const FACES: f64 = 1.0;
 const EDGES: f64 = 1024.0;
 
 impl AxisFeature {
-    /// Decodes the number in a lane.
+    /// By the number in a lane.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -84,19 +75,19 @@ impl AxisFeature {
     }
 }
 
-/// Bound of the rounding error of lengths in a pair with the unit `scale`.
+/// What counts as rounding of lengths in a pair with this unit.
 pub(super) fn slack<N: Real>(scale: N) -> N {
     N::lit(16.0) * noise::<N>() * scale
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// Computes the axes of the lanes of a run.
+    /// The axes of some lanes.
     pub(super) fn axes(&self, run: Run, tiles: &PartPacket<N, 3>) -> TriangleAxes<N> {
         in_lanes!(run, simd => self.axes_in_lanes::<_, N::Lanes<_>>(simd, tiles))
     }
 
-    /// The axis of a triangle is its own normal, unless a face of the solid has a gap that is
-    /// larger by more than rounding error, or a pair of edges one larger than both by as much.
+    /// The triangles' own normals, unless those of faces of the solid leave gaps that are larger by more than
+    /// rounding, or two edges by as much more than both.
     #[inline(always)]
     fn axes_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -128,15 +119,14 @@ impl<N: Real> TriangleQuery<'_, N> {
             return packet.stored(&face, beyond, none);
         }
         let best = packet.query_edges(&climbs, &directions, asked, face);
-        // Beside a short edge the two faces may overstate its gap, so it is measured over all
-        // vertices.
+        // The faces beside an edge may say too much of one that is short.
         let [_, gap] = packet.gaps_along(&best.normal);
         let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * noise()));
         packet.stored(&best, beyond | (packet.is_beyond(best.gap) & known), known)
     }
 }
 
-/// The best axes so far; the normals point from the triangles to the solid.
+/// The best directions so far, from the triangles to the solid.
 #[derive(Clone, Copy)]
 struct TriangleAxis<V> {
     gap: V,
@@ -145,7 +135,7 @@ struct TriangleAxis<V> {
 }
 
 impl<V> TriangleAxis<V> {
-    /// Replaces the lanes in a mask by those of `other`.
+    /// Others where a mask says so.
     #[inline(always)]
     fn or<S: Simd>(&self, is_other: V::Mask, other: &Self) -> Self
     where
@@ -159,8 +149,8 @@ impl<V> TriangleAxis<V> {
     }
 }
 
-/// The unit vectors along the sides and the front normals, about which the corners run
-/// counter-clockwise, in the frame of the solid; and a mask of the triangles that are not thin.
+/// The unit vectors along the sides and the normals on the side that sees the corners counter-clockwise, in the
+/// frame of the solid; and which triangles are not thin.
 struct Directions<V, M> {
     sides: [[V; 3]; 3],
     front: [V; 3],
@@ -171,20 +161,19 @@ struct Directions<V, M> {
 struct PlacedPacket<'a, S, N: Real, V> {
     simd: S,
     solid: &'a Polyhedral<'a, N>,
-    /// The corners relative to the origin of the query.
+    /// As seen from their origin.
     given: [[V; 3]; 3],
-    /// The corners in the frame of the solid, in units of the pairs.
+    /// The same in the frame of the solid, in units of the pairs.
     corners: [[V; 3]; 3],
     scales: [N; LANES],
     shrinks: [N; LANES],
     scale: V,
     shrink: V,
-    /// The limit plus the rounding error, as a length.
+    /// What is beyond the limit by more than rounding, in lengths of the pairs.
     beyond: V,
 }
 
 impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
-    /// Transforms triangles into the frame of the solid and scales them to the unit of each pair.
     #[inline(always)]
     fn new(simd: S, query: &TriangleQuery<'a, N>, tiles: &PartPacket<N, 3>) -> Self {
         let origin: [V; 3] = spread(simd, &query.parts.origin);
@@ -207,14 +196,13 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         Self { simd, solid: query.solid, given, corners, scales, shrinks, scale, shrink, beyond }
     }
 
-    /// Whether a gap proves that a triangle is beyond the limit.
+    /// A gap says that a triangle is beyond the limit.
     #[inline(always)]
     fn is_beyond(&self, gap: V) -> V::Mask {
         let has_units = self.shrink.simd_lt(V::all(self.simd, N::INFINITY));
         (gap * self.scale).simd_gt(self.beyond) & has_units
     }
 
-    /// Stores the lanes as arrays.
     #[inline(always)]
     fn stored(&self, best: &TriangleAxis<V>, beyond: V::Mask, known: V::Mask) -> TriangleAxes<N> {
         let blank = [N::ZERO; LANES];
@@ -241,8 +229,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         axes
     }
 
-    /// Computes the directions from the sides as given, whose rounding error does not grow with the
-    /// translation.
+    /// The directions, from the sides as given, which lose nothing to the way between the origins.
     #[inline(always)]
     fn directions(&self, turn: &Matrix<N, 3>) -> Directions<V, V::Mask> {
         let (simd, [a, b, c], shrink) = (self.simd, &self.given, self.shrink);
@@ -261,8 +248,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         Directions { sides, front: turned_back(simd, turn, &over(&across, area)), is_wide }
     }
 
-    /// Returns the gaps from the triangles to the solid along the opposites of some unit vectors,
-    /// and along the vectors.
+    /// The gaps that the opposites of some unit vectors, and these, leave from the triangles to the solid.
     #[inline(always)]
     fn gaps_along(&self, along: &[V; 3]) -> [V; 2] {
         let mut top = -V::all(self.simd, N::INFINITY);
@@ -277,8 +263,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         [low - top * self.shrink, bottom * self.shrink - high]
     }
 
-    /// Tests the face normals of the solid; sets in `climbs` which sides rise over the plane of
-    /// each face.
+    /// Queries the face directions of the solid; notes for each face which sides climb over its plane.
     #[inline(always)]
     fn query_faces(&self, climbs: &mut [[V::Mask; 3]; MAX_FACES]) -> TriangleAxis<V> {
         let (simd, zero) = (self.simd, V::all(self.simd, N::ZERO));
@@ -299,8 +284,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         best
     }
 
-    /// Tests the directions perpendicular to an edge of the solid and a side of the triangles;
-    /// keeps those with larger gaps than the faces.
+    /// Queries the directions perpendicular to an edge of the solid and a side of the triangles, where they leave
+    /// larger gaps than the faces.
     #[inline(always)]
     fn query_edges(
         &self,
@@ -318,9 +303,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
             let [from, to] = edge.vertices.mapped(|end| self.solid.vertex(end as usize));
             let along = times(&spread(simd, &(to - from)), self.shrink);
             let start = times(&spread(simd, &from), self.shrink);
-            // The edge runs around its first face, so its product with a side that rises over that
-            // face points out of the solid. The triangle lies beyond the side if the edge runs
-            // forward.
+            // The edge runs around the first face, so its product with a side that climbs over that face
+            // leads out of the solid; and the triangle lies beyond the side if the edge runs forward.
             let is_forward = dot(&directions.front, &along).simd_ge(zero);
             let least = V::all(simd, sine * sine) * dot(&along, &along);
             for side in 0..3 {
@@ -334,9 +318,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
                 let slack = dot(&across, &minus(&self.corners[side], &start));
                 let squared = dot(&across, &across);
                 let length = squared.sqrt();
-                // Parallel edges have no perpendicular; there the faces have as large a gap.
+                // Parallel edges have no perpendicular, and faces that part as much.
                 let is_more = is_asked & squared.simd_gt(least) & slack.simd_gt(bound * length);
-                // Divisions dominate the cost, and few directions improve on the best.
+                // Divisions cost more than all of the rest, and few directions are better than those before.
                 if is_more.to_bitmask() == 0 {
                     continue;
                 }
@@ -350,8 +334,8 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     }
 }
 
-/// Returns the unit of each pair and its reciprocal, infinite if the size is zero or not finite.
-/// `own` is the larger of the solid's bounding radius and the translation.
+/// The units of each pair and their inverses; no numbers where there are none. `own` is the size of the solid and
+/// of the way between the origins.
 #[inline(always)]
 fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

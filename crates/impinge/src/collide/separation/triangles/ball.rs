@@ -1,18 +1,10 @@
-//! Triangles and a ball: which of eight are near, and which of these are hidden by a neighbour.
+//! Triangles against a ball: which of eight are near, and which of those have a neighbour that hides them.
 //!
-//! A contact with a corner or an edge is one of the whole surface only if no direction into a
-//! triangle there rises along its normal (see `seam.rs`). If one of these triangles is nearer to
-//! the centre of the ball than the corner or edge, the way to its nearest point is such a
-//! direction. So distances alone replace the test of normals: of the triangles around the place
-//! where a ball rests on a surface one is left. Close cases are left undecided.
-//!
-//! ```text
-//!               5
-//!             2╱c╲1          regions around a triangle: sides 0 to 2, corners 3 to 5;
-//!             ╱   ╲          a centre over the inside has no such feature
-//!          3 a─────b 4
-//!               0
-//! ```
+//! A contact with a corner or an edge is one of the whole surface only if no direction into a triangle there
+//! rises along its normal (see `seam.rs`). Where one of these triangles is nearer to the middle of the ball
+//! than the corner or edge, the way to its nearest point is such a direction, so that distances alone tell
+//! what the normals would: of the triangles around the place where a ball rests on a surface one is left.
+//! Close cases are left undecided.
 
 use smallvec::SmallVec;
 
@@ -22,47 +14,45 @@ use crate::math::lanes::{bits, dot, either, load, minus, spread, with_lanes};
 use crate::math::simd::{Level, Simd, SimdMask};
 use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
-/// Minimum of the squared ratio of height to longest side for which a triangle is not thin.
+/// A triangle with a squared height of more than this, of its longest side, is not thin.
 const TALL: f64 = 1.0 / 1000.0;
-/// Squared distances are different if they differ by this many units of epsilon times all squared
-/// lengths. A feature is certain if the root of that is no more than the distance to the border of
-/// its region.
+/// Squared distances that differ by more than so many rounding units of all squared lengths are different; and
+/// a feature is certain where another is the nearest only if the ball moves by the root of that.
 const CLEAR: f64 = 64.0;
-/// Codes of corners start after those of sides.
+/// Corners are numbered after sides.
 const CORNER: f64 = 3.0;
-/// Rounding error of distances, in units of epsilon times all lengths.
+/// Triangles are beyond reach where they are by so many rounding units of all lengths.
 const ROUNDING: f64 = 128.0;
-/// A height above this many units of epsilon times all coordinates is more than rounding error.
+/// A height of more than so many rounding units of all coordinates is no rounding.
 const HEIGHT: f64 = 64.0;
-/// A triangle that hides another is searched for in this many packets before and after its own.
+/// What hides a triangle is looked for among so many packets before and after its own.
 const MAX_APART: usize = 8;
 
-/// A ball and packets of triangles.
+/// A ball among triangles.
 pub(crate) struct BallQuestion<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// The number of triangles; later lanes of the last packet are copies.
+    /// How many triangles there are; what is left of the last tiles are copies.
     pub(crate) count: usize,
     /// In the frame of the triangles.
     pub(crate) center: Vector<N, 3>,
     pub(crate) radius: N,
-    /// Triangles farther from the surface of the ball are rejected, and so are those outside the
-    /// box `within`.
+    /// What is farther from the surface of the ball is of no interest, nor what is outside a box.
     pub(crate) limit: N,
     pub(crate) within: Aabb<N, 3>,
 }
 
 /// The triangles near a ball.
 pub(crate) struct NearTriangles<N> {
-    /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown.
+    /// No triangle in the box is nearer to the middle; zero if that is not known.
     pub(crate) from_middle: N,
-    /// For each packet with near triangles, in order: its index, the mask of triangles that may be
-    /// within reach, and the mask of those of them that are hidden.
+    /// Of each eight that has some, in order: which eight, those that may be within reach, and of these
+    /// those that are hidden.
     pub(crate) near: SmallVec<[(usize, [u8; 2]); 8]>,
-    /// Lower bound of the squared distances of all hidden triangles.
+    /// The squares of the distances of all that are hidden are more than this.
     pub(crate) hidden_from: N,
 }
 
-/// Finds the triangles near a ball; none is hidden unless `has_seams`.
+/// Finds the triangles near a ball; nothing is hidden unless `has_seams`.
 pub(crate) fn near_triangles<N: Real>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
@@ -70,12 +60,11 @@ pub(crate) fn near_triangles<N: Real>(
     at(Level::new(), question, has_seams)
 }
 
-/// [`near_triangles`] at a SIMD level, on which the result does not depend.
+/// By the vectors of an instruction set, on which the answer does not depend.
 fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> NearTriangles<N> {
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
-/// Tests all packets first, then searches neighbours that hide the triangles found near.
 #[inline(always)]
 fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -116,7 +105,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     seen
 }
 
-/// Tests which of eight triangles have boxes that overlap the box of the question.
+/// Which of eight triangles have boxes that meet that of the question.
 #[inline(always)]
 fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -136,43 +125,38 @@ fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     within
 }
 
-/// The features of eight triangles that are nearest to the centre.
+/// Where on eight triangles the nearest points lie.
 struct NearestFeatures<N> {
-    /// The index of the packet.
+    /// Which eight.
     block: usize,
     /// A bit for each that may be within reach.
     near: u8,
-    /// A bit for each whose nearest point certainly lies on one of its sides or corners.
+    /// And for each whose nearest point certainly lies on one of its sides or corners.
     sides: u8,
-    /// Codes: a side by the index of its first corner, a corner by its index plus [`CORNER`].
+    /// Sides by the number of their first corner, corners by their number and three.
     kinds: [N; LANES],
-    /// Lower and upper bounds of the squared distances; the upper is infinite for thin triangles,
-    /// which hide nothing.
+    /// The squared distances are not less, nor more; of what hides nothing there is no bound.
     least: [N; LANES],
     most: [N; LANES],
 }
 
-/// Eight triangles relative to the centre of the ball.
+/// Eight triangles as the middle of the ball sees them.
 struct TrianglePacket<V> {
     corners: [[V; 3]; 3],
-    /// The squared lengths of the sides, from each corner to the next.
+    /// The squares of the lengths of the sides, from each corner to the next.
     squares: [V; 3],
-    /// The position of the centre along each side, times the length of the side.
+    /// How far along each side the middle is, times its length.
     along: [V; 3],
-    /// Four times the squared area; and the barycentric coordinates of the point below the centre,
-    /// times that.
+    /// Four squared areas; and the shares of the corners in the point below the middle, times that.
     area: V,
     shares: [V; 3],
-    /// The nearest points, their squared distances, and the squared distances of the farthest
-    /// corners.
+    /// The nearest points; the squares of their distances and of those of the farthest corners.
     nearest: [V; 3],
     squared: V,
     farthest: V,
 }
 
 impl<V> TrianglePacket<V> {
-    /// Finds the nearest points: the foot on the plane if it is over the inside, else the nearest
-    /// point of the sides.
     #[inline(always)]
     fn of<S: Simd, N: Real>(
         simd: S,
@@ -189,7 +173,7 @@ impl<V> TrianglePacket<V> {
         let (ab, bc, ca) = (minus(&b, &a), minus(&c, &b), minus(&a, &c));
         let squares = [dot(&ab, &ab), dot(&bc, &bc), dot(&ca, &ca)];
         let along = [-dot(&ab, &a), -dot(&bc, &b), -dot(&ca, &c)];
-        // Scalar products for the two sides at the first corner.
+        // Of the two sides at the first corner, seen from there.
         let (turn, to_c) = (-dot(&ab, &ca), dot(&ca, &a));
         let area = squares[0] * squares[2] - turn * turn;
         let at_b = along[0] * squares[2] - to_c * turn;
@@ -215,7 +199,7 @@ impl<V> TrianglePacket<V> {
         Self { corners: [a, b, c], squares, along, area, shares, nearest, squared, farthest }
     }
 
-    /// Returns the nearest features, and a lower bound of the least distance.
+    /// Where the nearest points lie, and how near the nearest of them is.
     #[inline(always)]
     fn places<S: Simd, N: Real>(
         &self,
@@ -254,8 +238,8 @@ impl<V> TrianglePacket<V> {
         (places, least)
     }
 
-    /// Returns lower bounds of the distances from the planes across the ways to the nearest points,
-    /// and a mask of the valid ones; zero elsewhere.
+    /// The distances are not less, as the planes across the ways to the nearest points say, and where they
+    /// say so; else zero.
     #[inline(always)]
     fn bound<S: Simd, N: Real>(&self, simd: S, size: V) -> (V, V::Mask)
     where
@@ -265,14 +249,14 @@ impl<V> TrianglePacket<V> {
         let low = dot(way, a).smaller(dot(way, b)).smaller(dot(way, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
-        // NaN gives no bound, nor do small numbers that have lost digits.
+        // NaN bounds nothing, nor what has lost digits by being small.
         let is_bound = bound.simd_gt(slack)
             & low.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
             & size.simd_lt(V::all(simd, N::MAX.sqrt()));
         (is_bound.select(bound, V::all(simd, N::ZERO)), is_bound)
     }
 
-    /// Returns the triangles that are not thin, and not small for their distance from the origin.
+    /// The triangles are neither thin, nor small for where they are.
     #[inline(always)]
     fn is_tall<S: Simd, N: Real>(&self, simd: S, size: V, clear: V, away: N) -> V::Mask
     where
@@ -287,8 +271,7 @@ impl<V> TrianglePacket<V> {
             & self.area.simd_lt(V::all(simd, N::MAX * N::EPSILON))
     }
 
-    /// Returns the code of the side or corner whose region the centre is in, and its distance from
-    /// the border of the region; not positive if the centre is in none.
+    /// Which side or corner the middle is beside, and by how much: numbers that are not positive say nothing.
     #[inline(always)]
     fn beside<S: Simd, N: Real>(&self, simd: S) -> (V, V)
     where
@@ -298,8 +281,7 @@ impl<V> TrianglePacket<V> {
         let root = [self.squares[0].sqrt(), self.squares[1].sqrt(), self.squares[2].sqrt()];
         let past = [self.along[0] / root[0], self.along[1] / root[1], self.along[2] / root[2]];
         let left = [root[0] - past[0], root[1] - past[1], root[2] - past[2]];
-        // The distance outside of each side, from the barycentric coordinate of the opposite
-        // corner.
+        // How far outside of the sides: by the share of the corner across.
         let outside = [
             -self.shares[2] / (area * root[0]),
             -self.shares[0] / (area * root[1]),
@@ -321,8 +303,7 @@ impl<V> TrianglePacket<V> {
     }
 }
 
-/// Whether another triangle with the same side or corner is certainly nearer. `places` are the
-/// packets to search; thin triangles hide nothing.
+/// A triangle that is not thin is nearer than the side or corner that one is seen by, and has it too.
 #[inline(always)]
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -349,7 +330,7 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     false
 }
 
-/// Returns the triangles with a corner at exactly this point.
+/// Which triangles have a corner at a point.
 #[inline(always)]
 fn has_corner<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -364,8 +345,7 @@ fn has_corner<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     is_at(0) | is_at(1) | is_at(2)
 }
 
-/// Returns the point of a side nearest to the origin. `share` is the unclamped parameter from
-/// `start`.
+/// The point of a side nearest to the origin, given its start, the way to its end and the share of that.
 #[inline(always)]
 fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -374,7 +354,7 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     share: V,
 ) -> [V; 3] {
     let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
-    // For a side without length that is its start.
+    // Of a side without length there is its start.
     let share = share.simd_gt(zero).select(share.smaller(one), zero);
     filled(
         #[inline(always)]
@@ -382,7 +362,6 @@ fn on_side<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     )
 }
 
-/// Returns the shorter of two vectors, the first in a tie.
 #[inline(always)]
 fn shorter<S: Simd, V: Wide<S>>(first: &[V; 3], second: &[V; 3]) -> [V; 3] {
     either(dot(second, second).simd_lt(dot(first, first)), second, first)
@@ -393,7 +372,7 @@ mod tests {
     use super::*;
     use crate::collide::separation::hulls::tests::Random;
 
-    /// Two rows of triangles with common corners, around a ball near the origin.
+    /// Two rows of triangles with common corners, around a ball at the origin, or nearly so.
     fn strip<N: Real>(random: &mut Random) -> Vec<PartPacket<N, 3>> {
         let mut points: Vec<Point<N, 3>> = Vec::new();
         for at in 0..12_u32 {

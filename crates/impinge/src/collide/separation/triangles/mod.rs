@@ -1,12 +1,11 @@
-//! Triangles of a surface and one solid, eight at a time: boxes and hulls ([`axes`]), and balls
-//! ([`ball`]); and two triangles ([`pair`]).
+//! Triangles of a surface against one solid, eight at a time: boxes and hulls ([`axes`]), and balls ([`ball`]);
+//! and two triangles ([`pair`]).
 //!
-//! For most triangles a surface needs only the side or corner that is touched; contacts along the
-//! face are computed separately. Where a side and an edge cross well inside both, or one corner
-//! alone is nearest to a face and over its inside, this feature is certain, and so is the distance
-//! along the axis. All other triangles are left to the separation of the pair. So are those whose
-//! distance differs from the prediction by rounding error alone: the separation decides whether a
-//! pair is within the prediction, for queries and manifolds alike.
+//! Of most triangles a surface asks no more than which of its sides or corners is touched, and contacts along
+//! its face are made anew. Where a side and an edge cross well inside both, or one corner alone is nearest to
+//! a face and over its inside, that is plain, and it is certain that the direction gives the distance. All other
+//! triangles are left to the separation of the pair, and so are those whose distance differs from the prediction by
+//! rounding alone: the separation decides whether a pair is within it, for queries and manifolds alike.
 
 mod axes;
 mod ball;
@@ -21,47 +20,46 @@ use crate::math::simd::Level;
 use crate::math::{Mapped, Pose, Real, Vector, cross, max};
 use crate::shape::{FeatureId, Kind};
 
-/// A side and an edge cross well inside if the crossing is farther from the ends than this share of
-/// their lengths.
+/// A side and an edge cross well inside both if they do farther from the ends than this part of their length.
 const INSIDE: f64 = 1.0 / 256.0;
-/// The least squared sine of the angle between the two.
+/// The least square of the sine of the angle between the two.
 const MIN_SINE: f64 = 1.0 / 1024.0;
-/// A triangle with a smaller ratio of height to longest side may have two sides equally near.
+/// A triangle with less than this ratio of height to longest side may have its other sides as near.
 const TALL: f64 = 1.0 / 32.0;
-/// A corner is the nearest if the others are farther by this many times [`noise`]; and a side
-/// shorter than `LONG` times [`noise`] is undecided.
+/// One corner is the nearest where the others are farther by so many times what counts as rounding; and a side
+/// that is so many times shorter than another is too short to tell.
 const CLEAR: f64 = 64.0;
 const LONG: f64 = 8192.0;
 
-/// Rounding error of numbers up to 2.
+/// What arithmetic on numbers of size 2 cannot resolve.
 fn noise<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
-/// Selected triangles of many packets.
+/// Some of the triangles of many tiles.
 pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// For each packet a bit for each triangle that is selected.
+    /// For each of the tiles a bit for each triangle that is meant.
     pub(crate) near: &'a [u8],
-    /// The point that corners are taken relative to.
+    /// Where the triangles are to be seen from.
     pub(crate) origin: Vector<N, 3>,
 }
 
-/// The separation of a triangle and a solid, in the frame of the triangle.
+/// How far a triangle and a solid are apart, in the frame of the triangle.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleGap<N: Real> {
     pub(crate) distance: N,
     /// Unit, from the triangle to the solid.
     pub(crate) normal: Vector<N, 3>,
-    /// The nearest side or corner of the triangle; `None` if the normal is that of the triangle.
+    /// The side or corner of the triangle that is nearest; `None` where the normal is that of the triangle.
     pub(crate) touched: Option<FeatureId>,
 }
 
-/// Receives the index of a triangle among those selected, and its gap if that is certain.
+/// Is called with the number of a triangle, counted among those that are meant, and what is plain of it.
 pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap<N>>);
 
 impl<N: Real> TiledTriangles<'_, N> {
-    /// The packet and the lane of each selected triangle.
+    /// The tile and the lane of each triangle that is meant.
     fn places(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
         let all = self.tiles.iter().zip(self.near);
         all.flat_map(move |(tiles, near)| {
@@ -70,10 +68,9 @@ impl<N: Real> TiledTriangles<'_, N> {
     }
 }
 
-/// Visits the selected triangles that are not beyond `limit`, with their gaps where these are
-/// certain. The solid has the pose `pose12` in the frame of the triangles, relative to their
-/// origin. Returns false for solids without a kernel here. `limit` is `prediction` plus the margin
-/// for rotation.
+/// Calls with what is plain of how near each of some triangles and a solid are that are not beyond a limit;
+/// the solid lies at `pose12` in the frame of the triangles as seen from their origin. Answers false of solids
+/// that have no kernel here. The limit is the `prediction` and what turning adds to it.
 pub(crate) fn gaps3<N: Real>(
     parts: &TiledTriangles<'_, N>,
     solid: Kind<'_, N, 3>,
@@ -89,7 +86,7 @@ pub(crate) fn gaps3<N: Real>(
     true
 }
 
-/// Triangles and one solid.
+/// Triangles against one solid.
 struct TriangleQuery<'a, N: Real> {
     parts: &'a TiledTriangles<'a, N>,
     solid: &'a Polyhedral<'a, N>,
@@ -99,7 +96,6 @@ struct TriangleQuery<'a, N: Real> {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// Collects the selected triangles in packets of eight and tests these.
     fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut places, mut first) = (self.parts.places(), 0);
         loop {
@@ -121,7 +117,7 @@ impl<N: Real> TriangleQuery<'_, N> {
         }
     }
 
-    /// Returns the gap along the axis of a lane, if the feature and the distance are certain.
+    /// What the axis of a triangle says, if that is plain.
     fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
         let triangle = PlacedTriangle {
             corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
@@ -158,14 +154,12 @@ struct PlacedTriangle<'a, N: Real> {
 }
 
 impl<N: Real> PlacedTriangle<'_, N> {
-    /// A vertex of the solid in units of the pair.
     fn vertex(&self, vertex: u32) -> Vector<N, 3> {
         self.solid.vertex(vertex as usize) * self.shrink
     }
 
-    /// Returns the side of the triangle if it crosses an edge of the solid well inside of both,
-    /// seen along their common perpendicular. `None` if not, and if the triangle is thin or the
-    /// side too short.
+    /// A side of the triangle, which is not thin, if it and an edge of the solid, along whose common
+    /// perpendicular the two are parted, cross well inside of both.
     fn crossing(&self, edge: usize, side: usize) -> Option<FeatureId> {
         let [from, to] = self.solid.edges[edge].vertices.mapped(|end| self.vertex(end));
         let start = &self.corners[side];
@@ -182,7 +176,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
             share1 > room && share1 < det - room && share2 > room && share2 < det - room;
         let longest = max(own, max(third.norm_squared(), (third - way).norm_squared()));
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * noise::<N>());
-        // False for NaN.
+        // Written so that NaN is not plain.
         let is_plain = is_inside
             && det > N::lit(MIN_SINE) * own * other
             && own > long * long
@@ -190,8 +184,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
         is_plain.then(|| FeatureId::Edge([0, 1, 2][side]))
     }
 
-    /// Returns the corner of the triangle that alone is nearest to a face of the solid, if it is
-    /// over the inside of the face.
+    /// The corner of the triangle that alone is nearest to a face of the solid, and over its inside.
     fn corner_over(&self, face: usize) -> Option<FeatureId> {
         let outward = -self.normal;
         let heights = self.corners.each_ref().mapped(|corner| outward.dot(corner));
