@@ -58,8 +58,8 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
     }
 }
 
-/// The surface of a composite for the algorithms of the library: a user's, or one of its own with
-/// [`OwnSurface`].
+/// The surface of a composite for the algorithms of the library: a user's, or one of the library's
+/// own with shortcuts to the same contacts.
 ///
 /// Public only as the return type of a hidden method; users can neither make nor read one.
 #[derive(Clone, Copy)]
