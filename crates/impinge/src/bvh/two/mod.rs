@@ -1,5 +1,5 @@
-//! Two trees, each in a frame of its own: near pairs of their objects, near ones first ([`near_pairs`]), and pairs that may
-//! touch, in no order ([`meeting`]).
+//! Searches of two trees, each in its own frame: near pairs of objects, near ones first
+//! ([`near_pairs`]), and pairs that may touch, in no order ([`meeting`]).
 
 mod agenda;
 mod meeting;

@@ -1,14 +1,15 @@
-//! Regions of one tree as the blocks of another see them, in `f32`: which of the boxes of a block a region may touch.
+//! Regions of one tree in the frame of another, in `f32`, and the test which boxes of a block a
+//! region may touch.
 //!
 //! ```text
 //!    own frame            the other tree's frame
 //!   +--------+               /\_               along the axes of both frames ([`TurnedBox::bounds`], `slabs`)
 //!   |  box   |  -- Turn -->  \  \_   gap  [ ]  across the slab of what is in the box
-//!   +--------+                \__/ ------>[ ]  along the way to the middle of each box ([`Extent`])
+//!   +--------+                \__/ ------>[ ]  along the line to the centre of each box ([`Extent`])
 //! ```
 //!
-//! A box and a slab part blocks that face each other. Where the nearest objects are asked for most blocks lie beside each
-//! other, and the way between their middles parts these.
+//! Boxes and slabs separate blocks that face each other. In a search for the nearest pair most
+//! blocks lie beside each other, and the direction between their centres separates these.
 
 use smallvec::SmallVec;
 
@@ -18,27 +19,29 @@ use crate::math::lanes::{bits, with_lanes};
 use crate::math::simd::{Level, Simd};
 use crate::math::{Pose, Real, Vector, Wide, filled};
 
-/// Lanes that are treated at once.
+/// Lanes that one pass handles.
 const HALF: usize = LANES / 2;
 
-/// How the frame of one tree lies in that of the other.
+/// The pose of one tree in the frame of the other.
 #[derive(Clone, Copy)]
 pub(super) struct Turn<const D: usize> {
-    /// Its axes.
+    /// Columns of the rotation.
     axes: [[f32; D]; D],
     pub(super) shift: [f32; D],
 }
 
-/// A convex region as the blocks of a tree see it: a box and slabs, all wider by the reach and what rounding does.
+/// A convex region in the frame of the blocks it is compared with: a box and slabs, all widened by
+/// the reach and the rounding error.
 pub(super) struct TurnedBox<const D: usize> {
     bounds: Bounds<D>,
-    /// Along the axes of the other frame, and across a slab.
+    /// Along the axes of the own frame, and across a slab.
     slabs: SmallVec<[BlockSlab<D>; 4]>,
-    /// Where the nearest are asked for.
+    /// Only in a search for the nearest pair.
     extent: Option<Extent<D>>,
 }
 
-/// What a region reaches along any direction: the hull of some points, wider by vectors both ways and by a length.
+/// The extent of a region along any direction: the hull of some points plus the segments from `-w`
+/// to `w` for each `w` of `wider`, widened by `room`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,
@@ -46,24 +49,28 @@ struct Extent<const D: usize> {
     room: f32,
 }
 
-/// The boxes of a block that a region may touch.
+/// The boxes of a block that a region may touch, as a bit mask.
 pub(super) struct Held {
     pub(super) mask: u32,
-    /// How far each box is from the region along the direction that parts them best, or less.
+    /// Lower bounds of the distances of the boxes to the region: the largest gap along the tested
+    /// directions.
     pub(super) gaps: [f32; LANES],
 }
 
 impl<const D: usize> Turn<D> {
+    /// Rounds a pose to `f32`.
     pub(super) fn of<N: Real>(pose: &Pose<N, D>) -> Self {
         let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));
         Self { axes, shift: filled(|row| pose.translation[row].as_f32()) }
     }
 
+    /// Rotates a vector into the frame of the other tree.
     pub(super) fn vector(&self, local: &[f32; D]) -> [f32; D] {
         filled(|row| (0..D).map(|axis| self.axes[axis][row] * local[axis]).sum())
     }
 
-    /// A box of one tree, and a slab around the same, as the other tree sees them, wider by `room`.
+    /// Transforms a box of one tree, and its slab, into the frame of the other tree, widened by
+    /// `room`.
     pub(super) fn turned(
         &self,
         bounds: &Bounds<D>,
@@ -109,7 +116,8 @@ fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
 }
 
 impl<const D: usize> TurnedBox<D> {
-    /// A box around an object and, if given, its corners, in the frame of the blocks; all wider by `room`.
+    /// Takes a box around an object and, if given, its corners, in the frame of the blocks; all
+    /// widened by `room`.
     pub(super) fn of_object<N: Real>(
         bounds: &Bounds<D>,
         corners: Option<[Vector<N, D>; 3]>,
@@ -123,7 +131,7 @@ impl<const D: usize> TurnedBox<D> {
         Self { bounds, slabs: SmallVec::new(), extent }
     }
 
-    /// Which of the boxes of a block it may touch.
+    /// Tests the boxes of a block; those that may be touched are set in the mask.
     pub(super) fn held(&self, level: Level, block: &Block<D>) -> Held {
         let mut held = Held { mask: 0, gaps: [0.0; LANES] };
         for first in [0, HALF] {
@@ -134,7 +142,7 @@ impl<const D: usize> TurnedBox<D> {
         held
     }
 
-    /// Eight of the boxes of a block. Empty ones are infinitely far.
+    /// Tests eight boxes of a block. Empty lanes are infinitely far.
     #[inline(always)]
     fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
         let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));
@@ -155,7 +163,7 @@ impl<const D: usize> TurnedBox<D> {
                     let far = usize::from(across[axis] >= 0.0);
                     (lowest, highest) = (lowest + ends[1 - far], highest + ends[far]);
                 }
-                // What is no number is not larger.
+                // NaN is not larger, so it changes nothing.
                 gap = (lowest - S::F32x8::all(simd, *high)).larger(gap);
                 gap = (S::F32x8::all(simd, *low) - highest).larger(gap);
             }
@@ -171,14 +179,14 @@ impl<const D: usize> TurnedBox<D> {
 }
 
 impl<const D: usize> Extent<D> {
-    /// A part by its corners.
+    /// The hull of the corners of a part.
     fn of_corners<N: Real>(corners: &[Vector<N, D>; 3], room: f32) -> Self {
         let points: [[f32; D]; 3] = filled(|at: usize| filled(|axis| corners[at][axis].as_f32()));
         let middle = filled(|axis| points.iter().map(|corner| corner[axis] / 3.0).sum());
         Self { middle, points: SmallVec::from_slice(&points), wider: SmallVec::new(), room }
     }
 
-    /// How far eight of the boxes of a block are beyond along the way from the middle to the middle of each.
+    /// The gaps to eight boxes of a block along the line from `middle` to the centre of each.
     #[inline(always)]
     fn gaps<S: Simd>(&self, simd: S, [lo, hi]: &[[S::F32x8; D]; 2]) -> S::F32x8 {
         let (half, zero) = (S::F32x8::all(simd, 0.5), S::F32x8::all(simd, 0.0));

@@ -1,9 +1,9 @@
 //! Two triangles in 3D that overlap or nearly touch: the separating axis test.
 //!
-//! The Minkowski difference of two triangles has the faces of both, and a parallelogram for each two sides whose
-//! arcs cross on the Gauss map. The face nearest to the origin is the shortest way out of an overlap (Gregorius, "The
-//! Separating Axis Test between Convex Polyhedra", GDC 2013). Of a triangle the map is two poles, its normals, and a
-//! half circle for each side:
+//! The Minkowski difference of two triangles has the faces of both, and a parallelogram for each
+//! pair of sides whose arcs cross on the Gauss map. The face nearest to the origin is the shortest
+//! way out of an overlap (Gregorius, "The Separating Axis Test between Convex Polyhedra", GDC
+//! 2013). The Gauss map of a triangle has two poles, its normals, and a half circle for each side:
 //!
 //! ```text
 //!              +n1                 side i of the first and side j of the second make a face iff
@@ -13,8 +13,9 @@
 //!              -n1
 //! ```
 //!
-//! An answer counts where its two points lie on the two features that the direction belongs to. All others are left
-//! to [`hulls`]: thin triangles, sides that are almost parallel, and triangles apart whose nearest points are corners.
+//! A result counts if its two points lie on the features that the axis belongs to. All others are
+//! left to [`hulls`]: thin triangles, sides that are almost parallel, and separated triangles with
+//! nearest points at corners.
 
 use crate::collide::Pair;
 use crate::collide::separation::hulls::{self, THIN};
@@ -23,16 +24,16 @@ use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min};
 use crate::shape::{Kind, SupportMap, Triangle};
 
-/// The sine below which two sides are parallel, in rounding units; a face of the Minkowski difference between them is
-/// narrower than rounding.
+/// The sine below which two sides count as parallel, in units of epsilon: their face of the
+/// Minkowski difference is narrower than rounding error.
 const PARALLEL: f64 = 16.0;
-/// The sine below which the direction across two sides is inexact: 32 rounding units at most.
+/// The sine below which the direction across two sides is inexact, by up to 32 rounding units.
 const MIN_SINE: f64 = 1.0 / 32.0;
 
-/// The separation of two triangles: the way out of an overlap, or their distance.
+/// Returns the separation of two triangles: the shortest way out of an overlap, or the distance.
 ///
-/// Normals of the first triangle come before those of the second, both before directions across two sides, unless
-/// the gap is larger by more than rounding.
+/// The normal of the first triangle is preferred to that of the second, and both to directions
+/// across two sides, unless the gap there is larger by more than rounding error.
 pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     let (Kind::Triangle(first), Kind::Triangle(second)) = (pair.first, pair.second) else {
         return hulls::separation(pair, limit);
@@ -51,10 +52,11 @@ enum Axes<N: Real> {
     /// The triangles are farther apart than the limit.
     Beyond,
     Found(Separation<N, 3>),
-    /// No two points prove the answer.
+    /// No two points prove the result.
     Unproved,
 }
 
+/// Tests the axes in the frame of the first triangle, in units of the pair.
 fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit: N) -> Axes<N> {
     let [reach1, reach2] = triangles.mapped(SupportMap::reach);
     let units = Units::of(reach1, reach2, &pose12.translation);
@@ -81,7 +83,7 @@ fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit:
     let is_edge = edges.gap > face.gap + noise;
     let found = if is_edge { of_edges() } else { of_face().or_else(of_edges) };
     match found {
-        // Also false for NaN.
+        // False for NaN.
         Some(found) if inexact <= found.distance + noise => Axes::Found(found.scaled(units.scale)),
         _ => Axes::Unproved,
     }
@@ -99,7 +101,8 @@ struct PlacedTriangle<N: Real> {
 }
 
 impl<N: Real> PlacedTriangle<N> {
-    /// A triangle in its own frame; `None` of one that is thin, or lower than rounding of the pair.
+    /// Takes a triangle in its own frame; `None` if it is thin, or lower than rounding error of the
+    /// pair.
     fn new(triangle: &Triangle<N, 3>, shrink: N) -> Option<Self> {
         let corners = triangle.corners().mapped(|corner| corner.coords * shrink);
         let [a, b, c] = &corners;
@@ -109,11 +112,12 @@ impl<N: Real> PlacedTriangle<N> {
         let across = cross(&sides[0], &sides[1]);
         let area = across.norm();
         let least = N::TWO * hulls::noise() * longest.sqrt();
-        // Written so that NaN has no normal.
+        // False for NaN.
         let is_wide = area > N::lit(THIN) * longest && area > least && area < N::INFINITY;
         is_wide.then(|| Self { corners, sides, squared, normal: across / area })
     }
 
+    /// Transforms the triangle by a pose.
     fn at(self, pose: &Pose<N, 3>) -> Self {
         Self {
             corners: self.corners.mapped(|corner| pose.point(&Point::from(corner)).coords),
@@ -123,7 +127,8 @@ impl<N: Real> PlacedTriangle<N> {
         }
     }
 
-    /// A point at the height of the triangle, or its foot, lies in the triangle up to rounding.
+    /// Whether the foot of a point on the plane of the triangle lies in the triangle, within
+    /// rounding error.
     fn is_over(&self, point: &Vector<N, 3>) -> bool {
         let noise = hulls::noise::<N>();
         (0..3).all(|side: usize| {
@@ -134,17 +139,19 @@ impl<N: Real> PlacedTriangle<N> {
     }
 }
 
-/// The direction of one triangle's normal, or its opposite, with the larger gap.
+/// The normal of one triangle, or its opposite, whichever has the larger gap.
 struct FaceAxis<N: Real> {
-    /// How far the other triangle lies above the plane of this one; negative where it reaches below.
+    /// The height of the other triangle above the plane of this one; negative where it extends
+    /// below.
     gap: N,
     /// Unit, to the side of the other triangle.
     outward: Vector<N, 3>,
-    /// How far the corners of the other lie above the plane.
+    /// The heights of the other's corners above the plane.
     heights: [N; 3],
 }
 
 impl<N: Real> FaceAxis<N> {
+    /// Takes the direction with the larger gap, the front in a tie.
     fn new(own: &PlacedTriangle<N>, other: &PlacedTriangle<N>) -> Self {
         let up = other.corners.mapped(|corner| own.normal.dot(&(corner - own.corners[0])));
         let (low, high) = (min(min(up[0], up[1]), up[2]), max(max(up[0], up[1]), up[2]));
@@ -155,7 +162,8 @@ impl<N: Real> FaceAxis<N> {
         }
     }
 
-    /// The first of the lowest corners of the other triangle that lies over this one, and its foot before it.
+    /// Returns the first of the lowest corners of the other triangle that lies over this one, after
+    /// its foot on this one.
     fn points(
         &self,
         own: &PlacedTriangle<N>,
@@ -167,8 +175,8 @@ impl<N: Real> FaceAxis<N> {
         Some([corner - self.outward * self.gap, *corner])
     }
 
-    /// The separation by a point of the triangle with this face and one of the other; `is_second` says that the face is
-    /// the second triangle.
+    /// Returns the separation by a point `own` of the triangle with this face and a point `other`
+    /// of the other. `is_second` says that the face belongs to the second triangle.
     fn found(&self, is_second: bool, own: Vector<N, 3>, other: Vector<N, 3>) -> Separation<N, 3> {
         let (normal, points) =
             if is_second { (-self.outward, [other, own]) } else { (self.outward, [own, other]) };
@@ -177,18 +185,18 @@ impl<N: Real> FaceAxis<N> {
     }
 }
 
-/// The direction across a side of each triangle.
+/// The direction across one side of each triangle.
 struct EdgeAxis<N: Real> {
     gap: N,
     sides: [usize; 2],
-    /// From the first triangle to the second, as long as `length`.
+    /// From the first triangle to the second; its length is `length`.
     across: Vector<N, 3>,
     length: N,
 }
 
 impl<N: Real> EdgeAxis<N> {
-    /// The one with the largest gap of those that are faces of the Minkowski difference, and a gap that those that are
-    /// not exact do not exceed.
+    /// Returns the axis with the largest gap among those of faces of the Minkowski difference, and
+    /// an upper bound of the gaps of the inexact ones.
     fn best(first: &PlacedTriangle<N>, second: &PlacedTriangle<N>) -> (Self, N) {
         let falls = second.sides.mapped(|side| side.dot(&first.normal) < N::ZERO);
         let rises = first.sides.mapped(|side| side.dot(&second.normal) > N::ZERO);
@@ -217,7 +225,8 @@ impl<N: Real> EdgeAxis<N> {
         (best, inexact)
     }
 
-    /// The separation by the nearest points of the lines along both sides; `None` if one is beyond its side.
+    /// Returns the separation by the nearest points of the lines along both sides; `None` if one is
+    /// not on its side.
     fn points(
         &self,
         first: &PlacedTriangle<N>,
@@ -229,7 +238,7 @@ impl<N: Real> EdgeAxis<N> {
         let (arm, along) = (start2 - start1, cross(side1, side2));
         let squared = self.length * self.length;
         let shares = [cross(&arm, side2), cross(&arm, side1)].mapped(|turn| turn.dot(&along));
-        // Also false for NaN.
+        // False for NaN.
         let is_inside = shares.iter().all(|share| *share >= N::ZERO && *share <= squared);
         is_inside.then(|| Separation {
             distance: self.gap,
@@ -259,7 +268,7 @@ mod tests {
         }
     }
 
-    /// Triangles that overlap, with corners by `corner`; answers the share that is proved.
+    /// Returns the share of overlapping triangles that are proved, with corners from `corner`.
     fn share<N: Real>(mut corner: impl FnMut() -> Point<N, 3>) -> f64 {
         let (mut proved, mut overlapping) = (0, 0);
         while overlapping < 600 {
@@ -281,7 +290,8 @@ mod tests {
         let (mut noise, mut grid) = (Noise(3), Noise(4));
         assert!(share::<f32>(|| Point::from(noise.vector(1.0))) > 0.9);
         assert!(share::<f64>(|| Point::from(noise.vector(1.0))) > 0.9);
-        // Corners on a grid: parallel sides, shared corners, triangles in one plane and without area.
+        // Corners on a grid: parallel sides, shared corners, coplanar triangles and triangles
+        // without area.
         let mut step = || Point::from(grid.vector::<f64>(1.5).map(f64::round));
         assert!(share::<f64>(&mut step) > 0.5);
     }
