@@ -213,7 +213,7 @@ where
             let toward1 = self.rotation.tr_mul(&-normal);
             let curved = self.solid2.curved_support(&Point::from(local), &toward1);
             return curved.map_or(corner, |found| {
-                let bend = turned(&self.rotation, &(found.bend * self.shrink));
+                let bend = rotated_symmetric(&self.rotation, &(found.bend * self.shrink));
                 let on = self.rotation * (found.point.coords * self.shrink) + self.translation;
                 Branch { on, bend: Some(bend), ..corner }
             });
@@ -235,7 +235,7 @@ where
 /// Rotates a symmetric matrix: `R S Rᵀ`.
 ///
 /// Written as loops, since products of small matrices are not inlined.
-fn turned<N: Real, const D: usize>(
+fn rotated_symmetric<N: Real, const D: usize>(
     rotation: &Matrix<N, D>,
     symmetric: &Matrix<N, D>,
 ) -> Matrix<N, D> {

@@ -84,7 +84,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// Returns the ring with angles from another of its normals.
-    fn turned(&self, angle: N) -> Option<Self> {
+    fn rotated(&self, angle: N) -> Option<Self> {
         Self::near(self.axis, self.rise, &self.at(angle))
     }
 
@@ -106,7 +106,7 @@ impl<N: Real> NormalRing<N> {
     ) -> Option<(Self, SupportCandidate<N, 3>)> {
         let mut best: Option<(Self, SupportCandidate<N, 3>)> = None;
         for top in self.tops(difference) {
-            let Some(ring) = self.turned(top).and_then(|ring| ring.risen(difference)) else {
+            let Some(ring) = self.rotated(top).and_then(|ring| ring.risen(difference)) else {
                 continue;
             };
             let found = SupportCandidate::along(difference, ring.at(N::ZERO));
@@ -160,7 +160,7 @@ impl<N: Real> NormalRing<N> {
                 heights = [heights[1], self.height(difference, right)];
             }
         }
-        self.turned(if heights[0] >= heights[1] { left } else { right })
+        self.rotated(if heights[0] >= heights[1] { left } else { right })
     }
 
     /// Polishes the normal at angle zero by Newton's method, over the points that are lowest to all

@@ -112,8 +112,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
         let mut e = Vector::<N, D>::zeros();
         e[0] = N::ONE;
         // Every number of a rotation is a factor of some term in each rotated axis.
-        let turned = isometry.rotation.transform_vector(&e);
-        Self::from_translation(isometry.translation.vector).unless_broken(turned.as_slice())
+        let rotated = isometry.rotation.transform_vector(&e);
+        Self::from_translation(isometry.translation.vector).unless_broken(rotated.as_slice())
     }
 
     /// This pose without its rotation, for a solid that no rotation changes; see
@@ -193,7 +193,7 @@ impl<N: Real, const D: usize> Pose<N, D> {
 
     /// The extents, along each outer axis, of a rotated box about the origin.
     #[inline]
-    pub(crate) fn turned_reach(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
+    pub(crate) fn rotated_extents(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
         let mut reach = Vector::<N, D>::zeros();
         for row in 0..D {
             for column in 0..D {

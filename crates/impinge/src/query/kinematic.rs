@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
 
     /// The kinematic in the frames of two shapes whose parts the solids are: `pose1` and `pose2`
     /// are the poses of the solids in these frames, `turns` is whether rotations change the shapes.
-    pub(super) fn seen_from(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
+    pub(super) fn in_frames(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,
             local1: pose1.point(&self.local1),

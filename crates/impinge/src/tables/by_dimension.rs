@@ -12,7 +12,7 @@ use crate::collide::parts::{
     AxisSlabs, Between, PairVerdicts, PartPairs, part_gaps2, part_gaps3, part_pairs2, part_pairs3,
 };
 use crate::collide::separation::{
-    Projection, distance_in_plane, distance_in_space, seen_in_plane, seen_in_space,
+    Projection, distance_in_plane, distance_in_space, project_on_solid_2d, project_on_solid_3d,
     separation_in_plane, separation_in_space,
 };
 use crate::collide::{
@@ -84,7 +84,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     );
 
     /// Projects a point on a solid; `None` if there is no closed form.
-    fn seen(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
+    fn project_on_solid(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
 
     /// Computes the contact points of a pair: by the SIMD kernel of its kinds if there is one, else from the
     /// separation.
@@ -230,8 +230,8 @@ impl<N: Real> ByDimension<N, 2> for Here {
         separations2(pairs, limit, out);
     }
 
-    fn seen(solid: Kind<'_, N, 2>, point: &Point<N, 2>) -> Option<Projection<N, 2>> {
-        seen_in_plane(solid, point)
+    fn project_on_solid(solid: Kind<'_, N, 2>, point: &Point<N, 2>) -> Option<Projection<N, 2>> {
+        project_on_solid_2d(solid, point)
     }
 
     fn contacts_of_separation(
@@ -376,8 +376,8 @@ impl<N: Real> ByDimension<N, 3> for Here {
         separations3(pairs, limit, out);
     }
 
-    fn seen(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> Option<Projection<N, 3>> {
-        seen_in_space(solid, point)
+    fn project_on_solid(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> Option<Projection<N, 3>> {
+        project_on_solid_3d(solid, point)
     }
 
     fn contacts_of_separation(

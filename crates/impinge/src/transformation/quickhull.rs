@@ -14,7 +14,7 @@ type P3 = Point<f64, 3>;
 
 const NONE: u32 = u32::MAX;
 
-/// The value of `seen` of a facet that was removed from the surface.
+/// The value of `visited` of a facet that was removed from the surface.
 const GONE: u32 = u32::MAX;
 
 /// 2⁻⁴⁰: heights above the plane of a facet beyond this have the right sign and a magnitude
@@ -38,7 +38,7 @@ pub(super) struct Facet {
     /// The first of the points on its list.
     waiting: u32,
     /// The number of the last search that visited it.
-    seen: u32,
+    visited: u32,
 }
 
 impl Facet {
@@ -55,7 +55,7 @@ impl Facet {
         let doubled_area = across.norm();
         let normal = across * (1.0 / doubled_area);
         let offset = normal.dot(&a.coords);
-        Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, seen: 0 }
+        Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, visited: 0 }
     }
 
     /// The height of a point in front of it, within [`DOUBT`].
@@ -228,7 +228,7 @@ impl<'a> HullSurface<'a> {
 
     /// Extends the surface to the point with the largest height over a facet.
     fn raise(&mut self, facet: u32, pending: &mut Vec<u32>) {
-        if self.facets[at(facet)].seen == GONE {
+        if self.facets[at(facet)].visited == GONE {
             return;
         }
         let Some(point) = self.farthest(facet) else { return };
@@ -236,7 +236,7 @@ impl<'a> HullSurface<'a> {
         let first = self.replace(point);
         for index in 0..self.visible.len() {
             let facet = &mut self.facets[at(self.visible[index])];
-            facet.seen = GONE;
+            facet.visited = GONE;
             let mut next = facet.waiting;
             while next != NONE {
                 let orphan = next;
@@ -255,7 +255,7 @@ impl<'a> HullSurface<'a> {
         self.searches += 1;
         self.visible.clear();
         self.horizon.clear();
-        self.facets[at(first)].seen = self.searches;
+        self.facets[at(first)].visited = self.searches;
         self.visible.push(first);
         let mut next = 0;
         while let Some(&facet) = self.visible.get(next) {
@@ -264,11 +264,11 @@ impl<'a> HullSurface<'a> {
             for side in 0..3 {
                 let neighbor = neighbors[side];
                 let beyond = &mut self.facets[at(neighbor)];
-                if beyond.seen == self.searches {
+                if beyond.visited == self.searches {
                     continue;
                 }
                 if beyond.height(self.points, point) > 0.0 {
-                    beyond.seen = self.searches;
+                    beyond.visited = self.searches;
                     self.visible.push(neighbor);
                 } else {
                     let (from, to) = (corners[side], corners[(side + 1) % 3]);
@@ -304,7 +304,7 @@ impl<'a> HullSurface<'a> {
     /// later facets may turn below them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
-            if self.facets[at(facet)].seen == GONE {
+            if self.facets[at(facet)].visited == GONE {
                 continue;
             }
             let mut next = core::mem::replace(&mut self.facets[at(facet)].waiting, NONE);
@@ -360,12 +360,12 @@ impl<'a> HullSurface<'a> {
         let mut renamed = vec![NONE; self.facets.len()];
         let mut count = 0;
         for (facet, name) in self.facets.iter().zip(&mut renamed) {
-            if facet.seen != GONE {
+            if facet.visited != GONE {
                 *name = count;
                 count += 1;
             }
         }
-        self.facets.retain(|facet| facet.seen != GONE);
+        self.facets.retain(|facet| facet.visited != GONE);
         for facet in &mut self.facets {
             facet.neighbors = facet.neighbors.mapped(|neighbor| renamed[at(neighbor)]);
         }

@@ -19,7 +19,7 @@ use smallvec::SmallVec;
 
 use super::agenda::{Agenda, OpenPair, STACK};
 use super::near_pairs::Toward;
-use super::regions::{Held, Turn, TurnedBox};
+use super::regions::{Held, RotatedBox, Turn};
 use crate::bounding_volume::Aabb;
 use crate::bvh::tree::small;
 use crate::bvh::{Bounds, LANES, NONE, Tree};
@@ -174,8 +174,8 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
             let turn = &self.turns[1 - which];
-            let turned = turn.vector(&self.bounds(1 - which, &pair).center());
-            let middle = filled(|row| turned[row] + turn.shift[row]);
+            let center = turn.vector(&self.bounds(1 - which, &pair).center());
+            let middle = filled(|row| center[row] + turn.shift[row]);
             let Some(slot) = self.trees[which].slot_near(&middle) else { return };
             (pair.layers[which], pair.blocks[which]) = (0, slot / small(LANES));
             found[which] = self.trees[which].ids[slot as usize];
@@ -195,9 +195,10 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     fn held(&self, which: usize, pair: &OpenPair, room: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
-        let seen = self.turns[1 - which].turned(own.bounds, own.slab, room, self.is_for_nearest);
+        let region =
+            self.turns[1 - which].region_of(own.bounds, own.slab, room, self.is_for_nearest);
         let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
-        seen.held(self.level, &self.trees[which].layers[layer].blocks[block])
+        region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
 
     /// Queues the children of one block, each paired with the other block, so that the deepest
@@ -241,7 +242,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
             let aabb = self.question.object_in_other(which, id);
             let corners = self.question.corners().filter(|_| self.is_for_nearest);
-            let region = TurnedBox::of_object(&Bounds::enclosing(&aabb), corners, room);
+            let region = RotatedBox::of_object(&Bounds::enclosing(&aabb), corners, room);
             let near = region.held(self.level, block);
             let ids = Ones::<LANES>(near.mask & masks[1 - which])
                 .filter_map(|lane| other.id_in(others * small(LANES) + small(lane)));
@@ -265,7 +266,7 @@ mod tests {
     /// Segments by their ends, in the frame of their tree.
     type Segments = Vec<[Point<f64, 3>; 2]>;
 
-    struct Turned<'a> {
+    struct RotatedPairs<'a> {
         segments: &'a [Segments; 2],
         poses: [Pose<f64, 3>; 2],
         reach: f64,
@@ -276,7 +277,7 @@ mod tests {
         own: Option<[Vector<f64, 3>; 3]>,
     }
 
-    impl TreeMeeting<f64, 3> for Turned<'_> {
+    impl TreeMeeting<f64, 3> for RotatedPairs<'_> {
         fn pose(&self, which: usize) -> &Pose<f64, 3> {
             &self.poses[which]
         }
@@ -340,7 +341,7 @@ mod tests {
             let turn = noise.vector::<f64>(3.0);
             let pose = Pose::from(Isometry3::new(Vector::<f64, 3>::new(9.0, -4.0, 2.0), turn));
             let poses = [pose.inverse(), pose];
-            let mut pairs = Turned {
+            let mut pairs = RotatedPairs {
                 segments: &all,
                 poses,
                 reach,

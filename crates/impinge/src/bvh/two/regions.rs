@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!    own frame            the other tree's frame
-//!   +--------+               /\_               along the axes of both frames ([`TurnedBox::bounds`], `slabs`)
+//!   +--------+               /\_               along the axes of both frames ([`RotatedBox::bounds`], `slabs`)
 //!   |  box   |  -- Turn -->  \  \_   gap  [ ]  across the slab of what is in the box
 //!   +--------+                \__/ ------>[ ]  along the line to the centre of each box ([`Extent`])
 //! ```
@@ -32,7 +32,7 @@ pub(super) struct Turn<const D: usize> {
 
 /// A convex region in the frame of the blocks it is compared with: a box and slabs, all widened by
 /// the reach and the rounding error.
-pub(super) struct TurnedBox<const D: usize> {
+pub(super) struct RotatedBox<const D: usize> {
     bounds: Bounds<D>,
     /// Along the axes of the own frame, and across a slab.
     slabs: SmallVec<[BlockSlab<D>; 4]>,
@@ -71,16 +71,16 @@ impl<const D: usize> Turn<D> {
 
     /// Transforms a box of one tree, and its slab, into the frame of the other tree, widened by
     /// `room`.
-    pub(super) fn turned(
+    pub(super) fn region_of(
         &self,
         bounds: &Bounds<D>,
         slab: Option<&BlockSlab<D>>,
         room: f32,
         is_for_nearest: bool,
-    ) -> TurnedBox<D> {
+    ) -> RotatedBox<D> {
         let half: [f32; D] = filled(|axis| bounds.hi[axis] * 0.5 - bounds.lo[axis] * 0.5);
-        let turned: [f32; D] = self.vector(&bounds.center());
-        let center: [f32; D] = filled(|row| turned[row] + self.shift[row]);
+        let rotated: [f32; D] = self.vector(&bounds.center());
+        let center: [f32; D] = filled(|row| rotated[row] + self.shift[row]);
         let extents: [f32; D] = filled(|row| {
             room + (0..D).map(|axis| self.axes[axis][row].abs() * half[axis]).sum::<f32>()
         });
@@ -107,7 +107,7 @@ impl<const D: usize> Turn<D> {
             wider: wider.collect(),
             room,
         });
-        TurnedBox { bounds, slabs, extent }
+        RotatedBox { bounds, slabs, extent }
     }
 }
 
@@ -115,7 +115,7 @@ fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-impl<const D: usize> TurnedBox<D> {
+impl<const D: usize> RotatedBox<D> {
     /// Takes a box around an object and, if given, its corners, in the frame of the blocks; all
     /// widened by `room`.
     pub(super) fn of_object<N: Real>(

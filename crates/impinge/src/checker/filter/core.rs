@@ -1,6 +1,6 @@
 //! Distances of points from an obstacle, eight points at a time.
 
-use crate::math::lanes::{dot, lit, minus, norm, seen_from, times};
+use crate::math::lanes::{dot, lit, minus, norm, rotated_into, times};
 use crate::math::simd::Simd;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, Wide, filled};
 use crate::shape::{Kind, Shape};
@@ -179,5 +179,5 @@ fn local<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
         #[inline(always)]
         |axis| all(simd, &axes[axis]),
     );
-    seen_from(&axes, &minus(points, &all(simd, center)))
+    rotated_into(&axes, &minus(points, &all(simd, center)))
 }

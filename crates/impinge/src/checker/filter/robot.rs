@@ -148,10 +148,10 @@ pub(super) fn way_to<N: Real, const D: usize>(
         pose.rotation *= rotation.unwrap_or_else(Matrix::<N, D>::identity);
         rotation.is_some()
     });
-    let is_turned = turning.next().is_some();
+    let is_rotated = turning.next().is_some();
     let beyond: f64 = turning.map(|node| node.origin.norm().as_f64()).sum();
     let center_at_zero = pose.point(&Point::from(center)).coords;
-    let (anchor, length) = if is_turned {
+    let (anchor, length) = if is_rotated {
         (pose.translation, own + beyond)
     } else {
         (center_at_zero, f64::from(radius))

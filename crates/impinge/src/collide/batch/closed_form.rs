@@ -9,13 +9,13 @@
 //!     2, 3                          then D signs                  2: likewise
 //!     4 .. 8                                                      second contact: likewise
 //!
-//!   `turned`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
+//!   `per_pair`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
 //! ```
 
 use core::marker::PhantomData;
 
 use super::gather::Inputs;
-use super::masks::turned;
+use super::masks::per_pair;
 use super::vectors::{bits, is_finite};
 use super::{Batch, PairQuestion};
 use crate::collide::manifold::ids::{PairPose, is_same_point};
@@ -73,7 +73,7 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
         F::find::<S, V, L>(simd, inputs, found);
         found.is_found &= inputs.is_usable;
         found.is_apart &= inputs.is_usable;
-        found.parts = turned(found.parts);
+        found.parts = per_pair(found.parts);
     }
 
     #[inline(always)]

@@ -127,9 +127,9 @@ impl<V> ContactLine<V> {
         let distance = distance.larger(self.distance);
         let is_near = distance.simd_le(self.prediction);
         let is_at = distance.simd_le(self.prediction + self.tolerance);
-        let is_turned = distance.simd_le(self.prediction + self.sine * flat.abs());
+        let is_by_rotation = distance.simd_le(self.prediction + self.sine * flat.abs());
         let beyond = is_at.select(self.prediction, distance);
-        (is_near.select(distance, beyond), is_near | is_at | is_turned)
+        (is_near.select(distance, beyond), is_near | is_at | is_by_rotation)
     }
 }
 
@@ -141,7 +141,7 @@ struct LaneSide<V, M> {
     ends: [PlaneLanes<V>; 2],
     places: [V; 2],
     /// Lanes where that order is the opposite of the segment's.
-    is_turned: M,
+    is_reversed: M,
     /// Radius around the segment.
     radius: V,
     /// Cosine of the angle between the segment and the tangent.
@@ -172,7 +172,7 @@ impl<V, M> LaneSide<V, M> {
     {
         let [first, last] = ends;
         let flats = [line.flat(first), line.flat(last)];
-        let is_turned = flats[1].simd_lt(flats[0]);
+        let is_reversed = flats[1].simd_lt(flats[0]);
         let places = [flats[0].smaller(flats[1]), flats[0].larger(flats[1])];
         let length = places[1] - places[0];
         let cosine = length / norm(&minus(last, first));
@@ -185,9 +185,9 @@ impl<V, M> LaneSide<V, M> {
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
             is_first,
-            ends: [either(is_turned, last, first), either(is_turned, first, last)],
+            ends: [either(is_reversed, last, first), either(is_reversed, first, last)],
             places,
-            is_turned,
+            is_reversed,
             radius,
             cosine,
             top: (radius, is_last_near.select(flats[1], flats[0])),
@@ -249,8 +249,8 @@ impl<V, M> LaneSide<V, M> {
     where
         M: SimdMask<S>,
     {
-        let (turned, straight) = (self.is_turned, !self.is_turned);
-        if end == 0 { [straight, turned] } else { [turned, straight] }
+        let (reversed, straight) = (self.is_reversed, !self.is_reversed);
+        if end == 0 { [straight, reversed] } else { [reversed, straight] }
     }
 }
 

@@ -3,7 +3,8 @@
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::separation::is_usual;
 pub(super) use crate::math::lanes::{
-    bits, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus, seen_from, times,
+    bits, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus, rotated_into,
+    times,
 };
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};

@@ -296,8 +296,8 @@ fn chosen<N: Real, const D: usize>(
     if candidates.len() <= limit.min(ALL) {
         return (0..candidates.len()).collect();
     }
-    let seen = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
-    reduce::chosen(&mut reduce::projected(seen, levels), limit, tolerance)
+    let flattened = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
+    reduce::chosen(&mut reduce::projected(flattened, levels), limit, tolerance)
 }
 
 /// Adds the nearest points. They replace the candidate with the same features if there is exactly

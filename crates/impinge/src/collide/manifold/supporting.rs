@@ -156,13 +156,13 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     }
     let is_between = lower > N::lit(4.0) * N::EPSILON * reach;
     is_between.then(|| {
-        turn_behind(&lowest, out);
+        start_after(&lowest, out);
         lowest
     })
 }
 
 /// Rotates the corners so that the first is the one after a point on the rim.
-fn turn_behind<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
+fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
     let count = out.vertices.len();
     let way = |at: usize| (out.vertices[at] - point).norm();
     let around = |at: usize| way(at) + way((at + 1) % count);

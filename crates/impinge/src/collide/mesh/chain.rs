@@ -281,16 +281,20 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         let normal = self.chain.outward(&self.found.normal);
         let filtered = self.filtered_normal(&normal);
         let start = points.len();
-        let seen = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
+        let normal_in_first = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
         let (of_piece, mut status) = match &filtered {
             FilteredNormal::Nothing => return Some(()),
             FilteredNormal::Refused => (normal, PartStatus::Left),
             FilteredNormal::Admitted => (self.between(&normal, points)?, PartStatus::Own),
-            FilteredNormal::Face(face) => (self.between(&seen(face), points)?, PartStatus::Own),
-            FilteredNormal::Snapped(face) => {
-                (self.along(&seen(face), points)?, PartStatus::Snapped)
+            FilteredNormal::Face(face) => {
+                (self.between(&normal_in_first(face), points)?, PartStatus::Own)
             }
-            FilteredNormal::Beyond(face) => (self.along(&seen(face), points)?, PartStatus::Beyond),
+            FilteredNormal::Snapped(face) => {
+                (self.along(&normal_in_first(face), points)?, PartStatus::Snapped)
+            }
+            FilteredNormal::Beyond(face) => {
+                (self.along(&normal_in_first(face), points)?, PartStatus::Beyond)
+            }
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));

@@ -175,7 +175,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         if !can_touch {
             return [FilteredNormal::Nothing; 2];
         }
-        let [is_second1, is_second2] = self.placed.turned([false, true]);
+        let [is_second1, is_second2] = self.placed.swapped([false, true]);
         let pair = self.placed.pair();
         let feature =
             |is_second| <N::Algorithms>::witness_feature(&pair, gap, tolerance, is_second);
@@ -185,7 +185,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         let (part, toward) = (self.parts[0], other1 - own1);
         let case1 = Case { part, feature: &feature1, is_beside: false, outward: normal, toward };
         let (part, toward) = (self.parts[1], other2 - own2);
-        let (outward, is_beside) = (-self.placed.seen_by_second(&normal), is_beside(over));
+        let (outward, is_beside) = (-self.placed.in_second_frame(&normal), is_beside(over));
         let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
         [filter_normal(surface1, &case1), filter_normal(surface2, &case2)]
     }
@@ -198,7 +198,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         if !scene.are_bodies(self.parts) {
             return false;
         }
-        let outward = [*normal, -self.placed.seen_by_second(normal)];
+        let outward = [*normal, -self.placed.in_second_frame(normal)];
         scene.surfaces.iter().zip(self.parts).zip(outward).any(|((surface, part), outward)| {
             let surface = surface.filter(|surface| surface.is_body(part));
             let front = surface.and_then(|surface| surface.snapped(part, &outward));
@@ -355,7 +355,7 @@ fn settled<N: Space<D>, const D: usize>(
     normal: &Vector<N, D>,
 ) -> Settled<N, D> {
     use FilteredNormal::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
-    let of_second = |face: &Vector<N, D>| -placed.seen_by_first(face);
+    let of_second = |face: &Vector<N, D>| -placed.in_first_frame(face);
     let status = if filtered.iter().any(|filtered| matches!(filtered, Beyond(_))) {
         PartStatus::Beyond
     } else {

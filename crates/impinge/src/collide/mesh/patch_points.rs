@@ -79,11 +79,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
 
     /// Keeps at most `limit` members, one of the deepest among them.
     fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
-        let seen =
+        let flattened =
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
         let tolerance = self.merging.tolerance;
         let slack = slack_level(level - tolerance, self.merging.size(), tolerance);
-        let mut points = projected(seen, [level, slack]);
+        let mut points = projected(flattened, [level, slack]);
         let indices = if is_line {
             keep_ends(&mut points);
             reduce::chosen(&mut points, limit, tolerance)

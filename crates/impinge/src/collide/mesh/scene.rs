@@ -44,7 +44,7 @@ struct Lying<N: Real, const D: usize> {
     /// The pose of the second body in the frame of the first, in the order of kinds.
     pose12: Pose<N, D>,
     /// Whether the first body is the part of the second shape.
-    is_turned: bool,
+    is_swapped: bool,
     /// The frame of the first body in that of the first shape, translated to the anchor.
     frame: Pose<N, D>,
     /// The rotation from the frame of the second shape to that of the first.
@@ -281,13 +281,13 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let rotation = part.pose.rotation;
         let pose = Pose { rotation, translation: Vector::<N, D>::zeros() };
         let kind = part.solid.geometry().kind();
-        let is_turned = Geometry(self.between.pair.first).kind() > kind;
+        let is_swapped = Geometry(self.between.pair.first).kind() > kind;
         Usual {
             pose: part.pose,
             is_segment: matches!(part.solid, PartSolid::Segment(_)),
             local: part.pose.inverse_point(&origins[1]).coords,
             origins,
-            lying: Lying::new([&Pose::identity(), &pose], self.turn(), is_turned),
+            lying: Lying::new([&Pose::identity(), &pose], self.turn(), is_swapped),
         }
     }
 }
@@ -303,21 +303,22 @@ impl<N: Space<D>, const D: usize> Usual<N, D> {
 
 impl<N: Space<D>, const D: usize> Lying<N, D> {
     /// Takes the poses of a part of the first shape and one of the second, relative to the anchor.
-    fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_turned: bool) -> Self {
+    fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_swapped: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
         let pose12 = Pose::relative(&frame1, &frame2);
         // Inverted as for every pair in the opposite order of kinds, so that the bits agree with
         // the separation.
-        let (frame, pose12) = if is_turned { (frame2, pose12.inverse()) } else { (frame1, pose12) };
-        Self { pose12, is_turned, frame, turn }
+        let (frame, pose12) =
+            if is_swapped { (frame2, pose12.inverse()) } else { (frame1, pose12) };
+        Self { pose12, is_swapped, frame, turn }
     }
 }
 
 impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
     fn new(bodies: [PlacedPart<'a, N, D>; 2], turn: Pose<N, D>, origins: [Point<N, D>; 2]) -> Self {
         let kind = |body: &PlacedPart<'_, N, D>| Geometry(body.kind()).kind();
-        let is_turned = kind(&bodies[0]) > kind(&bodies[1]);
-        let lying = Lying::new([&bodies[0].pose, &bodies[1].pose], turn, is_turned);
+        let is_swapped = kind(&bodies[0]) > kind(&bodies[1]);
+        let lying = Lying::new([&bodies[0].pose, &bodies[1].pose], turn, is_swapped);
         Self::of(bodies, lying, origins)
     }
 
@@ -327,7 +328,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         lying: Lying<N, D>,
         origins: [Point<N, D>; 2],
     ) -> Self {
-        let bodies = if lying.is_turned { [body2, body1] } else { [body1, body2] };
+        let bodies = if lying.is_swapped { [body2, body1] } else { [body1, body2] };
         Self { bodies, lying, origins, is_usual: false }
     }
 
@@ -335,7 +336,7 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
     /// not have the usual placement.
     fn exchange(&mut self, usual: &Usual<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = usual.recentred(part) else { return false };
-        let at = usize::from(!self.lying.is_turned);
+        let at = usize::from(!self.lying.is_swapped);
         self.bodies[at].solid = WholeOrPart::Part(solid);
         true
     }
@@ -356,7 +357,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// Points well inside the part of the first shape and that of the second, each in the frames of
     /// both shapes; `None` if one is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
-        let [center1, center2] = self.turned([self.bodies[0].center()?, self.bodies[1].center()?]);
+        let [center1, center2] = self.swapped([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
         let [in1, in2] = [self.lying.turn.inverse_point(&center1), self.lying.turn.point(&center2)];
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
@@ -365,7 +366,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// For a convex first shape: the centre of that, or `from` instead, and the centre of the part
     /// of the second, in the frame of the second; `None` if one is a half-space.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
-        let [first, second] = if self.lying.is_turned { [1, 0] } else { [0, 1] };
+        let [first, second] = if self.lying.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;
         let own = self.bodies[second].center()? + origin;
         let other = match from {
@@ -386,17 +387,17 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     }
 
     /// Converts a pair of values from the order of shapes to the order of kinds, or back.
-    pub(super) fn turned<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
-        if self.lying.is_turned { [b, a] } else { [a, b] }
+    pub(super) fn swapped<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
+        if self.lying.is_swapped { [b, a] } else { [a, b] }
     }
 
     /// Rotates a direction from the frame of the second shape to that of the first.
-    pub(super) fn seen_by_first(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+    pub(super) fn in_first_frame(&self, direction: &Vector<N, D>) -> Vector<N, D> {
         self.lying.turn.vector(direction)
     }
 
     /// Rotates a direction from the frame of the first shape to that of the second.
-    pub(super) fn seen_by_second(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+    pub(super) fn in_second_frame(&self, direction: &Vector<N, D>) -> Vector<N, D> {
         self.lying.turn.inverse_vector(direction)
     }
 
@@ -404,13 +405,13 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// second.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.lying.frame.vector(normal);
-        if self.lying.is_turned { -normal } else { normal }
+        if self.lying.is_swapped { -normal } else { normal }
     }
 
     /// The inverse of [`Self::outward`].
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
         let normal = self.lying.frame.inverse_vector(normal);
-        if self.lying.is_turned { -normal } else { normal }
+        if self.lying.is_swapped { -normal } else { normal }
     }
 
     /// Whether the two parts are separated, within `tolerance`, once the second shape moves by one
@@ -437,7 +438,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// The corners of both parts in the frame of the first shape, relative to the anchor; `None` if
     /// one has no corners.
     fn corners(&self) -> Option<[[Vector<N, D>; 3]; 2]> {
-        let [first, second] = self.turned([&self.bodies[0], &self.bodies[1]]);
+        let [first, second] = self.swapped([&self.bodies[0], &self.bodies[1]]);
         let second = second.corners()?;
         Some([first.corners()?, second.mapped(|corner| self.lying.turn.vector(&corner))])
     }
@@ -461,10 +462,10 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         let start = points.len();
         for point in &raw.points {
             let mut placed = *point;
-            let across = if self.lying.is_turned { point.distance } else { N::ZERO };
+            let across = if self.lying.is_swapped { point.distance } else { N::ZERO };
             let foot = self.lying.frame.point(&(point.point1 + raw.normal * across));
             placed.point1 = self.origins[0] + foot.coords;
-            [placed.feature1, placed.feature2] = self.turned([point.feature1, point.feature2]);
+            [placed.feature1, placed.feature2] = self.swapped([point.feature1, point.feature2]);
             points.push(placed);
         }
         Piece { normal: self.outward(&raw.normal), parts, points: start..points.len() }

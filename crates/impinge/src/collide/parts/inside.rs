@@ -115,7 +115,7 @@ fn points_of_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     inner: usize,
 ) -> SmallVec<[(u32, Point<N, D>); 1]> {
-    let (kind, pose) = between.seen_by_other(inner);
+    let (kind, pose) = between.in_frame_of_other(inner);
     let mut points = SmallVec::new();
     let mut last = None;
     for (piece, part) in parts_near_other(between, inner) {
@@ -262,11 +262,11 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     fn separation(&self, between: &Between<'_, N, D>) -> Option<PartSeparation<N, D>> {
         let Exit { point, outward, parts } = self.exit()?;
         let pose12 = &between.pair.pose12;
-        let seen =
+        let to_inner_frame =
             |way: Vector<N, D>| if self.inner == 0 { way } else { pose12.inverse_vector(&way) };
         let origin = if self.inner == 0 { point } else { pose12.inverse_point(&point) };
-        let (kind, _) = between.seen_by_other(self.inner);
-        let inward = seen(-outward);
+        let (kind, _) = between.in_frame_of_other(self.inner);
+        let inward = to_inner_frame(-outward);
         let (mut depth, mut lowest, mut deepest) = (-N::INFINITY, Vector::<N, D>::zeros(), 0);
         self.each_part(between, |part| {
             each_solid(kind, part, |kind, pose| {

@@ -160,7 +160,7 @@ impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
 
 impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, D> {
     fn pose(&self, which: usize) -> &Pose<N, D> {
-        self.between.seen_by_other(which).1
+        self.between.in_frame_of_other(which).1
     }
 
     fn reach(&self) -> Option<N> {

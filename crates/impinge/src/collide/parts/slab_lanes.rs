@@ -54,7 +54,7 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     tiles: &PartPacket<N, 2>,
     limit: N,
 ) -> [N; LANES] {
-    let corners = seen::<S, N, V, 2>(simd, slabs, tiles);
+    let corners = translated_corners::<S, N, V, 2>(simd, slabs, tiles);
     let mut gaps = SlabGaps { simd, corners, gaps: V::all(simd, -N::INFINITY) };
     gaps.along(slabs);
     if let Some(own) = slabs.corners.as_ref().filter(|_| gaps.are_within(slabs, limit)) {
@@ -75,7 +75,7 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     tiles: &PartPacket<N, 3>,
     limit: N,
 ) -> [N; LANES] {
-    let corners = seen::<S, N, V, 3>(simd, slabs, tiles);
+    let corners = translated_corners::<S, N, V, 3>(simd, slabs, tiles);
     let mut gaps = SlabGaps { simd, corners, gaps: V::all(simd, -N::INFINITY) };
     gaps.along(slabs);
     let Some(own) = &slabs.corners else { return gaps.certain(slabs) };
@@ -161,7 +161,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
 
 /// Translates the corners of eight parts to the origin of the slabs.
 #[inline(always)]
-fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+fn translated_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     slabs: &AxisSlabs<N, D>,
     tiles: &PartPacket<N, D>,

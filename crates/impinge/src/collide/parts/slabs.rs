@@ -74,9 +74,9 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         let all = corners.iter().chain(&ends);
         slabs.size = all.fold(place, |size, at| max(max_component(at), size));
         let spread = sweep.map_or(N::ZERO, |sweep| sweep.spread);
-        let seen = corners.mapped(|at| at - corners[0]);
-        slabs.surround(&seen, &ends.mapped(|at| at - corners[0]), spread);
-        slabs.corners = sweep.is_none().then_some(seen);
+        let relative = corners.mapped(|at| at - corners[0]);
+        slabs.surround(&relative, &ends.mapped(|at| at - corners[0]), spread);
+        slabs.corners = sweep.is_none().then_some(relative);
         slabs
     }
 

@@ -37,7 +37,7 @@ pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
 impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     /// Takes the first shape (0) or the second (1); `None` for composites and half-spaces.
     pub(crate) fn of(between: &'a Between<'_, N, D>, which: usize) -> Option<Self> {
-        let (solid, pose) = between.seen_by_other(which);
+        let (solid, pose) = between.in_frame_of_other(which);
         let map = Geometry(solid).as_support_map()?;
         let size = map.reach() + map.rounding() + max_component(&pose.translation);
         Some(Self { solid, map, pose: *pose, center: pose.point(&map.center()), size })
@@ -74,18 +74,18 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
             self.gap(along, along.dot(&lowest) - map.rounding(), reach)
         };
         let center = part.pose.inverse_point(&self.center);
-        let Some(seen) = <N::Algorithms>::seen(geometry.0, &center) else {
+        let Some(projected) = <N::Algorithms>::project_on_solid(geometry.0, &center) else {
             return gap(&self.outward_at(&aabb.center()));
         };
-        let across = gap(&-part.pose.vector(&seen.outward));
-        max(gap(&self.outward_at(&part.pose.point(&seen.point))), across)
+        let across = gap(&-part.pose.vector(&projected.outward));
+        max(gap(&self.outward_at(&part.pose.point(&projected.point))), across)
     }
 
     /// The outward unit normal at the nearest point to `point`, or the direction from the centre to
     /// `point` for solids without a closed form.
     fn outward_at(&self, point: &Point<N, D>) -> Vector<N, D> {
-        match <N::Algorithms>::seen(self.solid, &self.pose.inverse_point(point)) {
-            Some(seen) => self.pose.vector(&seen.outward),
+        match <N::Algorithms>::project_on_solid(self.solid, &self.pose.inverse_point(point)) {
+            Some(projected) => self.pose.vector(&projected.outward),
             None => unit(&(point - self.center)).map_or_else(Vector::<N, D>::zeros, |(way, _)| way),
         }
     }

@@ -196,7 +196,7 @@ fn in_plane<N: Space<2>>() -> Solids<N, 2> {
     ]
 }
 
-fn turned<N: Real>(random: &mut Random) -> Pose<N, 2> {
+fn random_rotation<N: Real>(random: &mut Random) -> Pose<N, 2> {
     let way = unit(&random.vector::<N>().xy()).map_or_else(Vector::<N, 2>::x, |(way, _)| way);
     let mut pose = Pose::<N, 2>::identity();
     pose.rotation = Matrix::<N, 2>::new(way.x, -way.y, way.y, way.x);
@@ -206,13 +206,13 @@ fn turned<N: Real>(random: &mut Random) -> Pose<N, 2> {
 #[test]
 fn no_part_is_nearer_than_the_one_that_is_found() {
     searches::<f32, 3>(&in_space(), Random::vector, Random::turn);
-    searches::<f32, 2>(&in_plane(), |random| random.vector().xy(), turned);
+    searches::<f32, 2>(&in_plane(), |random| random.vector().xy(), random_rotation);
     searches_of_surface::<f32>();
 }
 
 #[test]
 fn no_part_is_nearer_in_double_precision() {
     searches::<f64, 3>(&in_space(), Random::vector, Random::turn);
-    searches::<f64, 2>(&in_plane(), |random| random.vector().xy(), turned);
+    searches::<f64, 2>(&in_plane(), |random| random.vector().xy(), random_rotation);
     searches_of_surface::<f64>();
 }

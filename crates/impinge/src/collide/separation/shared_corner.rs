@@ -95,8 +95,8 @@ fn is_between<N: Real, const D: usize>(
         low <= point[axis] && point[axis] <= high
     };
     let is_level = |one: usize, other: usize| {
-        let seen = |p: &Point<N, D>| Point::<f64, 2>::new(p[one].as_f64(), p[other].as_f64());
-        exact::area(&seen(a), &seen(b), &seen(point)) == 0.0
+        let project = |p: &Point<N, D>| Point::<f64, 2>::new(p[one].as_f64(), p[other].as_f64());
+        exact::area(&project(a), &project(b), &project(point)) == 0.0
     };
     (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_level(one, other)))
 }

@@ -168,7 +168,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let path = Path {
             end: self.first.map_or(self.path.end, |first| first.arrival.along),
             mirrored: self.path.mirrored && parts[0] == parts[1],
-            ..seen_by(&placed, self.path)
+            ..path_in_first_part(&placed, self.path)
         };
         let arrival = match begin(&placed.pair(), &path, earliest) {
             Beginning::Apart(arrival) => arrival,
@@ -306,25 +306,28 @@ fn rounding<N: Real, const D: usize>(placed: &PartPair<'_, N, D>) -> N {
 }
 
 /// Converts a path from the frame of the first shape to that of its part.
-fn seen_by<N: Real, const D: usize>(placed: &PartPair<'_, N, D>, path: &Path<N, D>) -> Path<N, D> {
+fn path_in_first_part<N: Real, const D: usize>(
+    placed: &PartPair<'_, N, D>,
+    path: &Path<N, D>,
+) -> Path<N, D> {
     Path { velocity: placed.to_first_part(&path.velocity), ..*path }
 }
 
 impl<N: Space<D>, const D: usize> PartArrival<N, D> {
     /// The separation of the parts when they touch, in the frame of the first shape, and the
     /// features.
-    pub(crate) fn seen_from(
+    pub(crate) fn separation_with_features(
         &self,
         between: &Between<'_, N, D>,
         path: &Path<N, D>,
     ) -> (Separation<N, D>, [FeatureId; 2]) {
         let (placed, found) = (between.parts(self.parts), &self.arrival.separation);
-        let [seen, local] = match self.is_of_whole {
+        let [in_shape, local] = match self.is_of_whole {
             true => [*found, placed.in_first_part(found)],
             false => [placed.in_first(found), *found],
         };
         let arrival = Arrival { separation: local, ..self.arrival };
-        (seen, arrival.features(&placed.pair(), &seen_by(&placed, path)))
+        (in_shape, arrival.features(&placed.pair(), &path_in_first_part(&placed, path)))
     }
 }
 

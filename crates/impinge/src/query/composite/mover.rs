@@ -49,14 +49,14 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
     /// depends on the search.
     pub(super) fn earliest(&self, part: &Part<'_, N, D>, end: N) -> Option<N> {
         let Some(corners) = corners(&part.solid, &part.pose) else { return Some(N::ZERO) };
-        let seen = corners.mapped(|corner| corner - self.pose.translation);
+        let relative = corners.mapped(|corner| corner - self.pose.translation);
         let own = max_component(&self.pose.translation) + self.map.reach() + self.map.rounding();
-        let size = seen.iter().fold(own + self.target, |size, at| max(max_component(at), size));
+        let size = relative.iter().fold(own + self.target, |size, at| max(max_component(at), size));
         let slack = self.target + size * N::lit(ROUNDING) * N::EPSILON;
         let mut meeting = MeetingSpan { enter: N::ZERO, leave: end, slack };
-        let turned = seen.mapped(|at| self.pose.inverse_vector(&at));
+        let local_corners = relative.mapped(|at| self.pose.inverse_vector(&at));
         let speeds = [self.pose.inverse_vector(&self.velocity), self.velocity];
-        for (index, points) in [turned, corners].iter().enumerate() {
+        for (index, points) in [local_corners, corners].iter().enumerate() {
             let own = &self.boxes[index];
             for axis in 0..D {
                 let [a, b, c] = points.each_ref().mapped(|at| at[axis]);
@@ -64,14 +64,14 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
                 meeting.cut([own.mins()[axis], own.maxs()[axis]], other, speeds[index][axis]);
             }
         }
-        for along in across(&seen.mapped(|at| at - seen[0])) {
+        for along in across(&relative.mapped(|at| at - relative[0])) {
             let local = self.pose.inverse_vector(&along);
             let reach = |direction: &Vector<N, D>| {
                 self.map.core_support(direction).coords.dot(direction) + self.map.rounding()
             };
             meeting.cut(
                 [-reach(&-local), reach(&local)],
-                range(&seen, &along),
+                range(&relative, &along),
                 self.velocity.dot(&along),
             );
         }

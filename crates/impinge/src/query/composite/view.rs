@@ -140,7 +140,7 @@ impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
             Some(is_second) => kinematic.turning_with(is_second),
             None => kinematic,
         };
-        kinematic.seen_from([pose1, pose2], self.turns)
+        kinematic.in_frames([pose1, pose2], self.turns)
     }
 }
 

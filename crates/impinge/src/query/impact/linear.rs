@@ -256,19 +256,22 @@ fn touching<N: Space<D>, const D: usize>(
         return None;
     }
     let is_touch = |distance: N, outward: Vector<N, D>| {
-        let turned = max_component(&(outward - normal));
-        (distance - target).abs() <= tolerance && turned <= N::lit(8.0) * N::EPSILON
+        let deviation = max_component(&(outward - normal));
+        (distance - target).abs() <= tolerance && deviation <= N::lit(8.0) * N::EPSILON
     };
-    let seen_from = |kind: Kind<'_, N, D>, point: &Point<N, D>| <N::Algorithms>::seen(kind, point);
-    let seen = seen_from(*first, &point2);
-    if let Some(seen) = seen.filter(|seen| is_touch(seen.distance, seen.outward)) {
-        let (distance, point1) = (seen.distance, point2 - normal * seen.distance);
+    let project =
+        |kind: Kind<'_, N, D>, point: &Point<N, D>| <N::Algorithms>::project_on_solid(kind, point);
+    let projected = project(*first, &point2);
+    if let Some(projected) =
+        projected.filter(|projected| is_touch(projected.distance, projected.outward))
+    {
+        let (distance, point1) = (projected.distance, point2 - normal * projected.distance);
         return Some(Separation { distance, normal, point1, point2 });
     }
-    let seen = seen_from(*second, &pose12.inverse_point(&point1))?;
-    let point2 = point1 + normal * seen.distance;
-    let is_proved = is_touch(seen.distance, -pose12.vector(&seen.outward));
-    is_proved.then_some(Separation { distance: seen.distance, normal, point1, point2 })
+    let projected = project(*second, &pose12.inverse_point(&point1))?;
+    let point2 = point1 + normal * projected.distance;
+    let is_proved = is_touch(projected.distance, -pose12.vector(&projected.outward));
+    is_proved.then_some(Separation { distance: projected.distance, normal, point1, point2 })
 }
 
 /// The length that tolerances are proportional to: the sizes of the solids plus their distance.

@@ -11,7 +11,7 @@ use crate::query::{Placement, materialise};
 use crate::shape::{Ball, Capsule, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape};
 
 fn reproduces<N: Scene<D>, const D: usize>(accuracy: f64) {
-    let mut seen = 0;
+    let mut checked = 0;
     for_all_pairs::<N, D>(40, 1.0, |pair| {
         let (_, raw) = manifold(pair, &request(0.05, 0.05));
         for point in &raw.points {
@@ -29,10 +29,10 @@ fn reproduces<N: Scene<D>, const D: usize>(accuracy: f64) {
             let back = kinematic.flipped().predicted(&pose21).flipped(&pose21);
             let error = (back.point1 - found.point1).norm() + (back.normal - found.normal).norm();
             assert!(error <= N::lit(accuracy), "flipped: {error} {}", describe(pair));
-            seen += 1;
+            checked += 1;
         }
     });
-    assert!(seen > 300, "{seen} contacts");
+    assert!(checked > 300, "{checked} contacts");
 }
 
 #[test]

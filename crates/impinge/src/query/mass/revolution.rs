@@ -74,12 +74,12 @@ impl<const D: usize> Slices<D> {
         let center = self.first / self.mass;
         let mut seconds = Vector::<f64, D>::repeat(self.across);
         seconds[1] = self.along - self.first * center;
-        Moments::along_axes(self.mass, axis * center, turned_to(axis), &seconds)
+        Moments::along_axes(self.mass, axis * center, rotation_to(axis), &seconds)
     }
 }
 
 /// The rotation that maps the y axis to a unit vector or its opposite, whichever is nearer.
-fn turned_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
+fn rotation_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     let mut y = Vector::<f64, D>::zeros();
     y[1] = 1.0;
     let axis = if axis[1] < 0.0 { -axis } else { *axis };

@@ -60,9 +60,9 @@ pub(super) fn of_triangle(
     point: &Point<f64, 3>,
     way: RayWay,
 ) -> Added {
-    let seen =
+    let project =
         |p: &Point<f64, 3>| Point::<f64, 2>::new(p[(way.axis + 1) % 3], p[(way.axis + 2) % 3]);
-    let around = around_seen(&corners.each_ref().mapped(seen), &seen(point));
+    let around = winding_around(&corners.each_ref().mapped(project), &project(point));
     if around == 0 {
         return Some(0);
     }
@@ -78,7 +78,7 @@ pub(super) fn of_triangle(
 
 /// The winding of three sides around a point in 2D: 0, or the sign of their turn. A point on a side
 /// counts as moved by (ε, ε²).
-fn around_seen(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
+fn winding_around(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
     let one = |at: usize| {
         let (a, b) = (&corners[at], &corners[(at + 1) % 3]);
         let (rises, falls) = (a.y <= point.y && point.y < b.y, b.y <= point.y && point.y < a.y);
@@ -133,8 +133,8 @@ mod tests {
                 };
                 let (a, b, c, d) = (at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0));
                 let outward = [[a, b, c], [a, c, d]];
-                let turned = |[a, b, c]: [Point<f64, 3>; 3]| [a, c, b];
-                triangles.extend(if end > 1.0 { outward } else { outward.mapped(turned) });
+                let reversed = |[a, b, c]: [Point<f64, 3>; 3]| [a, c, b];
+                triangles.extend(if end > 1.0 { outward } else { outward.mapped(reversed) });
             }
         }
         let steps = || (-1..6).map(|step| f64::from(step) * 0.5);

@@ -61,10 +61,10 @@ fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> 
     (0..D).any(|axis| {
         let next = (axis + 1) % D;
         is_behind(half, ray, axis, unit) || {
-            let turned = (origin[axis] * dir[next] - origin[next] * dir[axis]).abs();
+            let moment = (origin[axis] * dir[next] - origin[next] * dir[axis]).abs();
             let (one, two) = (half[axis] * dir[next].abs(), half[next] * dir[axis].abs());
             let sizes = one + two + reaches(origin, dir, axis, next);
-            exceeds(turned, one + two, unit * sizes + lost())
+            exceeds(moment, one + two, unit * sizes + lost())
         }
     })
 }

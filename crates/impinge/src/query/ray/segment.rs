@@ -31,8 +31,8 @@ pub(super) fn span<N: Real, const D: usize>(
     let [at_a, at_b] = [a, b].mapped(|end| end.dot(&ray.dir) / squared);
     let (across_a, across_b) = (a - ray.dir * at_a, b - ray.dir * at_b);
     let rounding = N::lit(8.0) * N::EPSILON * max(a.norm(), b.norm());
-    let seen = [Point::from(across_a), Point::from(across_b)];
-    let (nearest, fraction) = nearest_on_segment([&seen[0], &seen[1]], &Point::origin());
+    let across = [Point::from(across_a), Point::from(across_b)];
+    let (nearest, fraction) = nearest_on_segment([&across[0], &across[1]], &Point::origin());
     let hits = nearest.coords.norm() <= rounding;
     if !hits {
         return None;

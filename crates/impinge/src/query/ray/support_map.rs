@@ -61,12 +61,12 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
         }
         let [first, last] = around.places();
         let room = around.leave - around.enter;
-        let enter = Advance { seen: self, from: first, dir: ray.dir, room }.first_contact()?;
+        let enter = Advance { solid: self, from: first, dir: ray.dir, room }.first_contact()?;
         let enter = Crossing { t: around.enter + enter.t, ..enter };
         if enter.t >= N::ZERO {
             return Some(Span { enter, leave: Crossing::never(N::INFINITY), thin: false });
         }
-        let backward = Advance { seen: self, from: last, dir: -ray.dir, room };
+        let backward = Advance { solid: self, from: last, dir: -ray.dir, room };
         let leave = match backward.first_contact() {
             Some(found) => Crossing { t: around.leave - found.t, ..found },
             // By rounding the backward search missed: the line only touches.
@@ -78,7 +78,7 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
 
 /// A point that moves along a line from outside the solid.
 struct Advance<'a, N: Real, const D: usize> {
-    seen: &'a RaySolid<'a, N, D>,
+    solid: &'a RaySolid<'a, N, D>,
     from: Vector<N, D>,
     dir: Vector<N, D>,
     /// The time for which it may move.
@@ -93,10 +93,10 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
     /// Application to Continuous Collision Detection" (2004), but are computed anew each time: each
     /// one proves that the solid is not hit before it, so the time never overshoots.
     fn first_contact(&self) -> Option<Crossing<N, D>> {
-        let touching = self.seen.precision * self.seen.radius;
+        let touching = self.solid.precision * self.solid.radius;
         let mut t = N::ZERO;
         for _ in 0..ROUNDS {
-            let (distance, normal) = (self.seen.see)(&(self.from + self.dir * t))?;
+            let (distance, normal) = (self.solid.see)(&(self.from + self.dir * t))?;
             let approach = -normal.dot(&self.dir);
             if distance <= touching {
                 // A last step improves the time unless the plane is nearly parallel to the line.
@@ -114,7 +114,7 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
     }
 
     fn crossing(&self, t: N, normal: Vector<N, D>) -> Crossing<N, D> {
-        let feature = (self.seen.name)(&(self.from + self.dir * t), &normal);
+        let feature = (self.solid.name)(&(self.from + self.dir * t), &normal);
         Crossing::new(t, normal, feature)
     }
 }

@@ -140,8 +140,8 @@ impl<N: Real> Polytope<N, 3> {
         let mut edges = self.edges.clone();
         for (edge, &place) in self.edges.iter().zip(&places) {
             let faces = edge.faces;
-            let is_turned = edge.vertices != ends[place];
-            let faces = if is_turned { [faces[1], faces[0]] } else { faces };
+            let is_reversed = edge.vertices != ends[place];
+            let faces = if is_reversed { [faces[1], faces[0]] } else { faces };
             edges[place] = PolytopeEdge { vertices: ends[place], faces };
         }
         self.edges = edges;

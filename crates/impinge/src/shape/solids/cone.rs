@@ -184,7 +184,7 @@ impl<N: Real> Shape<N, 3> for Cone<N> {
         let axis = pose.rotation.column(1).into_owned();
         let (apex, disk) = (axis * self.half_height, self.base().reach(&pose.rotation));
         let (low, high) = (apex.zip_map(&(-apex - disk), min), apex.zip_map(&(-apex + disk), max));
-        Aabb::of_turned(low, high, self.reach(), pose)
+        Aabb::of_rotated(low, high, self.reach(), pose)
     }
 
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {

@@ -490,7 +490,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Cuboid<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        Aabb::around_turned(pose, pose.turned_reach(&self.half_extents))
+        Aabb::around_rotated(pose, pose.rotated_extents(&self.half_extents))
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -173,7 +173,7 @@ impl<N: Real> Shape<N, 3> for Cylinder<N> {
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
         let disk = self.disk(N::ZERO).reach(&pose.rotation);
-        Aabb::around_turned(pose, axis.abs() * self.half_height + disk)
+        Aabb::around_rotated(pose, axis.abs() * self.half_height + disk)
     }
 
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {

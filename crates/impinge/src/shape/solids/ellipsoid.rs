@@ -107,7 +107,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
         let reach = Vector::<N, D>::from_fn(|axis, _| {
             length_of(&pose.rotation.row(axis).transpose().component_mul(&self.half_axes))
         });
-        Aabb::around_turned(pose, reach)
+        Aabb::around_rotated(pose, reach)
     }
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {

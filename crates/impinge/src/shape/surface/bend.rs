@@ -221,8 +221,8 @@ mod tests {
             }
             if let Some(answer) = bend.admits(&normal, is_one_sided) {
                 // The rule takes both triangles from the same corner of the edge.
-                let turned = [second[0], second[1], second[2]];
-                let expected = rule([&first, &turned], &fronts, &normal, is_one_sided);
+                let permuted = [second[0], second[1], second[2]];
+                let expected = rule([&first, &permuted], &fronts, &normal, is_one_sided);
                 assert_eq!(answer, expected, "round {round}: {bend:?} {normal:?}");
                 (known, admitted) = (known + 1, admitted + usize::from(answer));
             }

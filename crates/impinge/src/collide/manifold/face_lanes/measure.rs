@@ -5,7 +5,7 @@ use super::super::frame::ROUNDING_ERRORS;
 use super::FaceSolid;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::math::lanes::{
-    bits, cross, dot, in_lanes, lit, load, minus, norm, spread, times, turned_back,
+    bits, cross, dot, in_lanes, lit, load, minus, norm, rotated_back, spread, times,
 };
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
@@ -135,10 +135,10 @@ impl<N: Real> FaceClip<N> {
         normals: &[[N; LANES]; 3],
     ) {
         let origin: [V; 3] = spread(simd, &solid.origin);
-        let seen = |corner: usize| -> [V; 3] {
-            turned_back(simd, solid.turn, &minus(&load(simd, &triangles.corners[corner]), &origin))
+        let in_frame = |corner: usize| -> [V; 3] {
+            rotated_back(simd, solid.turn, &minus(&load(simd, &triangles.corners[corner]), &origin))
         };
-        let (normal, corners) = (load(simd, normals), [seen(0), seen(1), seen(2)]);
+        let (normal, corners) = (load(simd, normals), [in_frame(0), in_frame(1), in_frame(2)]);
         let squared = [
             dot(&corners[0], &corners[0]),
             dot(&corners[1], &corners[1]),
@@ -147,10 +147,10 @@ impl<N: Real> FaceClip<N> {
         let reach = squared[0].larger(squared[1]).larger(squared[2]).sqrt();
         let rounding = V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON);
         let tolerance = rounding * (V::all(simd, solid.reach()) + reach);
-        let seen = SeenTriangles::new(simd, &corners, &normal);
-        let (shown, is_shown) = seen.shown(simd, tolerance);
-        let is_plain = is_shown & self.measure_face(simd, &seen, tolerance);
-        self.measure_triangles(simd, &seen, tolerance);
+        let projected = ProjectedTriangles::new(simd, &corners, &normal);
+        let (shown, is_shown) = projected.shown(simd, tolerance);
+        let is_plain = is_shown & self.measure_face(simd, &projected, tolerance);
+        self.measure_triangles(simd, &projected, tolerance);
         (self.shown, self.plain) = (shown, bits(is_plain));
         self.find_crossings();
         tolerance.store(&mut self.tolerance);
@@ -179,21 +179,21 @@ impl<N: Real> FaceClip<N> {
     fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        seen: &SeenTriangles<V>,
+        projected: &ProjectedTriangles<V>,
         tolerance: V,
     ) -> V::Mask {
         let (outward, count): ([V; 3], usize) = (spread(simd, &self.ring.normal), self.ring.count);
-        let slope = lit::<S, N, V>(simd, 1.0) / dot(&outward, &seen.normal);
+        let slope = lit::<S, N, V>(simd, 1.0) / dot(&outward, &projected.normal);
         let mut is_long = slope.simd_eq(slope);
         for side in 0..self.sides() {
             let (from, to) = (self.vertex(side), self.vertex((side + 1) % count));
             let start: [V; 3] = spread(simd, &from);
-            let across = cross(&spread(simd, &(to - from)), &seen.normal);
+            let across = cross(&spread(simd, &(to - from)), &projected.normal);
             let length = norm(&across);
             is_long &= length.simd_gt(tolerance + tolerance);
             let inward = times(&across, lit::<S, N, V>(simd, 1.0) / length);
             for corner in 0..3 {
-                let arm = minus(&seen.corners[corner], &start);
+                let arm = minus(&projected.corners[corner], &start);
                 self.in_face.put([corner, side], dot(&inward, &arm), tolerance);
                 if side == 0 {
                     (-dot(&outward, &arm) * slope).store(&mut self.depths[corner]);
@@ -208,17 +208,17 @@ impl<N: Real> FaceClip<N> {
     fn measure_triangles<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        seen: &SeenTriangles<V>,
+        projected: &ProjectedTriangles<V>,
         tolerance: V,
     ) {
-        let slope = lit::<S, N, V>(simd, 1.0) / seen.rise;
+        let slope = lit::<S, N, V>(simd, 1.0) / projected.rise;
         for at in 0..self.ring.count {
             let vertex: [V; 3] = spread(simd, &self.vertex(at));
             for side in 0..3 {
-                let arm = minus(&vertex, &seen.corners[side]);
-                self.in_triangle.put([at, side], dot(&seen.inward[side], &arm), tolerance);
+                let arm = minus(&vertex, &projected.corners[side]);
+                self.in_triangle.put([at, side], dot(&projected.inward[side], &arm), tolerance);
                 if side == 0 {
-                    (dot(&seen.across, &arm) * slope).store(&mut self.vertex_depths[at]);
+                    (dot(&projected.across, &arm) * slope).store(&mut self.vertex_depths[at]);
                 }
             }
         }
@@ -240,7 +240,7 @@ impl<N: Real> FaceClip<N> {
 }
 
 /// Triangles and the normals that they are seen along.
-struct SeenTriangles<V> {
+struct ProjectedTriangles<V> {
     corners: [[V; 3]; 3],
     normal: [V; 3],
     /// The sides and their squared lengths, and the product of the first two.
@@ -254,7 +254,7 @@ struct SeenTriangles<V> {
     lengths: [V; 3],
 }
 
-impl<V> SeenTriangles<V> {
+impl<V> ProjectedTriangles<V> {
     #[inline(always)]
     fn new<S: Simd, N: Real>(simd: S, corners: &[[V; 3]; 3], normal: &[V; 3]) -> Self
     where

@@ -72,7 +72,7 @@ impl<N: Real> Scene<N> {
     }
 }
 
-fn as_seen<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64; 2] {
+fn projected_along<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64; 2] {
     let (u, v) = orthonormal_basis(normal);
     [point.coords.dot(&u).as_f64(), point.coords.dot(&v).as_f64()]
 }
@@ -124,15 +124,18 @@ fn check<N: Real>(
 ) {
     let room = 400.0 * N::EPSILON.as_f64();
     let ring = |points: &[Point<f64, 3>]| -> Outline {
-        let seen: Outline = points.iter().map(|p| as_seen(p, &normal.map(Real::as_f64))).collect();
-        let turn =
-            seen.iter().zip(seen.iter().cycle().skip(1)).map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
-        if turn.sum::<f64>() < 0.0 { seen.into_iter().rev().collect() } else { seen }
+        let projected: Outline =
+            points.iter().map(|p| projected_along(p, &normal.map(Real::as_f64))).collect();
+        let turn = projected
+            .iter()
+            .zip(projected.iter().cycle().skip(1))
+            .map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
+        if turn.sum::<f64>() < 0.0 { projected.into_iter().rev().collect() } else { projected }
     };
     let corners = corners.map(|corner| Point::from(corner.coords.map(Real::as_f64)));
     let (own, face) = (ring(&corners), ring(&bottom(outline)));
     let shared = outline_area(&common(&own, &face));
-    let places: Vec<_> = found.iter().map(|point| as_seen(&point.point1, normal)).collect();
+    let places: Vec<_> = found.iter().map(|point| projected_along(&point.point1, normal)).collect();
     let spanned = hull_area(&places);
     assert!((spanned - shared).abs() <= 4.0 * room, "spans {spanned} of {shared}");
     let (normal, up) = (normal.map(Real::as_f64), upward(&corners));

@@ -113,14 +113,14 @@ fn a_stack_at_rest_keeps_its_names() {
 #[test]
 fn a_number_is_never_given_twice() {
     let solid = Cuboid::new(Vector::<f64, 2>::new(0.5, 0.5));
-    let (mut raw, mut seen) = (RawManifold::default(), 0);
+    let (mut raw, mut id_count) = (RawManifold::default(), 0);
     for height in [1.0, 2.0, 0.99, 3.0, 0.98] {
         let pose12 = f64::pose(Vector::<f64, 2>::new(0.0, height), [0.0; 3]);
         let pair = Pair { first: solid.geometry().0, second: solid.geometry().0, pose12 };
         f64::build(&pair, &fact(&pair), &request(0.0, 0.0), &mut raw);
         assert_eq!(raw.points.is_empty(), height > 1.0, "{height}: {raw:?}");
-        assert!(raw.points.iter().all(|point| point.id >= seen), "{height}: {raw:?}");
-        seen += u32::try_from(raw.points.len()).expect("two at most");
+        assert!(raw.points.iter().all(|point| point.id >= id_count), "{height}: {raw:?}");
+        id_count += u32::try_from(raw.points.len()).expect("two at most");
     }
-    assert_eq!(seen, 6, "two contacts three times");
+    assert_eq!(id_count, 6, "two contacts three times");
 }

@@ -47,8 +47,8 @@ fn benches<N: Real>([low, high]: [f64; 2]) -> Vec<Bench<N>> {
 /// moved.
 fn placed<N: Real>([x, y]: [f64; 2], angle: f64, by: [f64; 2]) -> Pose<N, 2> {
     let own = Isometry2::new(Vector::<f64, 2>::new(x, y), 0.0);
-    let turned = Isometry2::new(Vector::<f64, 2>::new(by[0], by[1]), angle) * own;
-    let exact = Pose::from_isometry(&turned);
+    let rotated = Isometry2::new(Vector::<f64, 2>::new(by[0], by[1]), angle) * own;
+    let exact = Pose::from_isometry(&rotated);
     Pose { rotation: exact.rotation.map(N::lit), translation: exact.translation.map(N::lit) }
 }
 

@@ -84,17 +84,17 @@ mod tests {
 
     #[test]
     fn ends_side_and_inside() {
-        let seen = |x: f64, y: f64| project(&club(), &P::new(0.0, y, x));
-        let (below, name) = seen(0.0, -3.0);
+        let projected = |x: f64, y: f64| project(&club(), &P::new(0.0, y, x));
+        let (below, name) = projected(0.0, -3.0);
         assert_eq!((below.distance, name), (2.0, FeatureId::Vertex(0)), "below the small end");
-        let (above, name) = seen(6.0, 13.0);
+        let (above, name) = projected(6.0, 13.0);
         assert_eq!((above.distance, name), (6.0, FeatureId::Vertex(1)), "(6, 8) from its centre");
         let outward = Vector::<f64, 3>::new(0.0, -0.6, 0.8);
         let place = P::new(0.0, 2.5, 0.0) + outward * 12.5;
         let (side, name) = project(&club(), &place);
         assert!((side.distance - 10.0).abs() < 1e-14 && name == FeatureId::Edge(0), "{side:?}");
         assert!((side.outward - outward).norm() < 1e-15, "the normal of the side: {side:?}");
-        let (inside, name) = seen(0.0, 2.5);
+        let (inside, name) = projected(0.0, 2.5);
         assert!((inside.distance + 2.5).abs() < 1e-14 && name == FeatureId::Edge(0), "{inside:?}");
     }
 
@@ -105,9 +105,9 @@ mod tests {
         for radii in [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.1, 0.3]] {
             let one = TaperedCapsule::try_from_ends(a, b, radii).expect("finite");
             for (point, other, radius) in [(a, b, radii[0]), (b, a, radii[1])] {
-                let (seen, _) = project(&one, &point);
-                let other = (other - point).dot(&seen.outward) + radii[0] + radii[1] - radius;
-                assert!(other <= radius + 1e-15, "{other} beyond {radius}: {seen:?}");
+                let (projected, _) = project(&one, &point);
+                let other = (other - point).dot(&projected.outward) + radii[0] + radii[1] - radius;
+                assert!(other <= radius + 1e-15, "{other} beyond {radius}: {projected:?}");
             }
         }
     }
@@ -115,8 +115,8 @@ mod tests {
     #[test]
     fn a_ball_in_a_ball() {
         let one = TaperedCapsule::<f64, 2>::new(1.0, 5.0, 0.5);
-        let (seen, name) = project(&one, &Point::<f64, 2>::new(0.0, 7.0));
-        assert_eq!((seen.distance, name), (3.0, FeatureId::Vertex(0)), "around (0, -1)");
+        let (projected, name) = project(&one, &Point::<f64, 2>::new(0.0, 7.0));
+        assert_eq!((projected.distance, name), (3.0, FeatureId::Vertex(0)), "around (0, -1)");
         let (middle, _) = project(&one, &Point::<f64, 2>::new(0.0, -1.0));
         assert_eq!((middle.distance, middle.outward.x), (-5.0, 1.0), "the first axis");
     }

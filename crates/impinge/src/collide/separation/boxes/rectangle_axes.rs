@@ -29,10 +29,10 @@ impl<N: Real> Rectangles<N> {
         let (gap, _, axis, is_positive) = better(first[0], first[1]);
         let normal = signed(Vector::<N, 2>::ith(axis, N::ONE), is_positive);
         let best = Axis { gap, normal };
-        let seen = self.pose12.inverse_vector(&offset);
+        let offset2 = self.pose12.inverse_vector(&offset);
         let reaches1 = leans.tr_mul(&self.half1);
         let second = [0, 1].map(|axis| {
-            let along = seen[axis];
+            let along = offset2[axis];
             let is_positive = if axis == 0 { along > N::ZERO } else { along >= N::ZERO };
             let gap = along.abs() - self.half2[axis] - reaches1[axis];
             // The side of the second box that faces the first is opposite to the normal.

@@ -203,9 +203,9 @@ impl<N: Real> LocalBox<'_, N> {
             // Written so that NaN and segments parallel to the axis are skipped.
             let is_plain = sine > noise() && (height.abs() - reach) > bound * sine;
             if is_plain {
-                let turned = if height < N::ZERO { -sine } else { sine };
+                let signed_sine = if height < N::ZERO { -sine } else { sine };
                 let mut outward = Vector::<N, 3>::zeros();
-                (outward[one], outward[other]) = (x / turned, y / turned);
+                (outward[one], outward[other]) = (x / signed_sine, y / signed_sine);
                 bound = (height.abs() - reach) / sine;
                 best = Some((axis, outward, bound));
             }
@@ -313,9 +313,9 @@ impl<N: Real> LocalBox<'_, N> {
         if sine <= N::lit(1.0 / 64.0) * along[axis].abs() || sine <= noise() {
             return None;
         }
-        let turned = if x * away[one] + y * away[other] < N::ZERO { -sine } else { sine };
+        let signed_sine = if x * away[one] + y * away[other] < N::ZERO { -sine } else { sine };
         let mut outward = Vector::<N, 3>::zeros();
-        (outward[one], outward[other]) = (x / turned, y / turned);
+        (outward[one], outward[other]) = (x / signed_sine, y / signed_sine);
         Some(outward)
     }
 

@@ -85,18 +85,21 @@ impl<N: Real> Profile<N> {
         let mut search = ChordSearch::new(ends, falls)?;
         let mut share = search.start();
         for _ in 0..STEPS {
-            let seen = self.seen_from(search.at(share));
-            let (slope, way) = (seen.slope(&search.along), seen.way_down(&search.along));
+            let projected = self.project(search.at(share));
+            let (slope, way) = (projected.slope(&search.along), projected.way_down(&search.along));
             let is_end =
                 share <= N::ZERO && slope >= N::ZERO || share >= N::ONE && slope <= N::ZERO;
             if is_end {
-                return Some((NearestHull::Point(seen.point), RevolvedPlace::of(self, &seen)));
+                return Some((
+                    NearestHull::Point(projected.point),
+                    RevolvedPlace::of(self, &projected),
+                ));
             }
             let is_level = slope.abs() <= still::<N>() * search.length;
             if is_level || way.is_some_and(|way| way.abs() * search.length <= still()) {
                 return Some((
                     NearestHull::Chord(ends),
-                    RevolvedPlace::across(self, &seen, &(search.along / search.length))?,
+                    RevolvedPlace::across(self, &projected, &(search.along / search.length))?,
                 ));
             }
             search.note(share, slope);
@@ -105,9 +108,9 @@ impl<N: Real> Profile<N> {
             share = match next {
                 Some(next) => next,
                 // Inside, the distance has a kink here.
-                None if seen.distance < N::ZERO => return None,
+                None if projected.distance < N::ZERO => return None,
                 None => {
-                    let to_rim = seen.way_to_rim(self, &search.along);
+                    let to_rim = projected.way_to_rim(self, &search.along);
                     let next = to_rim.and_then(|way| search.admitted(share + way));
                     next.or_else(|| search.halved())?
                 }

@@ -240,9 +240,9 @@ impl<N: Real> CylinderView<N> {
         if !is_resolved {
             return None;
         }
-        let turned = cross(&Vector::<N, 3>::y(), &self.axis) / squared.sqrt();
-        let away = self.center.dot(&turned);
-        let normal = if away < N::ZERO { -turned } else { turned };
+        let across = cross(&Vector::<N, 3>::y(), &self.axis) / squared.sqrt();
+        let away = self.center.dot(&across);
+        let normal = if away < N::ZERO { -across } else { across };
         let (away, sizes) = (away.abs(), self.own.radius + self.other.radius);
         let height = away - sizes;
         // Points where the common perpendicular meets the axes.

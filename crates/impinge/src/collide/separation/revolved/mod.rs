@@ -103,7 +103,7 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
 }
 
 /// Wraps an answer in the frame of the second solid.
-fn seen_from_second<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
+fn in_second_frame<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
     found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
 }
 
@@ -145,7 +145,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     /// caps.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
-        let first = self.lowest(&self.profile.seen_from(middle).outward);
+        let first = self.lowest(&self.profile.project(middle).outward);
         let (mut hull, mut place) = self.at_point(first);
         for _ in 0..ROUNDS {
             let low = self.lowest(&place.outward);
@@ -157,7 +157,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
                 None => break,
             }
         }
-        seen_from_second(self.by_face())
+        in_second_frame(self.by_face())
     }
 
     /// Transforms a point of the flat solid from its own frame and units.
@@ -173,10 +173,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
 
     /// Returns the place of a single point.
     fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, RevolvedPlace<N>) {
-        (
-            NearestHull::Point(point),
-            RevolvedPlace::of(&self.profile, &self.profile.seen_from(point)),
-        )
+        (NearestHull::Point(point), RevolvedPlace::of(&self.profile, &self.profile.project(point)))
     }
 
     /// Returns the nearest place over a hull and one more vertex, which is lower than all of the
@@ -203,8 +200,9 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         place: &RevolvedPlace<N>,
     ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
         let across = cross(&(b - a), &(c - a));
-        let (turned, area) = unit(&across).filter(|(_, area)| *area > noise())?;
-        let outward = if turned.dot(&place.outward) < N::ZERO { -turned } else { turned };
+        let (unit_across, area) = unit(&across).filter(|(_, area)| *area > noise())?;
+        let outward =
+            if unit_across.dot(&place.outward) < N::ZERO { -unit_across } else { unit_across };
         let mut nearest = self.profile.round.support(&outward);
         let level = outward.dot(&nearest);
         // On a cap or a line the support point is not unique; take the one known to be near.
@@ -215,7 +213,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         let point = nearest + outward * height;
         let room = -noise::<N>() * area;
         let over = |from: &Vector<N, 3>, to: &Vector<N, 3>| {
-            cross(&(to - from), &(point - from)).dot(&turned)
+            cross(&(to - from), &(point - from)).dot(&unit_across)
         };
         let sides = [over(&b, &c), over(&c, &a), over(&a, &b)];
         if sides.iter().all(|&side| side >= room) {
@@ -260,26 +258,35 @@ impl<N: Real> RevolvedMeeting<'_, N> {
 impl<N: Real> RevolvedPlace<N> {
     /// Takes the direction of a view. At a point on a corner, up to rounding, that direction may
     /// not be one along which the corner is farthest; `level` shows it.
-    fn of(profile: &Profile<N>, seen: &ProfileView<N>) -> Self {
-        let level = profile.level(&seen.outward);
-        Self { point: seen.point, nearest: seen.nearest(), outward: seen.outward, level }
+    fn of(profile: &Profile<N>, projected: &ProfileView<N>) -> Self {
+        let level = profile.level(&projected.outward);
+        Self {
+            point: projected.point,
+            nearest: projected.nearest(),
+            outward: projected.outward,
+            level,
+        }
     }
 
     /// Takes a view at which the distance is stationary along the unit vector `along`, with a
     /// direction perpendicular to `along` to rounding.
-    fn across(profile: &Profile<N>, seen: &ProfileView<N>, along: &Vector<N, 3>) -> Option<Self> {
-        let by_rim = match seen.part {
-            ProfilePart::Rim => unit(&cross(along, &seen.around())),
+    fn across(
+        profile: &Profile<N>,
+        projected: &ProfileView<N>,
+        along: &Vector<N, 3>,
+    ) -> Option<Self> {
+        let by_rim = match projected.part {
+            ProfilePart::Rim => unit(&cross(along, &projected.around())),
             _ => None,
         };
         let outward = match by_rim {
             Some((across, sine)) if sine > N::lit(RESOLVED) => {
-                if across.dot(&seen.outward) < N::ZERO { -across } else { across }
+                if across.dot(&projected.outward) < N::ZERO { -across } else { across }
             }
-            _ => unit(&(seen.outward - along * along.dot(&seen.outward)))?.0,
+            _ => unit(&(projected.outward - along * along.dot(&projected.outward)))?.0,
         };
         let level = profile.level(&outward);
-        Some(Self { point: seen.point, nearest: seen.nearest(), outward, level })
+        Some(Self { point: projected.point, nearest: projected.nearest(), outward, level })
     }
 
     fn distance(&self) -> N {
@@ -294,7 +301,7 @@ impl<N: Real> RevolvedPlace<N> {
             return Some(RevolvedResult::Beyond);
         }
         let is_lowest = self.outward.dot(&(self.point - low)) <= still();
-        is_lowest.then(|| seen_from_second(self.proved(height)))
+        is_lowest.then(|| in_second_frame(self.proved(height)))
     }
 
     /// Returns the answer, if both points lie across from each other as far apart as supporting

@@ -66,7 +66,7 @@ impl<N: Real> Profile<N> {
     }
 
     /// Returns the signed distance of a point, with the nearest part.
-    pub(super) fn seen_from(&self, point: Vector<N, 3>) -> ProfileView<N> {
+    pub(super) fn project(&self, point: Vector<N, 3>) -> ProfileView<N> {
         let fallback = (Vector::<N, 2>::x(), N::ZERO);
         let (away, aside) = unit(&radial(&point)).unwrap_or(fallback);
         let (part, distance, offset) = if self.round.is_cone {
@@ -185,14 +185,14 @@ impl<N: Real> ProfileView<N> {
     /// Second derivative for [`pull`](Self::pull) along `along`.
     pub(super) fn bend(&self, along: &Vector<N, 3>) -> N {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
-        let turned = turn * turn;
+        let turn_squared = turn * turn;
         match self.part {
             ProfilePart::Cap => N::ZERO,
-            ProfilePart::Side => turned * self.offset.x / self.aside,
+            ProfilePart::Side => turn_squared * self.offset.x / self.aside,
             ProfilePart::Rim => {
-                out * out + along.y * along.y + turned * (self.offset.x / self.aside)
+                out * out + along.y * along.y + turn_squared * (self.offset.x / self.aside)
             }
-            ProfilePart::Apex => out * out + along.y * along.y + turned,
+            ProfilePart::Apex => out * out + along.y * along.y + turn_squared,
         }
     }
 }

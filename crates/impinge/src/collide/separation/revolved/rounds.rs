@@ -6,7 +6,7 @@
 //! balls around one point, one in each solid, are the proof: their radii add up to the depth.
 
 use super::profile::Profile;
-use super::{RevolvedFound, RevolvedPlace, RevolvedResult, noise, seen_from_second, still};
+use super::{RevolvedFound, RevolvedPlace, RevolvedResult, in_second_frame, noise, still};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
@@ -36,7 +36,7 @@ pub(super) fn resolve<N: Real>(
             RevolvedResult::Beyond => return RevolvedResult::Beyond,
         }
     }
-    seen_from_second(views[0].sides())
+    in_second_frame(views[0].sides())
 }
 
 /// A solid in the frame of another.
@@ -65,7 +65,7 @@ impl<N: Real> RoundView<N> {
 
     /// Tries the apex or a rim of the other solid.
     fn corners(&self, beyond: N) -> RevolvedResult<N> {
-        let mut low = self.lowest(&self.own.seen_from(self.center).outward);
+        let mut low = self.lowest(&self.own.project(self.center).outward);
         for _ in 0..TURNS {
             let Some(place) = self.at_corner(&low) else { break };
             low = self.lowest(&place.outward);
@@ -81,7 +81,7 @@ impl<N: Real> RoundView<N> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
         if is_up && round.is_cone {
-            return Some(RevolvedPlace::of(&self.own, &self.own.seen_from(*low)));
+            return Some(RevolvedPlace::of(&self.own, &self.own.project(*low)));
         }
         let end = if is_up { round.half } else { -round.half };
         let middle = self.center + self.axis * end;
@@ -101,19 +101,19 @@ impl<N: Real> RoundView<N> {
     fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
         let radius = self.other.round.radius;
         for _ in 0..STEPS {
-            let seen = self.own.seen_from(middle + out * radius);
-            let (around, pull) = (cross(&self.axis, &out), seen.pull());
+            let projected = self.own.project(middle + out * radius);
+            let (around, pull) = (cross(&self.axis, &out), projected.pull());
             let slope = pull.dot(&around);
-            let bend = seen.bend(&around) * radius - pull.dot(&out);
+            let bend = projected.bend(&around) * radius - pull.dot(&out);
             let is_level = slope.abs() <= still() || slope.abs() * radius <= still::<N>() * bend;
             if is_level {
-                return RevolvedPlace::across(&self.own, &seen, &around);
+                return RevolvedPlace::across(&self.own, &projected, &around);
             }
             out = if bend > N::ZERO {
                 let turn = max(min(-slope / bend, N::HALF), -N::HALF);
                 self.beside(&(out + around * turn))?
             } else {
-                self.beside(&-seen.outward)?
+                self.beside(&-projected.outward)?
             };
         }
         None
@@ -164,8 +164,8 @@ impl<N: Real> RoundView<N> {
     /// depth.
     fn is_deepest(&self, found: &RevolvedFound<N>) -> bool {
         let center = found.on_other - found.normal * (found.distance * N::HALF);
-        let own = self.own.seen_from(center).distance;
-        let other = self.other.seen_from(self.rotation.tr_mul(&(center - self.center))).distance;
+        let own = self.own.project(center).distance;
+        let other = self.other.project(self.rotation.tr_mul(&(center - self.center))).distance;
         own + other <= found.distance + noise()
     }
 }

@@ -232,11 +232,11 @@ impl<N: Real> DepthSearch<'_, N> {
 
     /// Returns the result in the frame of the flat solid.
     fn peak(&self, pose12: &Pose<N, 3>, shrink: N) -> Peak<N, 3> {
-        let turned = -(pose12.rotation * self.normal);
+        let opposite = -(pose12.rotation * self.normal);
         let (is_exact, normal) = match self.at {
             DepthFeature::Face(index) => (true, self.flat.own_normals[index]),
-            DepthFeature::Cap => (true, turned),
-            _ => (false, unit(&turned).map_or(turned, |(normal, _)| normal)),
+            DepthFeature::Cap => (true, opposite),
+            _ => (false, unit(&opposite).map_or(opposite, |(normal, _)| normal)),
         };
         let low = self.touched();
         let on_round =

@@ -22,7 +22,7 @@ use super::{TriangleQuery, noise};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
 use crate::math::lanes::{
-    bits, cross, dot, either, in_lanes, load, minus, negated, over, spread, times, turned_back,
+    bits, cross, dot, either, in_lanes, load, minus, negated, over, rotated_back, spread, times,
 };
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Mapped, Matrix, Real, Wide, max, max_component};
@@ -206,7 +206,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         let mut corners = given;
         for corner in &mut corners {
             let arm = times(&minus(corner, &center), shrink);
-            *corner = turned_back(simd, &query.pose12.rotation, &arm);
+            *corner = rotated_back(simd, &query.pose12.rotation, &arm);
         }
         let slack = V::all(simd, slack(N::ONE)) * scale;
         let beyond = V::all(simd, query.limit) + slack;
@@ -262,9 +262,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
             & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
         let mut sides = ways;
         for (side, squared) in sides.iter_mut().zip(squared) {
-            *side = turned_back(simd, turn, &over(side, squared.sqrt()));
+            *side = rotated_back(simd, turn, &over(side, squared.sqrt()));
         }
-        Directions { sides, front: turned_back(simd, turn, &over(&across, area)), is_wide }
+        Directions { sides, front: rotated_back(simd, turn, &over(&across, area)), is_wide }
     }
 
     /// Returns the gaps from the triangles to the solid along `-along` and along `along`, unit

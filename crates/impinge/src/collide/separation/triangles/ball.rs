@@ -436,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_ball_sees_does_not_depend_on_vectors() {
+    fn projections_from_balls_do_not_depend_on_vectors() {
         compare::<f32>(21);
         compare::<f64>(22);
     }

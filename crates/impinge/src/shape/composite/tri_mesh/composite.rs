@@ -174,12 +174,12 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     let size = BoundingSphere::around_box(bounds).farthest_from(&Point::origin());
     let corner = |&vertex: &u32| vertices[vertex as usize].coords;
     if parts.len() * K <= MAX_PLACED {
-        let turned = Aabb::around_all(
+        let rotated = Aabb::around_all(
             parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
         );
         // A non-finite pose gives no box; then the box is unbounded.
-        return turned.map_or_else(Aabb::unbounded, |turned| {
-            Aabb::of_turned(turned.mins().coords, turned.maxs().coords, size, pose)
+        return rotated.map_or_else(Aabb::unbounded, |rotated| {
+            Aabb::of_rotated(rotated.mins().coords, rotated.maxs().coords, size, pose)
         });
     }
     let reach = |direction: Vector<N, D>| {
@@ -193,7 +193,7 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
         let direction = pose.rotation.row(axis).transpose();
         (low[axis], high[axis]) = (-reach(-direction), reach(direction));
     }
-    Aabb::of_turned(low, high, size, pose)
+    Aabb::of_rotated(low, high, size, pose)
 }
 
 /// The sphere about the centre of a box that contains some vertices; its radius exceeds the

@@ -94,12 +94,12 @@ impl<V> Boxes<V, 2> {
         // above.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
         let first = side(gaps, is_y, is);
-        let seen = [dot(&r[0], t), dot(&r[1], t)];
+        let offset2 = [dot(&r[0], t), dot(&r[1], t)];
         let gaps: [V; 2] = filled(
             #[inline(always)]
-            |j| seen[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
+            |j| offset2[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
         );
-        let is = [seen[0].simd_gt(zero), seen[1].simd_ge(zero)];
+        let is = [offset2[0].simd_gt(zero), offset2[1].simd_ge(zero)];
         // The side of the second box is opposite to the normal: x is first only for left and below.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & (is[0] | is[1]));
         (first, side(gaps, is_y, is))

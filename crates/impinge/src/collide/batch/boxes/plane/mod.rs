@@ -19,7 +19,7 @@ use self::names::SideNames;
 use self::sides::BoxSides;
 use super::admit::{Admission, Limits, Slots};
 use super::choose::SlotChoice;
-use super::masks::turned;
+use super::masks::per_pair;
 use super::{Inputs, smaller_size};
 use crate::collide::RawManifold;
 use crate::collide::batch::{Batch, PairQuestion};
@@ -135,7 +135,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
             bits(sides.is_own_y),
             bits(sides.is_positive),
             bits(axis.is_second),
-            bits(sides.is_turned),
+            bits(sides.is_reversed),
             is_apart,
             is_built,
         ];
@@ -158,8 +158,8 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
     fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;
         let [e, f, g, h] = self.slots.level;
-        self.filled = turned([a, b, c, d, e, f, g, h]);
-        (self.sides, self.at_ends) = (turned(self.sides), turned(self.at_ends));
+        self.filled = per_pair([a, b, c, d, e, f, g, h]);
+        (self.sides, self.at_ends) = (per_pair(self.sides), per_pair(self.at_ends));
     }
 
     /// Replaces the manifold of one pair; returns `false` if it has to fall back.

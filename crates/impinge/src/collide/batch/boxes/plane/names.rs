@@ -74,7 +74,7 @@ impl SideNames {
 
     /// Maps an end of the upper side from the order of places to the order of its box, or back.
     #[inline(always)]
-    const fn turned(self, part: usize) -> usize {
+    const fn reordered(self, part: usize) -> usize {
         if self.sides & 32 != 0 && part != 0 { 3 - part } else { part }
     }
 }
@@ -84,7 +84,7 @@ impl Naming for SideNames {
     fn features(&self, slot: usize) -> [FeatureId; 2] {
         let (own, other) = (usize::from(slot & 1 == 1) + 1, usize::from(self.at_end(slot)));
         let (below, above) = if slot < 2 { (other, own) } else { (own, other) };
-        let (below, above) = (self.below()[below], self.above()[self.turned(above)]);
+        let (below, above) = (self.below()[below], self.above()[self.reordered(above)]);
         if self.sides & 16 == 0 { [below, above] } else { [above, below] }
     }
 
@@ -93,7 +93,7 @@ impl Naming for SideNames {
         let (first, second) = (point.feature1, point.feature2);
         let (below, above) = if self.sides & 16 == 0 { (first, second) } else { (second, first) };
         let below = part(self.below(), below)?;
-        let above = self.turned(part(self.above(), above)?);
+        let above = self.reordered(part(self.above(), above)?);
         let is_it = |slot: usize, at_end: usize| {
             valid >> slot & 1 == 1 && usize::from(self.at_end(slot)) == at_end
         };

@@ -35,7 +35,7 @@ pub(super) struct BoxSides<V, M> {
     pub(super) is_own_y: M,
     pub(super) is_positive: M,
     /// Lanes where the end with the smaller place is on the positive side of the upper box.
-    pub(super) is_turned: M,
+    pub(super) is_reversed: M,
     /// Ends of the upper side, the one with the smaller place first.
     ends: [End<V>; 2],
     /// Length of the upper side along the lower one.
@@ -108,7 +108,7 @@ impl<V, M> BoxSides<V, M> {
             half,
             is_own_y: upper.is_own_y,
             is_positive: upper.is_positive,
-            is_turned: upper.is_turned,
+            is_reversed: upper.is_reversed,
             ends: upper.ends,
             length,
             is_corner: !upper.is_aligned,
@@ -234,7 +234,7 @@ struct Upper<V, M> {
     /// Masks and ends as in [`BoxSides`].
     is_own_y: M,
     is_positive: M,
-    is_turned: M,
+    is_reversed: M,
     ends: [End<V>; 2],
     is_second_lower: M,
     is_aligned: M,
@@ -290,11 +290,11 @@ impl<V, M> Upper<V, M> {
                 End { place, height: is_upward.select(height, -height) }
             },
         );
-        let is_turned = far.place.simd_lt(near.place);
-        let ends = [in_order(is_turned, far, near), in_order(is_turned, near, far)];
+        let is_reversed = far.place.simd_lt(near.place);
+        let ends = [in_order(is_reversed, far, near), in_order(is_reversed, near, far)];
         // Both hold, or neither: the far end faces the other box, the ends are exchanged.
-        let is_second_lower = is_turned ^ !lean.simd_lt(zero);
-        Self { is_own_y, is_positive, is_turned, ends, is_second_lower, is_aligned }
+        let is_second_lower = is_reversed ^ !lean.simd_lt(zero);
+        Self { is_own_y, is_positive, is_reversed, ends, is_second_lower, is_aligned }
     }
 }
 

@@ -18,7 +18,7 @@
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
 use super::shown::ShownFaces;
-use crate::math::lanes::{dot, either, lit, negated, norm, seen_from};
+use crate::math::lanes::{dot, either, lit, negated, norm, rotated_into};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
@@ -150,7 +150,7 @@ fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     if !leans_too_far.any_true() {
         return (axis.normal, axis.is_second);
     }
-    let toward2 = negated(&seen_from(&boxes.rotation, &axis.normal));
+    let toward2 = negated(&rotated_into(&boxes.rotation, &axis.normal));
     let is_second = leans_too_far & is_shown(simd, &toward2);
     (either(is_second, &toward2, &axis.normal), axis.is_second | is_second)
 }
@@ -175,7 +175,7 @@ fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) ->
 /// Projects a vector, by the axes in turn, along the normal onto the rectangle's plane; returns its
 /// coordinates there and its height along the normal.
 #[inline(always)]
-fn seen<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
+fn projected<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
     let height = w / toward[0];
     ([u - toward[1] * height, v - toward[2] * height], height)
 }
@@ -200,7 +200,7 @@ impl<V, M> FacesInLanes<V, M> {
         let below = below(simd, boxes, axis);
         let (rotation, shift) = other(boxes, below.is_second);
         let toward = below.in_turn;
-        let facing = negated(&seen_from(&rotation, &below.toward));
+        let facing = negated(&rotated_into(&rotation, &below.toward));
         let is_m = largest(&facing);
         let [f0, f1, f2] = in_turn(&is_m, &facing);
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
@@ -214,10 +214,10 @@ impl<V, M> FacesInLanes<V, M> {
         let [w, u, v] = in_turn(&below.is_w, &from_plane);
         let upward: V = sign(simd, below.is_upward);
         let level = upward * below.half[0];
-        let (center, height) = seen([w - level, u, v], &toward);
+        let (center, height) = projected([w - level, u, v], &toward);
         let arm1 = in_turn(&below.is_w, &arm(&is_m, [y, z, x], half[1]));
         let arm2 = in_turn(&below.is_w, &arm(&is_m, [z, x, y], half[2]));
-        let ((arm1, climb1), (arm2, climb2)) = (seen(arm1, &toward), seen(arm2, &toward));
+        let ((arm1, climb1), (arm2, climb2)) = (projected(arm1, &toward), projected(arm2, &toward));
         let area = cross(&arm1, &arm2);
         let widths = [area.abs() / norm(&arm2), area.abs() / norm(&arm1)];
         let across = [below.half[1], below.half[2]];

@@ -19,7 +19,7 @@ use self::faces::FacesInLanes;
 use self::names::{BoxPairNames, FaceSide, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::SlotChoice;
-use super::masks::turned;
+use super::masks::per_pair;
 use super::{Boxes, Inputs, smaller_size};
 use crate::collide::RawManifold;
 use crate::collide::batch::{Batch, PairQuestion};
@@ -249,7 +249,7 @@ impl Columns {
         ];
         let mut columns = [[0; 8]; 7];
         for (column, row) in columns.iter_mut().zip(rows) {
-            *column = turned(row);
+            *column = per_pair(row);
         }
         Self(columns)
     }
