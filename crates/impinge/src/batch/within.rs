@@ -209,8 +209,8 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         }
         let (side, mut boxes) = (PreparedSide::new(side), vec![None; given]);
         let work = |range: Range<usize>, boxes: &mut [Option<Aabb<N, D>>]| {
-            for (place, element) in boxes.iter_mut().zip(range) {
-                *place = grown_box(&side, element);
+            for (slot, element) in boxes.iter_mut().zip(range) {
+                *slot = grown_box(&side, element);
             }
         };
         Progress::new(control).run(given, &mut boxes[..], work)?;

@@ -215,10 +215,10 @@ mod tests {
     use crate::bvh::{Bounds, Lanes};
     use crate::math::noise::Noise;
 
-    /// A ranking in which an object near `place` has the rank of its least x coordinate, any other its distance.
+    /// A ranking in which an object near `target` has the rank of its least x coordinate, any other its distance.
     struct ByFirst<'a> {
         boxes: &'a [Aabb<f64, 3>],
-        place: Aabb<f64, 3>,
+        target: Aabb<f64, 3>,
         limit: f64,
         most: usize,
         found: Vec<u32>,
@@ -231,7 +231,7 @@ mod tests {
 
         fn of_object(&self, id: u32) -> f64 {
             let aabb = &self.boxes[id as usize];
-            let apart = aabb.distance_to_aabb(&self.place);
+            let apart = aabb.distance_to_aabb(&self.target);
             if apart > 0.0 { apart } else { aabb.mins().x - 100.0 }
         }
 
@@ -255,15 +255,16 @@ mod tests {
             let boxes: Vec<_> = (0..count).map(each).collect();
             let tree =
                 Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().map(Bounds::enclosing)));
-            let place = Aabb::new(Point::from([-1.0, -2.0, -3.0]), Point::from([5.0, 4.0, 3.0]));
+            let target = Aabb::new(Point::from([-1.0, -2.0, -3.0]), Point::from([5.0, 4.0, 3.0]));
             for (limit, most) in [(-90.0, 9999), (0.0, 9999), (5.0, 9999), (f64::INFINITY, 40)] {
-                let mut question = ByFirst { boxes: &boxes, place, limit, most, found: Vec::new() };
+                let mut question =
+                    ByFirst { boxes: &boxes, target, limit, most, found: Vec::new() };
                 let rank = |question: &ByFirst<'_>, id: u32| question.of_object(id);
                 let mut all: Vec<_> = (0..count).collect();
                 all.retain(|&id| rank(&question, id) <= limit);
                 all.sort_by(|&a, &b| rank(&question, a).total_cmp(&rank(&question, b)));
                 all.truncate(most);
-                visit_ranked(&tree, &place, &mut question);
+                visit_ranked(&tree, &target, &mut question);
                 let ranks =
                     |ids: &[u32]| ids.iter().map(|&id| rank(&question, id)).collect::<Vec<_>>();
                 assert_eq!(ranks(&question.found), ranks(&all), "{count} up to {limit}");

@@ -207,9 +207,9 @@ impl<const D: usize> Tree<D> {
     /// Returns the slot of an object that is probably near a point: descends to the child with the
     /// nearest centre, one block in each layer. `None` if no box is finite, or squared distances
     /// overflow `f32`.
-    pub(super) fn slot_near(&self, place: &[f32; D]) -> Option<u32> {
+    pub(super) fn slot_near(&self, point: &[f32; D]) -> Option<u32> {
         self.layers.iter().rev().try_fold(0, |at, layer| {
-            let lane = layer.blocks[at as usize].nearest_lane(place)?;
+            let lane = layer.blocks[at as usize].nearest_lane(point)?;
             Some(at * small(LANES) + small(lane))
         })
     }
@@ -275,7 +275,7 @@ impl<const D: usize> Tree<D> {
     pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
-        let slot = self.find_place(bounds);
+        let slot = self.find_slot(bounds);
         self.put_at(slot, id, bounds);
         slot
     }

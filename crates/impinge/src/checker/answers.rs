@@ -298,10 +298,10 @@ mod tests {
         let frame = |joint| Frame { parent: None, origin: Pose::identity(), joint };
         let frames = [Joint::fixed(), Joint::prismatic(diagonal, 0)].mapped(frame);
         let tree = FrameTree::try_new(&frames, 1).expect("two frames");
-        let bodies = surfaces.iter().enumerate().map(|(index, &(size, place))| Body {
+        let bodies = surfaces.iter().enumerate().map(|(index, &(size, position))| Body {
             frame: usize::from(index + 1 == surfaces.len()),
             shape: surface(size),
-            pose: Pose::from_translation(place.into()),
+            pose: Pose::from_translation(position.into()),
         });
         Checker::try_new(tree, bodies.collect(), pairs).expect("bodies")
     }

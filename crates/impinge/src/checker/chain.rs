@@ -113,7 +113,7 @@ impl<N: Real, const D: usize> Node<N, D> {
 
     /// Its position on its parent.
     #[inline(always)]
-    fn place<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
+    fn position<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
         filled(
             #[inline(always)]
             |row| {
@@ -222,7 +222,7 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
             let outer = if is_inner { parent.vector(simd, &inner) } else { inner };
             store(&outer, &mut own.rotation[column]);
         }
-        let inner = node.place(simd, number);
+        let inner = node.position(simd, number);
         let outer = if is_inner { parent.point(simd, &inner) } else { inner };
         store(&outer, &mut own.translation);
     }

@@ -92,7 +92,7 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         let rows = self.rows();
         let body = |number: u32| {
             let index = number as usize;
-            let pose = checker.places[index].at(rows, lane);
+            let pose = checker.on_nodes[index].at(rows, lane);
             let placed = Placed::of_pose(&pose, checker.bodies[index].shape.geometry());
             (placed, Some(number))
         };

@@ -115,8 +115,11 @@ mod tests {
     use crate::math::{Mapped, Pose};
     use crate::shape::{Ball, Polyline, Shape, TriMesh};
 
-    fn at<'a, const D: usize>(place: [f64; D], shape: &'a dyn Shape<f64, D>) -> Placed<'a, f64, D> {
-        Placed { pose: Pose::from_translation(place.into()), shape: shape.geometry() }
+    fn at<'a, const D: usize>(
+        position: [f64; D],
+        shape: &'a dyn Shape<f64, D>,
+    ) -> Placed<'a, f64, D> {
+        Placed { pose: Pose::from_translation(position.into()), shape: shape.geometry() }
     }
 
     /// The answer after enough requests for the hull to be computed.

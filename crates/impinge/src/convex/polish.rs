@@ -128,9 +128,9 @@ fn activate<N: Simplicial<D>, const D: usize>(
     for (index, side) in sides.iter_mut().enumerate() {
         let on = |vertex: &Vertex<N, D>| if index == 1 { vertex.on2 } else { vertex.on1 };
         side.insert(difference.branch(index == 1, &on(&best.vertex), &best.normal));
-        for (place, vertex) in vertices.iter().enumerate() {
+        for (earlier, vertex) in vertices.iter().enumerate() {
             let is_known = |other: &Vertex<N, D>| on(other) == on(vertex);
-            if !is_known(&best.vertex) && !vertices[..place].iter().any(is_known) {
+            if !is_known(&best.vertex) && !vertices[..earlier].iter().any(is_known) {
                 side.insert(difference.branch(index == 1, &on(vertex), &best.normal));
             }
         }
@@ -162,9 +162,9 @@ fn keep_extreme<N: Simplicial<D>, const D: usize>(
     while sides[0].branches.len() + sides[1].branches.len() > D + 1 {
         let mut worst = (0, 0, -N::ONE);
         for (index, side) in sides.iter().enumerate() {
-            for (place, branch) in side.branches.iter().enumerate() {
+            for (branch_index, branch) in side.branches.iter().enumerate() {
                 if side.branches.len() > 1 && lag(branch) >= worst.2 {
-                    worst = (index, place, lag(branch));
+                    worst = (index, branch_index, lag(branch));
                 }
             }
         }
@@ -263,13 +263,13 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(
     sides: &mut [ActiveSet<N, D>; 2],
     slack: N,
 ) -> bool {
-    let place = match (sides[0].worst(slack), sides[1].worst(slack)) {
+    let worst = match (sides[0].worst(slack), sides[1].worst(slack)) {
         (Some((index, one)), Some((_, two))) if one <= two => (0, index),
         (Some((index, _)), None) => (0, index),
         (_, Some((index, _))) => (1, index),
         (None, None) => return false,
     };
-    sides[place.0].drop(place.1);
+    sides[worst.0].drop(worst.1);
     true
 }
 

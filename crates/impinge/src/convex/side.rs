@@ -133,8 +133,8 @@ impl<N: Real> NormalRing<N> {
         let mut highest = SmallVec::new();
         while highest.len() < TOPS {
             let higher = |a, b| if height(tops[b]) > height(tops[a]) { b } else { a };
-            let Some(place) = (0..tops.len()).reduce(higher) else { break };
-            highest.push(samples[tops.remove(place)].0);
+            let Some(index) = (0..tops.len()).reduce(higher) else { break };
+            highest.push(samples[tops.remove(index)].0);
         }
         highest
     }

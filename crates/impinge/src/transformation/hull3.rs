@@ -86,8 +86,8 @@ fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
         grown = next;
     }
     let mut faces = faces(&grown.facets, &grown.vertices);
-    let (used, places) = numbered(grown.named.len(), faces.corners.iter().copied());
-    faces.corners.iter_mut().for_each(|corner| *corner = places[at(*corner)]);
+    let (used, new_indices) = numbered(grown.named.len(), faces.corners.iter().copied());
+    faces.corners.iter_mut().for_each(|corner| *corner = new_indices[at(*corner)]);
     let named = used.into_iter().map(|vertex| grown.named[vertex]).collect();
     Ok(HullFaces { named, faces })
 }
@@ -107,9 +107,9 @@ impl Grown {
         let facets = HullSurface::grown(&scaled.points, first, 2.0 * scaled.unit);
         let mut facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
         let corners = facets.iter().flat_map(|facet| facet.corners);
-        let (named, places) = numbered(scaled.points.len(), corners);
+        let (named, new_indices) = numbered(scaled.points.len(), corners);
         for facet in &mut facets {
-            facet.corners = facet.corners.mapped(|corner| places[at(corner)]);
+            facet.corners = facet.corners.mapped(|corner| new_indices[at(corner)]);
         }
         let points = named.iter().map(|&index| scaled.points[index]).collect();
         Ok(Self { named, vertices: Scaled { points, unit: scaled.unit }, facets })
@@ -128,13 +128,13 @@ impl Grown {
 
 /// Returns the used vertices, ascending, and the index of each among them.
 fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
-    let (mut places, mut used) = (vec![0; count], Vec::with_capacity(count));
-    corners.for_each(|corner| places[at(corner)] = 1);
-    for (vertex, place) in places.iter_mut().enumerate().filter(|(_, place)| **place == 1) {
-        *place = index_of(used.len());
+    let (mut new_indices, mut used) = (vec![0; count], Vec::with_capacity(count));
+    corners.for_each(|corner| new_indices[at(corner)] = 1);
+    for (vertex, index) in new_indices.iter_mut().enumerate().filter(|(_, index)| **index == 1) {
+        *index = index_of(used.len());
         used.push(vertex);
     }
-    (used, places)
+    (used, new_indices)
 }
 
 impl<N: Real> ConvexHull<N> {

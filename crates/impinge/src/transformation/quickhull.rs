@@ -43,14 +43,14 @@ pub(super) struct Facet {
 
 impl Facet {
     fn new(points: &[P3], corners: [u32; 3], neighbors: [u32; 3]) -> Self {
-        let places = corners.mapped(|corner| &points[at(corner)]);
-        let [a, b, c] = places;
+        let corner_points = corners.mapped(|corner| &points[at(corner)]);
+        let [a, b, c] = corner_points;
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
         // The rounding error is 2⁻⁵⁰ of the product of the lengths: 2⁻⁴⁵ of an area that is 1/32 of
         // it.
         if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
-            across = area_vector(places);
+            across = area_vector(corner_points);
         }
         let doubled_area = across.norm();
         let normal = across * (1.0 / doubled_area);
@@ -176,8 +176,8 @@ impl<'a> HullSurface<'a> {
     /// replaced it.
     #[inline]
     fn assign(&mut self, point: u32, first: u32) {
-        let place = self.points[at(point)];
-        let (mut best, mut top) = self.highest(first, |facet| facet.rough_height(&place));
+        let position = self.points[at(point)];
+        let (mut best, mut top) = self.highest(first, |facet| facet.rough_height(&position));
         if top.abs() <= DOUBT {
             (best, top) = self.highest(first, |facet| facet.height(self.points, point));
         }
@@ -343,15 +343,15 @@ impl<'a> HullSurface<'a> {
     fn distance(&self, facet: u32, point: u32) -> f64 {
         let facet = &self.facets[at(facet)];
         let [a, b, c] = facet.corners.mapped(|corner| &self.points[at(corner)]);
-        let place = &self.points[at(point)];
+        let position = &self.points[at(point)];
         let sides = [(a, b), (b, c), (c, a)];
         let is_inside = |(from, to): &(&P3, &P3)| {
-            facet.normal.cross(&(*to - *from)).dot(&(place - *from)) >= 0.0
+            facet.normal.cross(&(*to - *from)).dot(&(position - *from)) >= 0.0
         };
         if sides.iter().all(is_inside) {
             return facet.height(self.points, point);
         }
-        let distances = sides.mapped(|(from, to)| distance_from_segment(place, from, to));
+        let distances = sides.mapped(|(from, to)| distance_from_segment(position, from, to));
         distances.into_iter().fold(f64::INFINITY, f64::min)
     }
 

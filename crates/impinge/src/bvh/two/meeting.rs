@@ -320,9 +320,9 @@ mod tests {
 
     /// The least distance of samples along two segments.
     fn distance(one: &[Point<f64, 3>; 2], other: &[Point<f64, 3>; 2]) -> f64 {
-        let place = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
+        let point_at = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
         let ways = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
-        ways.map(|(at1, at2)| (place(one, at1) - place(other, at2)).norm())
+        ways.map(|(at1, at2)| (point_at(one, at1) - point_at(other, at2)).norm())
             .fold(f64::INFINITY, f64::min)
     }
 

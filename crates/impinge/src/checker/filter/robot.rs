@@ -84,7 +84,7 @@ struct Builder<'a, N: Real, const D: usize> {
     /// The reach of each group: all of it is within the length of the anchor.
     ways: Vec<Way<N, D>>,
     /// The group and the balls, as bits, of each body, in the user's order.
-    places: Vec<(usize, u8)>,
+    memberships: Vec<(usize, u8)>,
 }
 
 impl<const D: usize> RobotFilter<D> {
@@ -94,10 +94,10 @@ impl<const D: usize> RobotFilter<D> {
         bodies: impl Iterator<Item = (&'s dyn Shape<N, D>, OnNode<N, D>)>,
         pairs: &[[u32; 2]],
     ) -> Self {
-        let covered = bodies.enumerate().map(|(number, (shape, place))| {
-            let pose = place.pose.unwrap_or_else(Pose::identity);
+        let covered = bodies.enumerate().map(|(number, (shape, on_node))| {
+            let pose = on_node.pose.unwrap_or_else(Pose::identity);
             let (balls, is_ball) = cover(shape, &pose);
-            Covered { number, node: place.node, balls, is_ball }
+            Covered { number, node: on_node.node, balls, is_ball }
         });
         let covered: Vec<_> = covered.collect();
         let mut builder = Builder::new(tree, covered.len());
@@ -169,7 +169,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             crossings: Vec::new(),
             slide_margin: margin::<N>(tree.nodes.len(), 1.0, 1.0),
         };
-        Self { tree, shift, filter, ways: Vec::new(), places: vec![(0, 0); bodies] }
+        Self { tree, shift, filter, ways: Vec::new(), memberships: vec![(0, 0); bodies] }
     }
 
     /// Groups the bodies of one node: one group, or those of the two halves along the longest axis.
@@ -204,7 +204,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
                 all.push(ball);
             }
             let bits = (from..group.count).fold(0, |bits, ball| bits | 1 << ball);
-            self.places[body.number] = (self.filter.groups.len(), bits);
+            self.memberships[body.number] = (self.filter.groups.len(), bits);
         }
         (group.center, group.radius) = in_f32(&around(&all));
         let way = way_to(self.tree, node, (&group.center, group.radius));
@@ -219,7 +219,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
     fn cross(&mut self, pairs: &[[u32; 2]]) {
         let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
         for pair in pairs {
-            let [one, other] = pair.mapped(|body| self.places[body as usize]);
+            let [one, other] = pair.mapped(|body| self.memberships[body as usize]);
             let ((group1, balls1), (group2, balls2)) = (one.min(other), one.max(other));
             let wanted = by_groups.entry([group1, group2]).or_default();
             for (ball, others) in wanted.iter_mut().enumerate() {
@@ -301,8 +301,8 @@ impl<const D: usize> BallGroup<D> {
 /// The axis along which the centers are spread farthest.
 fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     let spread = |axis: usize| {
-        let places = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
-        let (low, high) = places
+        let coordinates = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
+        let (low, high) = coordinates
             .fold((f64::INFINITY, -f64::INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         high - low
     };

@@ -106,15 +106,15 @@ impl<const D: usize> Scan<'_, D> {
         (index, lane): (usize, usize),
         scratch: &mut ScanScratch<D>,
     ) -> [V; D] {
-        let place = &mut scratch.balls[index][lane];
+        let cached = &mut scratch.balls[index][lane];
         if scratch.placed[index] >> lane & 1 == 1 {
-            return load(simd, place);
+            return load(simd, cached);
         }
         scratch.placed[index] |= 1 << lane;
         let group = &self.robot.groups[index];
         let local: [V; D] = load(simd, &group.centers);
         let centers = scratch.rows[group.node].points_in(simd, lane, &local);
-        store(&centers, place);
+        store(&centers, cached);
         centers
     }
 

@@ -139,7 +139,7 @@ struct LaneSide<V, M> {
     is_first: bool,
     /// Ends in the order of their coordinates along the tangent, and these coordinates.
     ends: [PlaneLanes<V>; 2],
-    places: [V; 2],
+    coordinates: [V; 2],
     /// Lanes where that order is the opposite of the segment's.
     is_reversed: M,
     /// Radius around the segment.
@@ -173,8 +173,8 @@ impl<V, M> LaneSide<V, M> {
         let [first, last] = ends;
         let flats = [line.flat(first), line.flat(last)];
         let is_reversed = flats[1].simd_lt(flats[0]);
-        let places = [flats[0].smaller(flats[1]), flats[0].larger(flats[1])];
-        let length = places[1] - places[0];
+        let coordinates = [flats[0].smaller(flats[1]), flats[0].larger(flats[1])];
+        let length = coordinates[1] - coordinates[0];
         let cosine = length / norm(&minus(last, first));
         let is_point = cosine.simd_lt(lit::<S, N, V>(simd, 0.5));
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
@@ -186,7 +186,7 @@ impl<V, M> LaneSide<V, M> {
         let mut side = Self {
             is_first,
             ends: [either(is_reversed, last, first), either(is_reversed, first, last)],
-            places,
+            coordinates,
             is_reversed,
             radius,
             cosine,
@@ -214,11 +214,12 @@ impl<V, M> LaneSide<V, M> {
 
     /// Returns the point of the core at a coordinate along the tangent.
     #[inline(always)]
-    fn under<S: Simd, N: Real>(&self, simd: S, place: V) -> PlaneLanes<V>
+    fn under<S: Simd, N: Real>(&self, simd: S, coordinate: V) -> PlaneLanes<V>
     where
         V: Wide<S, Scalar = N>,
     {
-        let share = (place - self.places[0]) / (self.places[1] - self.places[0]);
+        let share =
+            (coordinate - self.coordinates[0]) / (self.coordinates[1] - self.coordinates[0]);
         let share = share.larger(V::all(simd, N::ZERO)).smaller(V::all(simd, N::ONE));
         plus(&self.ends[0], &times(&minus(&self.ends[1], &self.ends[0]), share))
     }
@@ -274,7 +275,7 @@ impl<V, M> LaneContact<V, M> {
         line: &ContactLine<V>,
         sides: &[LaneSide<V, M>; 2],
         end: usize,
-        place: V,
+        coordinate: V,
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
@@ -283,9 +284,9 @@ impl<V, M> LaneContact<V, M> {
         let [first, second] = sides;
         let is_at = [first, second].map(|side| {
             // The segment ends here, up to rounding.
-            (side.places[end] - place).abs().simd_le(line.tolerance)
+            (side.coordinates[end] - coordinate).abs().simd_le(line.tolerance)
         });
-        let cores = [first.under(simd, place), second.under(simd, place)];
+        let cores = [first.under(simd, coordinate), second.under(simd, coordinate)];
         // Both points are moved halfway, so that they lie across from each other along the normal.
         let gap = minus(&cores[1], &cores[0]);
         let across = minus(&gap, &times(&line.normal, dot(&line.normal, &gap)));
@@ -348,8 +349,8 @@ impl<V, M> SegmentContacts<V, M> {
         M: SimdMask<S>,
     {
         let [first, second] = sides;
-        let from = first.places[0].larger(second.places[0]);
-        let to = first.places[1].smaller(second.places[1]);
+        let from = first.coordinates[0].larger(second.coordinates[0]);
+        let to = first.coordinates[1].smaller(second.coordinates[1]);
         // Overlaps and gaps of a few tolerances are decided by rounding: such lanes are not known.
         let few = lit::<S, N, V>(simd, 4.0) * line.tolerance;
         let is_side = !first.is_point & !second.is_point;

@@ -234,7 +234,7 @@ impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
     #[inline(always)]
     fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
-        place: usize,
+        slot: usize,
         point: &[V; 3],
         [first, last]: &SegmentEnds<V>,
         noise: V,
@@ -243,8 +243,8 @@ impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
         let (squared, reached) = (dot(&along, &along), dot(&minus(point, first), &along));
         let slack = noise * squared.sqrt();
         let (is_first, is_last) = (reached.simd_le(slack), (squared - reached).simd_le(slack));
-        self.parts[place] = bits(is_first);
-        self.parts[place + 1] = bits(is_last);
+        self.parts[slot] = bits(is_first);
+        self.parts[slot + 1] = bits(is_last);
         !(is_first & is_last)
     }
 }

@@ -59,8 +59,8 @@ impl<N: Real, const D: usize> KeptPairs<N, D> for Kept<'_, N, D> {
 
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
         self.counts[1] += usize::from(self.is_new(index));
-        let place = self.due[index];
-        (self.cases[place].question(), &mut self.raws[place])
+        let case_index = self.due[index];
+        (self.cases[case_index].question(), &mut self.raws[case_index])
     }
 
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D> {
@@ -182,7 +182,7 @@ struct Draw<const D: usize> {
     radii: [f64; 2],
     /// Ends of a segment; for a box, the magnitudes of the last are the half extents.
     ends: [[Vector<f64, D>; 2]; 2],
-    places: [Vector<f64, D>; 2],
+    positions: [Vector<f64, D>; 2],
     turns: [[f64; 3]; 2],
 }
 
@@ -191,19 +191,19 @@ impl<const D: usize> Draw<D> {
     fn new(random: &mut Random, sorts: [Sort; 2], snapped: bool) -> Self {
         let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
         let mut vector = |by: f64| Vector::<f64, D>::from_fn(|_, _| snap(random.between(-by, by)));
-        let place = vector(9.0);
+        let position = vector(9.0);
         let (ends, aside) = ([[vector(1.0), vector(1.0)], [vector(1.0), vector(1.0)]], vector(1.2));
         let radii = [snap(random.between(0.1, 0.8)), snap(random.between(0.1, 0.8))];
         let mut turn = || [0.0; 3].map(|_: f64| random.between(-3.0, 3.0));
         let turns = if snapped { [[0.0; 3]; 2] } else { [turn(), turn()] };
-        Self { sorts, radii, ends, places: [place, place + aside], turns }
+        Self { sorts, radii, ends, positions: [position, position + aside], turns }
     }
 
     /// Moves the solids a little.
     fn shaken(&self, random: &mut Random, by: f64) -> Self {
         let mut shaken = self.clone();
         for which in 0..2 {
-            shaken.places[which] += Vector::<f64, D>::from_fn(|_, _| random.between(-by, by));
+            shaken.positions[which] += Vector::<f64, D>::from_fn(|_, _| random.between(-by, by));
             shaken.turns[which] = shaken.turns[which].map(|x| x + random.between(-by, by));
         }
         shaken
@@ -212,7 +212,7 @@ impl<const D: usize> Draw<D> {
     /// Converts to a case with another unit of length.
     fn case<N: Scene<D>>(&self, unit: f64, request: ManifoldRequest<N>) -> Case<N, D> {
         let vector = |v: &Vector<f64, D>| v.map(|x| N::lit(x * unit));
-        let poses = [0, 1].map(|at| N::pose(vector(&self.places[at]), self.turns[at]));
+        let poses = [0, 1].map(|at| N::pose(vector(&self.positions[at]), self.turns[at]));
         let solids = [0, 1].map(|at| {
             let radius = N::lit(self.radii[at] * unit);
             let ends = self.ends[at].map(|end| Point::from(vector(&end)));
@@ -378,8 +378,8 @@ fn faced<N: Scene<D>, const D: usize>(
         draw.turns = draw.turns.map(|turn| turn.map(|angle| angle * lean / 3.0));
         let [half1, half2] = draw.ends.map(|ends| ends[1].abs());
         let gap = random.between(-0.1, 0.2);
-        draw.places[1] = draw.places[0] + half1 * random.between(-0.5, 0.5);
-        draw.places[1][0] = draw.places[0][0] + half1[0] + half2[0] + gap;
+        draw.positions[1] = draw.positions[0] + half1 * random.between(-0.5, 0.5);
+        draw.positions[1][0] = draw.positions[0][0] + half1[0] + half2[0] + gap;
         draw
     };
     let mut draws: Vec<Draw<D>> = (0..203).map(|_| draw()).collect();

@@ -136,8 +136,8 @@ impl<N: Real> Insides<N> {
     }
 
     /// Returns the rows of a corner, or of the nearest point at the index after the last corner.
-    fn row(&self, place: usize) -> &[SideRow<N>] {
-        &self.rows[place * self.width..][..self.width]
+    fn row(&self, index: usize) -> &[SideRow<N>] {
+        &self.rows[index * self.width..][..self.width]
     }
 
     /// Measures the corners of `other` against the sides of `own`, and last the nearest point.
@@ -152,9 +152,9 @@ impl<N: Real> Insides<N> {
         let (count, sides) = (other.map_or(0, |other| other.count), own.side_count());
         let (most, least) = (V::all(simd, tolerance), V::all(simd, -tolerance));
         self.width = own.count.div_ceil(LANES);
-        for place in 0..=count {
+        for index in 0..=count {
             let flat = match other {
-                Some(other) if place < count => other.flat(place),
+                Some(other) if index < count => other.flat(index),
                 // The nearest point is the origin of the tangents.
                 _ => Vector::<N, 2>::zeros(),
             };

@@ -73,7 +73,7 @@ pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
     /// Parts of composites, zero for a convex solid, and the features of the parts.
     pub(super) names: ([u32; 2], [FeatureId; 2]),
     /// Position of the point on each solid, in that solid's frame.
-    pub(super) places: [Point<N, D>; 2],
+    pub(super) positions: [Point<N, D>; 2],
     /// Normal of the contact, in the frame of the first solid.
     normal: Vector<N, D>,
 }
@@ -101,7 +101,7 @@ impl<N: Real, const D: usize> PairPose<'_, N, D> {
             || Point::from(Vector::<N, D>::repeat(N::INFINITY)),
             |pose12| pose12.inverse_point(&(point1 + self.normal * distance)),
         );
-        Anchors { names, places: [*point1, point2], normal: *self.normal }
+        Anchors { names, positions: [*point1, point2], normal: *self.normal }
     }
 }
 
@@ -146,7 +146,7 @@ pub(super) fn moved<N: Real, const D: usize>(
     if is_on_vertex(0) || is_on_vertex(1) {
         return N::ZERO;
     }
-    let on = |solid: usize| ((new.places[solid] - old.places[solid]) * scale).norm_squared();
+    let on = |solid: usize| ((new.positions[solid] - old.positions[solid]) * scale).norm_squared();
     let [on1, on2] = [on(0), on(1)];
     // Written so that an unknown position does not count.
     if on2 < on1 { on2 } else { on1 }
@@ -191,14 +191,14 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
 
 /// Gives the candidates `some` without an id those ids that none of them has, by [`each_match`];
 /// `pose` is the new pose, `size` that of the pair.
-pub(in crate::collide) fn inherit_by_place<N: Real, const D: usize>(
+pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,
     size: impl Fn() -> N,
     candidates: &mut [Candidate<N, D>],
     some: &[usize],
 ) {
-    let (mut news, mut places) = (AnchorList::new(), SmallVec::<[usize; 8]>::new());
+    let (mut news, mut indices) = (AnchorList::new(), SmallVec::<[usize; 8]>::new());
     let (mut olds, mut ids) = (AnchorList::new(), SmallVec::<[u32; 8]>::new());
     let has =
         |id: u32| some.iter().any(|&at| candidates[at].kept.is_some_and(|kept| kept.id == id));
@@ -209,11 +209,11 @@ pub(in crate::collide) fn inherit_by_place<N: Real, const D: usize>(
     for &at in some.iter().filter(|&&at| !olds.is_empty() && candidates[at].kept.is_none()) {
         let new = &candidates[at];
         news.push(pose.anchors(&new.point1, new.distance, ([0; 2], new.features)));
-        places.push(at);
+        indices.push(at);
     }
     if !news.is_empty() {
         each_match(&olds, &news, size(), &mut |at, new, is_old| {
-            candidates[places[new]].kept = Some(Inherited { id: ids[at], is_old });
+            candidates[indices[new]].kept = Some(Inherited { id: ids[at], is_old });
         });
     }
 }

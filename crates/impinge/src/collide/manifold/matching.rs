@@ -176,8 +176,9 @@ const fn is_near(key: u64) -> bool {
 #[inline]
 fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
     // The first coordinates exclude most pairs. Written so that NaN is far.
-    let is_beside =
-        |solid: usize| ((new.places[solid][0] - old.places[solid][0]) * scale).abs() <= N::ONE;
+    let is_beside = |solid: usize| {
+        ((new.positions[solid][0] - old.positions[solid][0]) * scale).abs() <= N::ONE
+    };
     let is_same = old.names == new.names;
     if !(is_same | is_beside(0) | is_beside(1)) {
         return NEVER;
@@ -201,12 +202,12 @@ fn each_possible<N: Real, const D: usize>(
     visit: &mut dyn FnMut(usize, usize),
 ) {
     let by_names = sorted(new, Anchors::names_key);
-    let by_place = [0, 1].map(|solid| sorted(new, |point| order_of(point.places[solid][0])));
+    let by_position = [0, 1].map(|solid| sorted(new, |point| order_of(point.positions[solid][0])));
     for (at, point) in old.iter().enumerate() {
         let names = point.names_key();
         between(&by_names, [names; 2]).for_each(|other| visit(at, other));
-        for (solid, order) in by_place.iter().enumerate() {
-            let x = point.places[solid][0];
+        for (solid, order) in by_position.iter().enumerate() {
+            let x = point.positions[solid][0];
             between(order, [x - length, x + length].mapped(order_of))
                 .for_each(|other| visit(at, other));
         }

@@ -265,14 +265,14 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
         if !out.points.is_empty() {
             ids::inherit_by_features(out, candidates);
             let all: reduce::Indices = (0..candidates.len()).collect();
-            ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &all);
+            ids::inherit_by_position(out, &choice.pose, choice.size, candidates, &all);
         }
         let size = if is_over { (choice.size)() } else { N::ZERO };
         let levels = [distance + tolerance, slack_level(distance, size, tolerance)];
         let chosen = chosen(candidates, levels, tolerance, limit);
         if is_over {
             // Ids of candidates that are not chosen go to chosen ones near them.
-            ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &chosen);
+            ids::inherit_by_position(out, &choice.pose, choice.size, candidates, &chosen);
         }
         let deepest = deepest_of(chosen.len(), levels[0], |at| {
             let candidate = &candidates[chosen[at]];

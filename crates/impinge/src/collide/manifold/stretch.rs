@@ -175,18 +175,18 @@ impl<N: Real> Stretch<N> {
 
     /// Returns the point of the core at a tangent coordinate.
     #[inline(always)]
-    pub(super) fn under(&self, place: N) -> Point<N, 2> {
+    pub(super) fn under(&self, coordinate: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
         // Sides run in either direction along the tangent.
-        let share = (place - from.flat.x) * self.along / (self.along * self.along);
+        let share = (coordinate - from.flat.x) * self.along / (self.along * self.along);
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
     }
 
     /// Returns the part beside a tangent coordinate, ends by their distance along the side; `None`
     /// beyond the ends.
     #[inline(always)]
-    fn beside(&self, place: N, tolerance: N) -> Option<FeatureId> {
-        let along = (place - self.corners[0].flat.x) * self.along / self.length;
+    fn beside(&self, coordinate: N, tolerance: N) -> Option<FeatureId> {
+        let along = (coordinate - self.corners[0].flat.x) * self.along / self.length;
         let tolerance = N::TWO * tolerance;
         let [from, to] = &self.corners;
         part_beside(along, self.length, tolerance, [from.id, to.id], self.id)
@@ -194,13 +194,13 @@ impl<N: Real> Stretch<N> {
 
     /// Returns the part that contains a tangent coordinate: an end or the side; `None` beyond the
     /// ends.
-    pub(super) fn locate(&self, place: N, tolerance: N) -> Option<FeatureId> {
+    pub(super) fn locate(&self, coordinate: N, tolerance: N) -> Option<FeatureId> {
         let [from, to] = &self.corners;
-        let near = |corner: &Corner<N, 2>| (corner.flat.x - place).abs() <= N::TWO * tolerance;
+        let near = |corner: &Corner<N, 2>| (corner.flat.x - coordinate).abs() <= N::TWO * tolerance;
         if near(from) || near(to) {
             return Some(if near(from) { from.id } else { to.id });
         }
-        let along = (place - from.flat.x) * self.along;
+        let along = (coordinate - from.flat.x) * self.along;
         (along >= N::ZERO && along <= self.length * self.length).then_some(self.id)
     }
 

@@ -68,11 +68,11 @@ fn features<N: Real, const D: usize>(
         return [FeatureId::Face(0), touched];
     }
     let (noise, normal) = (rounding(pair), separation.normal);
-    let first = by_place(pair.first, &separation.point1, &normal, noise);
+    let first = by_position(pair.first, &separation.point1, &normal, noise);
     // In the frame of the second solid.
     let second = || {
         let point = pair.pose12.inverse_point(&separation.point2);
-        by_place(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
+        by_position(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
     };
     [
         first.unwrap_or_else(|| shown(pair, separation, false)),
@@ -83,7 +83,7 @@ fn features<N: Real, const D: usize>(
 /// Returns the part of a solid that contains a surface point with the outward normal `outward`,
 /// from the point alone, without the supporting feature. Serves flat-faced solids, segments,
 /// capsules and rounded ones; `None` for other kinds, and in close cases.
-fn by_place<N: Real, const D: usize>(
+fn by_position<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
     outward: &Vector<N, D>,
@@ -101,7 +101,7 @@ fn by_place<N: Real, const D: usize>(
         }
         Kind::Rounded(solid) => {
             let core = point - outward * solid.radius();
-            by_place(solid.inner().0, &core, outward, noise)
+            by_position(solid.inner().0, &core, outward, noise)
         }
         _ => None,
     }
@@ -172,7 +172,7 @@ pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     match pair.second {
         Kind::Cylinder(cylinder, _) => cylinder.part_at(&point, noise),
         Kind::Cone(cone, _) => cone.part_at(&point, noise),
-        other => by_place(other, &point, &-pair.pose12.inverse_vector(&found.normal), noise),
+        other => by_position(other, &point, &-pair.pose12.inverse_vector(&found.normal), noise),
     }
 }
 

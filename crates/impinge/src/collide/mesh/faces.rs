@@ -47,7 +47,7 @@ pub(crate) fn face_contacts<N: Real>(
     let mut found =
         FaceContacts { meeting: &meeting, contacts, arena, slot, due, clip, missing: 0 };
     let is_served = gaps3(&parts, meeting.solid, &pose12, prediction, limit, &mut |index, gap| {
-        found.add(meeting.places[index], gap);
+        found.add(meeting.cache_indices[index], gap);
     });
     found.clip();
     found.drop_missing();
@@ -68,7 +68,7 @@ struct FaceMeeting<'a, N: Real> {
     from: Point<N, 3>,
     reach: N,
     /// Of each near triangle its place among those that are kept.
-    places: SmallVec<[usize; 24]>,
+    cache_indices: SmallVec<[usize; 24]>,
 }
 
 /// A triangle in the frame of its surface.
@@ -113,7 +113,7 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
         let map = Geometry(solid).as_support_map().filter(|_| is_served)?;
         let from = query.reference.unwrap_or_else(|| between.pose21.point(&map.center()));
         let near = nearby.near.iter().enumerate();
-        let places = near.flat_map(|(block, near)| {
+        let cache_indices = near.flat_map(|(block, near)| {
             Ones::<LANES>((*near).into()).map(move |lane| block * LANES + lane)
         });
         Some(Self {
@@ -126,19 +126,19 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
             origin: between.pose21.translation,
             from,
             reach: map.reach(),
-            places: places.collect(),
+            cache_indices: cache_indices.collect(),
         })
     }
 
     /// One of the triangles that are kept; `None` where nothing is known of its seams.
-    fn triangle(&self, place: usize) -> Option<KeptTriangle<'a, N>> {
-        let seams = self.around.seams(place)?;
-        let corners = self.around.tiles()[place / LANES].corners(place % LANES);
+    fn triangle(&self, cache_index: usize) -> Option<KeptTriangle<'a, N>> {
+        let seams = self.around.seams(cache_index)?;
+        let corners = self.around.tiles()[cache_index / LANES].corners(cache_index % LANES);
         let squared =
             corners.each_ref().mapped(|corner| (corner.coords - self.origin).norm_squared());
         let size = self.reach + max(squared[0], max(squared[1], squared[2])).sqrt();
         let tolerance = N::lit(ROUNDING_ERRORS) * N::EPSILON * size;
-        Some(KeptTriangle { part: self.around.parts()[place], corners, seams, tolerance })
+        Some(KeptTriangle { part: self.around.parts()[cache_index], corners, seams, tolerance })
     }
 
     /// What the surface says of a triangle, given how near the solid is.
@@ -226,9 +226,9 @@ struct FaceContacts<'s, 'a, N: Real> {
 
 impl<N: Real> FaceContacts<'_, '_, N> {
     /// Adds the contact of a triangle, of which it may be known how near it is.
-    fn add(&mut self, place: usize, gap: Option<&TriangleGap<N>>) {
-        if gap.is_none_or(|gap| self.add_plain(place, gap).is_none()) {
-            let found = self.in_general(place);
+    fn add(&mut self, cache_index: usize, gap: Option<&TriangleGap<N>>) {
+        if gap.is_none_or(|gap| self.add_plain(cache_index, gap).is_none()) {
+            let found = self.in_general(cache_index);
             self.contacts.extend(found);
         }
         if self.due.asked.len() == LANES {
@@ -237,8 +237,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
     }
 
     /// Adds the contact of a triangle with a plain gap, if there is one; `None` where the general way finds it.
-    fn add_plain(&mut self, place: usize, gap: &TriangleGap<N>) -> Option<()> {
-        let triangle = self.meeting.triangle(place)?;
+    fn add_plain(&mut self, cache_index: usize, gap: &TriangleGap<N>) -> Option<()> {
+        let triangle = self.meeting.triangle(cache_index)?;
         let contact = match self.meeting.answer(&triangle, gap) {
             SurfaceAnswer::Nothing => return Some(()),
             SurfaceAnswer::Contact(contact) => contact,
@@ -248,9 +248,9 @@ impl<N: Real> FaceContacts<'_, '_, N> {
             let asked = self.meeting.asked(&contact, gap.distance, triangle.tolerance)?;
             self.due.triangles.put(self.due.asked.len(), &triangle.corners);
             self.due.asked.push(asked);
-            self.due.contacts.push((self.contacts.len(), place));
+            self.due.contacts.push((self.contacts.len(), cache_index));
         }
-        self.note_face(place, contact.face.as_ref());
+        self.note_face(cache_index, contact.face.as_ref());
         let (to_first, parts) = (&self.meeting.query.between.pair.pose12, [0, triangle.part]);
         let normal = -to_first.vector(&contact.normal);
         self.contacts.push(PartContact {
@@ -266,8 +266,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
     }
 
     /// Notes whether a face that is touched is a front.
-    fn note_face(&mut self, place: usize, face: Option<&Vector<N, 3>>) {
-        let seams = self.meeting.around.seams(place);
+    fn note_face(&mut self, cache_index: usize, face: Option<&Vector<N, 3>>) {
+        let seams = self.meeting.around.seams(cache_index);
         let is_front = |face| seams.is_some_and(|seams: &FaceSeams<N>| seams.is_front(face));
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
@@ -303,8 +303,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
             }
         });
         for lane in Ones::<LANES>(left.into()) {
-            let (contact, place) = &contacts[lane];
-            match self.in_general(*place) {
+            let (contact, cache_index) = &contacts[lane];
+            match self.in_general(*cache_index) {
                 Some(found) => self.contacts[*contact] = found,
                 None => {
                     self.contacts[*contact].distance = N::INFINITY;
@@ -315,12 +315,12 @@ impl<N: Real> FaceContacts<'_, '_, N> {
     }
 
     /// The contact of a triangle as of any two parts.
-    fn in_general(&mut self, place: usize) -> Option<PartContact<N, 3>> {
+    fn in_general(&mut self, cache_index: usize) -> Option<PartContact<N, 3>> {
         let FaceMeeting { query, scene, around, .. } = *self.meeting;
-        let parts = [0, around.parts()[place]];
+        let parts = [0, around.parts()[cache_index]];
         let placed = scene.pair_in(&mut self.slot, parts);
         let found = part_contact::compute(scene, placed, parts, query, None, self.arena)?;
-        self.note_face(place, found.face.as_ref());
+        self.note_face(cache_index, found.face.as_ref());
         Some(found)
     }
 

@@ -127,7 +127,7 @@ fn hidden_of<N: Real, const D: usize>(
     if are_alike(&a.normal, &b.normal) {
         return None;
     }
-    let (back, front) = match (place(a, b), place(b, a)) {
+    let (back, front) = match (side_of(a, b), side_of(b, a)) {
         (PlaneSide::Back, PlaneSide::Front) => (a, b),
         (PlaneSide::Front, PlaneSide::Back) => (b, a),
         _ => return None,
@@ -137,7 +137,7 @@ fn hidden_of<N: Real, const D: usize>(
 }
 
 /// Returns the side of the plane of one face that the other lies on, within rounding error.
-fn place<N: Real, const D: usize>(
+fn side_of<N: Real, const D: usize>(
     part: &TouchedFace<N, D>,
     plane: &TouchedFace<N, D>,
 ) -> PlaneSide {

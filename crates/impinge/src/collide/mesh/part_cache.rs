@@ -204,18 +204,18 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         self.seams.resize(self.parts.len(), KeptSeams::Unasked);
         for (block, near) in near.iter().enumerate() {
             for lane in Ones::<LANES>((*near).into()) {
-                let place = block * LANES + lane;
-                if let KeptSeams::Unasked = self.seams[place] {
-                    let found = surface.face_seams(self.parts[place]);
-                    self.seams[place] = found.map_or(KeptSeams::Unknown, KeptSeams::Known);
+                let index = block * LANES + lane;
+                if let KeptSeams::Unasked = self.seams[index] {
+                    let found = surface.face_seams(self.parts[index]);
+                    self.seams[index] = found.map_or(KeptSeams::Unknown, KeptSeams::Known);
                 }
             }
         }
     }
 
     /// The seams of the part at an index in [`Self::parts`]; `None` if unknown.
-    pub(super) fn seams(&self, place: usize) -> Option<&FaceSeams<N>> {
-        match self.seams.get(place)? {
+    pub(super) fn seams(&self, index: usize) -> Option<&FaceSeams<N>> {
+        match self.seams.get(index)? {
             KeptSeams::Known(seams) => Some(seams),
             _ => None,
         }

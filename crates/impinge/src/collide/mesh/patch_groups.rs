@@ -65,9 +65,9 @@ fn pieces_by_group(
     }
     let mut order = SmallVec::from_elem(0, start);
     for (piece, group) in pieces {
-        let place = &mut groups[group].pieces.end;
-        order[*place] = piece;
-        *place += 1;
+        let end = &mut groups[group].pieces.end;
+        order[*end] = piece;
+        *end += 1;
     }
     order
 }

@@ -111,15 +111,15 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             (self.is_old(&chosen[at]), self.distance(&chosen[at]))
         });
         let new = chosen.iter().enumerate().filter(|(_, member)| self.kept[member.point].is_none());
-        let place = |member: &Member<N>| self.merging.points[member.point].point1;
+        let position = |member: &Member<N>| self.merging.points[member.point].point1;
         let mut new_ids = SmallVec::<[u32; FEW]>::from_elem(0, chosen.len());
-        for (_, at) in in_order(new.map(|(at, member)| (at, place(member)))) {
+        for (_, at) in in_order(new.map(|(at, member)| (at, position(member)))) {
             new_ids[at] = ids.next();
         }
-        for (place, &Member { piece, point, .. }) in chosen.iter().enumerate() {
-            let id = self.kept[point].map_or(new_ids[place], |kept| kept.id);
+        for (index, &Member { piece, point, .. }) in chosen.iter().enumerate() {
+            let id = self.kept[point].map_or(new_ids[index], |kept| kept.id);
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
-            if place == deepest {
+            if index == deepest {
                 raw.distance = lowest;
             }
             let mut at = out.len();
@@ -239,14 +239,14 @@ fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vecto
 #[inline]
 fn sort<N: Real>(members: &mut [Member<N>]) {
     if members.len() > FEW {
-        return members.sort_by(by_place);
+        return members.sort_by(by_position);
     }
-    sort_few(members, |one, other| by_place(one, other).is_lt());
+    sort_few(members, |one, other| by_position(one, other).is_lt());
 }
 
 /// Orders by the first coordinate, then by the second.
 #[inline]
-fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
+fn by_position<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);
     ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))
 }

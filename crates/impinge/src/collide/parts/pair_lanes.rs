@@ -35,7 +35,7 @@ pub(crate) struct PartPairs<N, const D: usize> {
     pub(crate) count: usize,
     /// A length that the rounding error of the corners is in proportion to, unless their
     /// coordinates are larger.
-    pub(crate) place: N,
+    pub(crate) scale: N,
 }
 
 /// Results for eight pairs, as bits; neither bit of a pair is set if the test is undecided.
@@ -49,9 +49,9 @@ pub(crate) struct PairVerdicts {
 }
 
 impl<N: Real, const D: usize> PartPairs<N, D> {
-    /// An empty batch; rounding errors are in proportion to `place` at least.
-    pub(crate) fn new(place: N) -> Self {
-        Self { ones: PartPacket::blank(), others: PartPacket::blank(), count: 0, place }
+    /// An empty batch; rounding errors are in proportion to `scale` at least.
+    pub(crate) fn new(scale: N) -> Self {
+        Self { ones: PartPacket::blank(), others: PartPacket::blank(), count: 0, scale }
     }
 }
 
@@ -171,7 +171,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         let one = [load(simd, a), load(simd, b), load(simd, c)];
         let [a, b, c] = &pairs.others.corners;
         let other: [[V; D]; 3] = [load(simd, a), load(simd, b), load(simd, c)];
-        let mut size = V::all(simd, pairs.place);
+        let mut size = V::all(simd, pairs.scale);
         for value in one.as_flattened().iter().chain(other.as_flattened()) {
             size = value.abs().larger(size);
         }

@@ -27,8 +27,8 @@ impl<N: Real, const D: usize> PartSweep<N, D> {
     }
 
     /// The displacement of a point, without the spread.
-    pub(crate) fn way(&self, place: &Vector<N, D>) -> Vector<N, D> {
-        self.turn * place + self.shift
+    pub(crate) fn way(&self, point: &Vector<N, D>) -> Vector<N, D> {
+        self.turn * point + self.shift
     }
 
     /// Returns a box around the swept points of a box.

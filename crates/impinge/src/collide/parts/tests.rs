@@ -24,13 +24,13 @@ fn soup<N: Space<D>, const D: usize>(
     let mut corners = Vec::new();
     for number in 0..40 {
         let size = N::lit([0.05, 0.2, 0.6, 1.5][number % 4]);
-        let (place, mut arms) = (vector(random), [(); 2].map(|()| vector(random) * size));
+        let (position, mut arms) = (vector(random), [(); 2].map(|()| vector(random) * size));
         match number % 7 {
             3 => arms[1] = arms[0] * N::HALF + arms[1] * N::lit(1e-3),
             5 => arms.iter_mut().for_each(|arm| arm[number % D] = N::ZERO),
             _ => (),
         }
-        corners.extend([place, place + arms[0], place + arms[1]].map(Point::from));
+        corners.extend([position, position + arms[0], position + arms[1]].map(Point::from));
     }
     let triangle = |first: u32| [3 * first, 3 * first + 1, 3 * first + 2];
     let triangles: Vec<_> = (0..40).chain([7]).map(triangle).collect();
@@ -155,8 +155,8 @@ fn bounds<N: Space<D>, const D: usize>(
         );
         let size = aabb.half_extents().norm() * N::lit(2.5) + N::lit(1e-4);
         assert!(of_part > found - size, "{of_part} is far from {found} at {:?}", pair.pose12);
-        let place = Point::from(vector(random));
-        let around = Aabb::new(place, place).merged(&aabb);
+        let position = Point::from(vector(random));
+        let around = Aabb::new(position, position).merged(&aabb);
         assert!(solid.of_box(&around) <= found, "a larger box at {:?}", pair.pose12);
     }
 }

@@ -95,11 +95,11 @@ mod tests {
         let at = |x: f64| Point::<f64, 3>::new(x, 0.0, 0.0);
         let (far, ball) = (Segment::new(at(5.0), at(7.0)), Capsule::<f64, 3>::new(1.0, 1.0));
         let (first, second) = (far.geometry().0, ball.geometry().0);
-        let place = |x: f64| Pose::from_translation(Vector::<f64, 3>::new(x, 0.0, 0.0));
-        assert!(!inner_balls_meet(&Pair { first, second, pose12: place(0.0) }), "it begins at 5");
-        assert!(inner_balls_meet(&Pair { first, second, pose12: place(6.0) }), "in its middle");
+        let pose_at = |x: f64| Pose::from_translation(Vector::<f64, 3>::new(x, 0.0, 0.0));
+        assert!(!inner_balls_meet(&Pair { first, second, pose12: pose_at(0.0) }), "it begins at 5");
+        assert!(inner_balls_meet(&Pair { first, second, pose12: pose_at(6.0) }), "in its middle");
         let tip = Triangle::new(at(5.0), at(6.0), at(7.0));
         let first = tip.geometry().0;
-        assert!(!inner_balls_meet(&Pair { first, second, pose12: place(0.0) }), "none is known");
+        assert!(!inner_balls_meet(&Pair { first, second, pose12: pose_at(0.0) }), "none is known");
     }
 }

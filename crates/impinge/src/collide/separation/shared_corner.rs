@@ -46,7 +46,7 @@ fn at_corner<N: Real, const D: usize>(
 ) -> Separation<N, D> {
     let room = rounding(pair);
     let facing = |kind: &Kind<'_, N, D>, is_second: bool| {
-        let place = |corner: &Point<N, D>| {
+        let in_first_frame = |corner: &Point<N, D>| {
             if is_second { pair.pose12.point(corner) } else { *corner }
         };
         let height = |corner: &Point<N, D>| {
@@ -54,10 +54,10 @@ fn at_corner<N: Real, const D: usize>(
             if is_second { -along } else { along }
         };
         let mut highest = -N::INFINITY;
-        each_corner(kind, &mut |corner| highest = max(highest, height(&place(corner))));
+        each_corner(kind, &mut |corner| highest = max(highest, height(&in_first_frame(corner))));
         let mut corners = SmallVec::<[Point<N, D>; 8]>::new();
         each_corner(kind, &mut |corner| {
-            let corner = place(corner);
+            let corner = in_first_frame(corner);
             if height(&corner) >= highest - room {
                 corners.push(corner);
             }

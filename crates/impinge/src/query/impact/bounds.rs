@@ -241,9 +241,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         let bend = product(bends * N::HALF, span * span);
         let pose = &self.poses[1 - which];
         let (spin, linear) = (own.spin - frame.spin, own.linear - frame.linear);
-        let place = pose.translation;
-        let shift = linear + own.spin * (place - center) - frame.spin * (place - pivot);
-        let size = max(max_component(&place), max_component(&center))
+        let position = pose.translation;
+        let shift = linear + own.spin * (position - center) - frame.spin * (position - pivot);
+        let size = max(max_component(&position), max_component(&center))
             + far
             + max(body.size(), other.size());
         let spread = bend + N::lit(64.0) * N::EPSILON * (size + way);
@@ -439,11 +439,11 @@ fn arm_of_box<N: Space<D>, const D: usize>(
     motion: &ConstantVelocities<N, D>,
 ) -> N {
     (0..1_u32 << D).fold(N::ZERO, |most, corner| {
-        let place = Vector::<N, D>::from_fn(|axis, _| {
+        let arm = Vector::<N, D>::from_fn(|axis, _| {
             let end = if corner >> axis & 1 == 0 { aabb.mins() } else { aabb.maxs() };
             end[axis] - center[axis]
         });
-        max(motion.across_local(&place), most)
+        max(motion.across_local(&arm), most)
     })
 }
 

@@ -44,13 +44,13 @@ pub(crate) struct Arrival<N: Real, const D: usize> {
 impl<N: Real, const D: usize> Path<N, D> {
     /// The position of the second solid at a later time, for a pair that starts at `start`.
     #[inline]
-    fn place(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
+    fn position_at(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
     /// The pair `start` at a later time.
     pub(crate) fn moved<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
-        let pose12 = Pose { translation: self.place(start, along), ..start.pose12 };
+        let pose12 = Pose { translation: self.position_at(start, along), ..start.pose12 };
         Pair { pose12, ..*start }
     }
 
@@ -187,7 +187,7 @@ fn by_steps<N: Space<D>, const D: usize>(
         }
         let step = path.velocity * (later - along);
         along = later;
-        pair.pose12.translation = path.place(start, along);
+        pair.pose12.translation = path.position_at(start, along);
         if let Some(touch) = touching(&pair, &found, &step, path.target, tolerance) {
             return Some(Arrival::reached(along, touch));
         }

@@ -150,8 +150,8 @@ fn two_leads<N: Space<D>, const D: usize>(
     let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
     let times = times.take_while(|time| time.is_finite_number());
     let longest = Some(options.max_time).filter(|time| time.is_finite_number());
-    let places = longest.into_iter().chain(times).map(later);
-    let mut orders = places.map(|[later1, later2]| order(&later1, &later2));
+    let later_poses = longest.into_iter().chain(times).map(later);
+    let mut orders = later_poses.map(|[later1, later2]| order(&later1, &later2));
     orders.find(|order| order.is_ne()).is_some_and(Ordering::is_gt)
 }
 

@@ -146,15 +146,15 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
         Pose { rotation, translation: self.translation(origin, since, &rotation) }
     }
 
-    /// The distance of a point of the body from the axis of rotation; `place` is its position
+    /// The distance of a point of the body from the axis of rotation; `offset` is its position
     /// relative to the centre, in the world's axes.
-    pub(super) fn across(&self, place: &Vector<N, D>) -> N {
-        length(&(self.unit_spin * place))
+    pub(super) fn across(&self, offset: &Vector<N, D>) -> N {
+        length(&(self.unit_spin * offset))
     }
 
     /// [`Self::across`] for a position in the local axes.
-    pub(super) fn across_local(&self, place: &Vector<N, D>) -> N {
-        self.across(&(N::pose(&self.start).rotation * place))
+    pub(super) fn across_local(&self, offset: &Vector<N, D>) -> N {
+        self.across(&(N::pose(&self.start).rotation * offset))
     }
 
     fn speed(&self) -> N {

@@ -37,7 +37,7 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
 /// The feature of the inner shape below a point of the surface.
 fn feature_below<N: Space<D>, const D: usize>(
     inner: Geometry<'_, N, D>,
-    place: &Point<N, D>,
+    point: &Point<N, D>,
 ) -> FeatureId {
-    <N::Algorithms>::surface_point(inner.0, place).feature
+    <N::Algorithms>::surface_point(inner.0, point).feature
 }

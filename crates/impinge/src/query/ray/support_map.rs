@@ -21,8 +21,8 @@ pub(super) fn span<N: Simplicial<D>, const D: usize>(
     map: &dyn SupportMap<N, D>,
     ray: &Ray<N, D>,
 ) -> Option<Span<N, D>> {
-    let see = |place: &Vector<N, D>| {
-        let pose12 = Pose::from_translation(*place);
+    let see = |point: &Vector<N, D>| {
+        let pose12 = Pose::from_translation(*point);
         let found = separation(map, &Ball::new(N::ZERO), &pose12, N::INFINITY)?;
         Some((found.distance, found.normal))
     };
@@ -59,7 +59,7 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
         if around.leave < N::ZERO {
             return None;
         }
-        let [first, last] = around.places();
+        let [first, last] = around.points();
         let room = around.leave - around.enter;
         let enter = Advance { solid: self, from: first, dir: ray.dir, room }.first_contact()?;
         let enter = Crossing { t: around.enter + enter.t, ..enter };

@@ -56,14 +56,14 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         let [radius1, radius2] = capsule.radii();
         let to_middle = capsule.segment().a() + taper.along * (taper.length * N::HALF) - ray.origin;
         let start = to_middle.dot(&ray.dir) / ray.dir.norm_squared();
-        let place = ray.origin + ray.dir * start - capsule.segment().a();
-        let (height, climb) = (place.dot(&taper.along), ray.dir.dot(&taper.along));
+        let offset = ray.origin + ray.dir * start - capsule.segment().a();
+        let (height, climb) = (offset.dot(&taper.along), ray.dir.dot(&taper.along));
         Self {
             taper,
             heights: [radius1 * taper.sine, taper.length + radius2 * taper.sine],
             start,
             against: unit_or(&-ray.dir, Vector::<N, D>::zeros()),
-            flat: place - taper.along * height,
+            flat: offset - taper.along * height,
             height,
             flat_dir: ray.dir - taper.along * climb,
             climb,

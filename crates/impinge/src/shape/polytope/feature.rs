@@ -162,7 +162,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     #[track_caller]
-    fn place(id: FeatureId, dimension: usize, count: usize) -> u32 {
+    fn index_of(id: FeatureId, dimension: usize, count: usize) -> u32 {
         let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
         let is_there = (index as usize) < count && id == FeatureId::flat::<D>(dimension, index);
         assert!(is_there, "the solid has no {} named {id:?}", FeatureId::word::<D>(dimension));
@@ -170,9 +170,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     #[track_caller]
-    fn side_place(&self, id: FeatureId) -> u32 {
+    fn side_index(&self, id: FeatureId) -> u32 {
         let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
-        Self::place(id, 1, count)
+        Self::index_of(id, 1, count)
     }
 }
 
@@ -277,28 +277,28 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Polytope<N, D> {
 
 impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
     fn vertex(&self, id: FeatureId) -> Point<N, D> {
-        self.vertices[Self::place(id, 0, self.vertices.len()) as usize]
+        self.vertices[Self::index_of(id, 0, self.vertices.len()) as usize]
     }
 
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
-        self.ends(self.side_place(id))
+        self.ends(self.side_index(id))
     }
 
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {
-        self.fill_face(Self::place(id, D - 1, self.faces.len()), out);
+        self.fill_face(Self::index_of(id, D - 1, self.faces.len()), out);
     }
 
     fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
         match id {
             FeatureId::Face(_) => {
-                self.faces[Self::place(id, D - 1, self.faces.len()) as usize].normal
+                self.faces[Self::index_of(id, D - 1, self.faces.len()) as usize].normal
             }
             FeatureId::Edge(_) => {
-                self.mean_normal(self.side(self.side_place(id)).faces.into_iter())
+                self.mean_normal(self.side(self.side_index(id)).faces.into_iter())
             }
             FeatureId::Vertex(_) => {
                 // Each face at a vertex has two sides there, so each counts twice.
-                let fan = self.fan(Self::place(id, 0, self.vertices.len()) as usize);
+                let fan = self.fan(Self::index_of(id, 0, self.vertices.len()) as usize);
                 self.mean_normal(fan.iter().flat_map(|&side| self.side(side).faces))
             }
         }

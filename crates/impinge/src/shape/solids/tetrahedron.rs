@@ -150,10 +150,10 @@ fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
 
 /// The vertices, edges and faces of four corners in any position.
 fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N, 3> {
-    let places = doubles(&corners);
+    let positions = doubles(&corners);
     let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
     let faces = faces.into_iter().map(|face| {
-        let [a, b, c] = face.map(|corner| &places[corner as usize]);
+        let [a, b, c] = face.map(|corner| &positions[corner as usize]);
         // The cross product of rounded sides would be off by the rounding error times length over
         // height.
         let normal = area_vector(a, b, c).try_normalize(0.0);

@@ -141,10 +141,10 @@ mod tests {
     }
 
     fn mesh(noise: &mut Noise) -> TriMesh<f64, 3> {
-        let place = |(at, height): (usize, &f64)| {
+        let position = |(at, height): (usize, &f64)| {
             Point::<f64, 3>::new((at % 6) as f64, *height, (at / 6) as f64)
         };
-        let vertices = heights(noise).iter().enumerate().map(place).collect();
+        let vertices = heights(noise).iter().enumerate().map(position).collect();
         let cells = (0..30).filter(|at| at % 6 < 5);
         let triangles = cells.flat_map(|at| [[at, at + 6, at + 7], [at, at + 7, at + 1]]);
         TriMesh::new(vertices, triangles.collect())

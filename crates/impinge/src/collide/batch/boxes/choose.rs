@@ -180,10 +180,10 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Returns whether a candidate at `place`, with the features of `old`, is the same point.
+    /// Returns whether a candidate at `write_position`, with the features of `old`, is the same point.
     #[inline(always)]
-    fn is_same(&self, old: &RawPoint<N, D>, place: &Point<N, D>) -> bool {
-        is_same_point([old.feature1, old.feature2], &(place - old.point1), || self.size)
+    fn is_same(&self, old: &RawPoint<N, D>, position: &Point<N, D>) -> bool {
+        is_same_point([old.feature1, old.feature2], &(position - old.point1), || self.size)
     }
 
     /// Gives the ids of the remaining old points to slots of `some` without an id, by position.
@@ -222,7 +222,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         let mut has_jumped = false;
         for point in &mut raw.points {
             let old = *point;
-            self.place(slot_of(point.code), deepest, point);
+            self.write_position(slot_of(point.code), deepest, point);
             // A crossing of two edges that jumped is a new contact.
             if !self.is_same(&old, &point.point1) {
                 (point.id, has_jumped) = (raw.ids.next(), true);
@@ -247,7 +247,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         raw.points.resize(count, RawPoint::default());
         for (&slot, point) in order.iter().zip(&mut raw.points) {
             point.id = kept.ids[slot];
-            self.place(slot, deepest, point);
+            self.write_position(slot, deepest, point);
             [point.feature1, point.feature2] = naming.features(slot);
             point.code = naming.code(slot);
         }
@@ -281,7 +281,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
 
     /// Writes position and distance of the candidate of a slot.
     #[inline(always)]
-    fn place(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
+    fn write_position(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
         point.point1 = self.point1(slot);
         point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
     }

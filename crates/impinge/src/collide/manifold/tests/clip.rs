@@ -64,17 +64,17 @@ fn has_corners<N: Real>(found: &RawManifold<N, 3>, expected: &Outline, room: f64
     let off = |point: &Point<N, 3>, [x, y]: &[f64; 2]| {
         (point.x.as_f64() - x).abs().max((point.y.as_f64() - y).abs())
     };
-    let places = found.points.iter().map(|point| point.point1).collect::<Vec<_>>();
+    let positions = found.points.iter().map(|point| point.point1).collect::<Vec<_>>();
     for corner in expected {
         assert!(
-            places.iter().any(|place| off(place, corner) <= room),
+            positions.iter().any(|position| off(position, corner) <= room),
             "{what}: {corner:?} {found:?}"
         );
     }
-    for place in &places {
+    for position in &positions {
         assert!(
-            expected.iter().any(|corner| off(place, corner) <= room),
-            "{what}: {place} {found:?}"
+            expected.iter().any(|corner| off(position, corner) <= room),
+            "{what}: {position} {found:?}"
         );
     }
 }

@@ -78,8 +78,8 @@ fn projected_along<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64;
 }
 
 /// Twice the area of the hull of some places.
-fn hull_area(places: &[[f64; 2]]) -> f64 {
-    let mut sorted = places.to_vec();
+fn hull_area(positions: &[[f64; 2]]) -> f64 {
+    let mut sorted = positions.to_vec();
     sorted.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
     let mut hull: Outline = Vec::new();
     for pass in 0..2 {
@@ -135,20 +135,24 @@ fn check<N: Real>(
     let corners = corners.map(|corner| Point::from(corner.coords.map(Real::as_f64)));
     let (own, face) = (ring(&corners), ring(&bottom(outline)));
     let shared = outline_area(&common(&own, &face));
-    let places: Vec<_> = found.iter().map(|point| projected_along(&point.point1, normal)).collect();
-    let spanned = hull_area(&places);
+    let positions: Vec<_> =
+        found.iter().map(|point| projected_along(&point.point1, normal)).collect();
+    let spanned = hull_area(&positions);
     assert!((spanned - shared).abs() <= 4.0 * room, "spans {spanned} of {shared}");
     let (normal, up) = (normal.map(Real::as_f64), upward(&corners));
     for point in found {
-        let (place, distance) =
+        let (position, distance) =
             (Point::from(point.point1.coords.map(Real::as_f64)), point.distance.as_f64());
-        let foot = place - normal * distance;
-        assert!(place.z.abs() <= room, "on the bottom: {place}");
+        let foot = position - normal * distance;
+        assert!(position.z.abs() <= room, "on the bottom: {position}");
         assert!(up.dot(&(foot - corners[0])).abs() <= room, "on the triangle: {foot}");
         let is_at = |at: &Point<f64, 3>, names: &Point<f64, 3>| (at - names).norm() <= room;
         match point.feature1 {
             FeatureId::Vertex(_) => {
-                assert!(bottom(outline).iter().any(|corner| is_at(&place, corner)), "{place}");
+                assert!(
+                    bottom(outline).iter().any(|corner| is_at(&position, corner)),
+                    "{position}"
+                );
             }
             FeatureId::Edge(_) => {}
             FeatureId::Face(_) => assert!(matches!(point.feature2, FeatureId::Vertex(_))),
@@ -171,13 +175,13 @@ fn frames<N: Real>(noise: &mut Noise) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
 /// of boxes lie on, or anywhere.
 fn triangles<N: Real>(noise: &mut Noise, on_grid: bool) -> Vec<Corners<N>> {
     let mut corner = |at: usize| {
-        let mut place = noise.vector::<N>(2.0);
-        place.z = N::lit(0.4 * noise.next());
+        let mut position = noise.vector::<N>(2.0);
+        position.z = N::lit(0.4 * noise.next());
         if on_grid {
-            place = place.map(|x| N::lit((2.0 * x.as_f64()).round() / 2.0));
-            place.z = N::lit(-0.25 * (at % 2) as f64);
+            position = position.map(|x| N::lit((2.0 * x.as_f64()).round() / 2.0));
+            position.z = N::lit(-0.25 * (at % 2) as f64);
         }
-        Point::from(place)
+        Point::from(position)
     };
     let all = (0..24).map(|_| [corner(0), corner(1), corner(2)]);
     let is_wide = |corners: &Corners<N>| {
@@ -246,8 +250,8 @@ fn lanes_do_not_matter<N: Real>() {
     for _ in 0..100 {
         let mut triangle = || {
             let corners = [0, 1, 2].map(|_| {
-                let place = noise.vector::<N>(1.5);
-                Point::<N, 3>::new(place.x, place.y, place.z * N::lit(0.1) - N::HALF)
+                let position = noise.vector::<N>(1.5);
+                Point::<N, 3>::new(position.x, position.y, position.z * N::lit(0.1) - N::HALF)
             });
             let leaning = upward(&corners) + noise.vector::<N>(0.3);
             (corners, leaning.normalize())
@@ -318,6 +322,6 @@ fn edges_and_corners_of_a_solid_are_shown_too() {
     assert!(short.iter().all(|point| matches!(point.feature2, FeatureId::Edge(_))), "{short:?}");
     let corner = found([1.0, 1.0, 1.0], 2.0).expect("in lanes");
     assert_eq!(corner.len(), 1, "{corner:?}");
-    let place = (corner[0].point1 - Point::from([-1.0; 3])).norm();
-    assert!(place < 1e-14 && (corner[0].distance - 2.0 + 3.0_f64.sqrt()).abs() < 1e-14);
+    let error = (corner[0].point1 - Point::from([-1.0; 3])).norm();
+    assert!(error < 1e-14 && (corner[0].distance - 2.0 + 3.0_f64.sqrt()).abs() < 1e-14);
 }

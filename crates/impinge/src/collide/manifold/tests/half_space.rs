@@ -113,12 +113,16 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
 
 /// Returns whether a point, projected along the normal, is inside the outline of a manifold's
 /// points.
-fn is_among<N: Real>(place: &Point<N, 3>, raw: &RawManifold<N, 3>, normal: &Vector<N, 3>) -> bool {
+fn is_among<N: Real>(
+    position: &Point<N, 3>,
+    raw: &RawManifold<N, 3>,
+    normal: &Vector<N, 3>,
+) -> bool {
     let (u, v) = orthonormal_basis(normal);
     let mut directions = (-8..=8).flat_map(|x| (-8..=8).map(move |y| [x, y].map(f64::from)));
     directions.all(|[x, y]| {
         let along = |at: &Point<N, 3>| (u * N::lit(x) + v * N::lit(y)).dot(&at.coords).as_f64();
-        raw.points.iter().any(|point| along(&point.point1) >= along(place) - 1e-2)
+        raw.points.iter().any(|point| along(&point.point1) >= along(position) - 1e-2)
     })
 }
 
@@ -139,10 +143,10 @@ fn a_rounded_box_lies_on_four_corners() {
     let pair = Pair { first: solid.geometry().0, second: Kind::Plane(&plane), pose12 };
     let mut raw = RawManifold::default();
     build3(&pair, &fact(&pair), &request(0.1, 0.0), &mut raw);
-    let places = raw.points.iter().map(|point| point.point1).collect::<Vec<_>>();
-    assert_eq!(places.len(), 4, "{raw:?}");
+    let positions = raw.points.iter().map(|point| point.point1).collect::<Vec<_>>();
+    assert_eq!(positions.len(), 4, "{raw:?}");
     let is_corner = |p: &Point<f64, 3>| p.x.abs() == 1.0 && p.y == -0.75 && p.z.abs() == 2.0;
-    assert!(places.iter().all(is_corner), "{raw:?}");
+    assert!(positions.iter().all(is_corner), "{raw:?}");
     assert!(
         raw.points.iter().all(|point| matches!(point.feature1, FeatureId::Vertex(_))),
         "{raw:?}"

@@ -23,11 +23,11 @@ fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usi
     let full = 1 << (D - 1);
     for step in 0..1000 {
         let time = f64::from(step) * 1e-3;
-        let mut place = Vector::<N, D>::zeros();
-        place[0] = N::lit(0.3 * time);
-        place[1] = N::lit(0.499 + 1e-4 * (37.0 * time).sin());
+        let mut position = Vector::<N, D>::zeros();
+        position[0] = N::lit(0.3 * time);
+        position[1] = N::lit(0.499 + 1e-4 * (37.0 * time).sin());
         let wobble = 1e-4 * (91.0 * time).sin();
-        let pose1 = N::pose(place, [wobble, 0.3 * time * f64::from(D == 3), wobble]);
+        let pose1 = N::pose(position, [wobble, 0.3 * time * f64::from(D == 3), wobble]);
         let mut below = Vector::<N, D>::zeros();
         below[1] = N::lit(-top);
         let pose12 = Pose::relative(&pose1, &N::pose(below, [0.0; 3]));
@@ -83,14 +83,14 @@ fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
     let (mut raw, mut random) = (RawManifold::default(), Random(11));
     let noise = 2.0 * N::EPSILON.as_f64();
     for step in 0..300 {
-        let mut place = random.vector::<N, D>(noise);
-        place[0] += N::lit(shift);
-        place[1] += N::lit(0.999);
+        let mut position = random.vector::<N, D>(noise);
+        position[0] += N::lit(shift);
+        position[1] += N::lit(0.999);
         let turn = [(); 3].map(|()| random.between(-noise, noise));
         let pair = Pair {
             first: solid.geometry().0,
             second: solid.geometry().0,
-            pose12: N::pose(place, turn),
+            pose12: N::pose(position, turn),
         };
         N::build(&pair, &fact(&pair), &request(0.0, 0.0), &mut raw);
         assert_eq!(raw.points.len(), 1 << (D - 1), "step {step}, {shift}: {raw:?}");

@@ -279,8 +279,8 @@ fn half_spaces_back_to_back_touch_in_one_point() {
 
 /// A prism with regular polygons of twenty sides as ends, of radius 1, from y = 0 to y = 1.
 fn prism() -> ConvexHull<f32> {
-    let places = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
-    let points: Vec<Point<f32, 3>> = places
+    let angles = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
+    let points: Vec<Point<f32, 3>> = angles
         .flat_map(|angle| {
             let (sine, cosine) = angle.sine_cosine();
             [0.0, 1.0].map(|y| Point::from(Vector::<f64, 3>::new(cosine, y, sine).map(f32::lit)))

@@ -71,8 +71,8 @@ impl<N: Real> Scene<3> for N {
 
 /// Returns twelve points around the origin.
 fn cloud<N: Real, const D: usize>(scale: f64, random: &mut Random) -> Vec<Point<N, D>> {
-    let mut place = || random.vector::<f64, D>(1.0).map(|x| N::lit(x * scale));
-    (0..12).map(|_| Point::from(place())).collect()
+    let mut position = || random.vector::<f64, D>(1.0).map(|x| N::lit(x * scale));
+    (0..12).map(|_| Point::from(position())).collect()
 }
 
 /// A small linear congruential generator (Knuth's MMIX constants).

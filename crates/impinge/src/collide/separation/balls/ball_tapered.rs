@@ -90,8 +90,8 @@ mod tests {
         let (above, name) = projected(6.0, 13.0);
         assert_eq!((above.distance, name), (6.0, FeatureId::Vertex(1)), "(6, 8) from its centre");
         let outward = Vector::<f64, 3>::new(0.0, -0.6, 0.8);
-        let place = P::new(0.0, 2.5, 0.0) + outward * 12.5;
-        let (side, name) = project(&club(), &place);
+        let position = P::new(0.0, 2.5, 0.0) + outward * 12.5;
+        let (side, name) = project(&club(), &position);
         assert!((side.distance - 10.0).abs() < 1e-14 && name == FeatureId::Edge(0), "{side:?}");
         assert!((side.outward - outward).norm() < 1e-15, "the normal of the side: {side:?}");
         let (inside, name) = projected(0.0, 2.5);

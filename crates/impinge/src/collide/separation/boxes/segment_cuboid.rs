@@ -100,12 +100,12 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         if !(is_plain && pose12.is_finite()) {
             return None;
         }
-        let place = |end: &Point<N, 3>| {
+        let local = |end: &Point<N, 3>| {
             pose12.rotation.tr_mul(&((end.coords - pose12.translation) * shrink))
         };
         // From the ends as given: the distance between the origins costs no digits then.
         let along = pose12.rotation.tr_mul(&((ends[1] - ends[0]) * shrink));
-        Some(Self { ends: [place(ends[0]), place(ends[1])], along, pose12, scale, shrink })
+        Some(Self { ends: [local(ends[0]), local(ends[1])], along, pose12, scale, shrink })
     }
 
     /// Returns the point at parameter `share` from 0 to 1, computed from the nearer end.

@@ -73,12 +73,12 @@ fn sat<N: Real>(
     if !(pose12.is_finite() && units.scale.is_finite_number()) {
         return SatResult::Unproved;
     }
-    let place = |end: &Point<N, 3>| {
+    let local = |end: &Point<N, 3>| {
         pose12.rotation.tr_mul(&((end.coords - pose12.translation) * units.shrink))
     };
     let query = SegmentQuery {
         solid,
-        ends: [place(&ends[0]), place(&ends[1])],
+        ends: [local(&ends[0]), local(&ends[1])],
         // From the ends as given: the distance between the origins costs no digits then.
         along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
         shrink: units.shrink,

@@ -1,7 +1,7 @@
 //! Nearest point of a chord to a cylinder or a cone, or the deepest inside.
 
 use super::profile::Profile;
-use super::{NearestHull, RevolvedPlace, still};
+use super::{DirectedPoint, NearestHull, still};
 use crate::math::{Real, Vector, max, min};
 
 /// Cap on the points tried; about four are needed.
@@ -81,7 +81,7 @@ impl<N: Real> Profile<N> {
         &self,
         ends: [Vector<N, 3>; 2],
         falls: bool,
-    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
+    ) -> Option<(NearestHull<N>, DirectedPoint<N>)> {
         let mut search = ChordSearch::new(ends, falls)?;
         let mut share = search.start();
         for _ in 0..STEPS {
@@ -92,14 +92,14 @@ impl<N: Real> Profile<N> {
             if is_end {
                 return Some((
                     NearestHull::Point(projected.point),
-                    RevolvedPlace::of(self, &projected),
+                    DirectedPoint::of(self, &projected),
                 ));
             }
             let is_level = slope.abs() <= still::<N>() * search.length;
             if is_level || way.is_some_and(|way| way.abs() * search.length <= still()) {
                 return Some((
                     NearestHull::Chord(ends),
-                    RevolvedPlace::across(self, &projected, &(search.along / search.length))?,
+                    DirectedPoint::across(self, &projected, &(search.along / search.length))?,
                 ));
             }
             search.note(share, slope);

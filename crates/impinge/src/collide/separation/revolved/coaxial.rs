@@ -83,11 +83,11 @@ struct AxialOutline<N: Real> {
 impl<N: Real> AxialOutline<N> {
     /// `None` for other kinds, and for solids of size zero.
     fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
-        let place = pose.translation * shrink;
+        let position = pose.translation * shrink;
         if let Some(round) = Round::new(&kind, shrink) {
             let top = if round.is_cone { N::ZERO } else { round.radius };
             return Some(Self {
-                middle: place,
+                middle: position,
                 axis: pose.rotation.column(1).into_owned(),
                 corners: [
                     Vector::<N, 2>::new(top, round.half),
@@ -103,7 +103,7 @@ impl<N: Real> AxialOutline<N> {
         let [a, b] = [segment.a(), segment.b()].mapped(|end| end.coords * (shrink * N::HALF));
         let (along, half) = unit(&(b - a)).filter(|(_, half)| *half > noise())?;
         let corners = [half, -half].mapped(|at| Vector::<N, 2>::new(N::ZERO, at));
-        let middle = pose.rotation * (a + b) + place;
+        let middle = pose.rotation * (a + b) + position;
         Some(Self { middle, axis: pose.rotation * along, corners })
     }
 

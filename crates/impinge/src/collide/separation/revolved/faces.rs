@@ -1,6 +1,6 @@
 //! Overlaps whose shortest way out is along a face of the flat solid or a cap of the round one.
 
-use super::{FlatCore, NearestHull, RevolvedFound, RevolvedMeeting, RevolvedPlace, still};
+use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedMeeting, still};
 use crate::math::{Real, Vector};
 
 impl<N: Real> RevolvedMeeting<'_, N> {
@@ -11,7 +11,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
 
     /// Tries the faces of the flat solid, which has to contain the ball around the deepest point.
     fn by_own_face(&self) -> Option<RevolvedFound<N>> {
-        let mut best: Option<(N, RevolvedPlace<N>)> = None;
+        let mut best: Option<(N, DirectedPoint<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
             let outward = -self.pose12.rotation.tr_mul(normal);
             let nearest = self.profile.round.support(&outward);
@@ -19,7 +19,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
             let height = normal.dot(&self.shift) - offset * self.shrink - level;
             if best.as_ref().is_none_or(|(most, _)| height > *most) {
                 let point = nearest + outward * height;
-                best = Some((height, RevolvedPlace { point, nearest, outward, level }));
+                best = Some((height, DirectedPoint { point, nearest, outward, level }));
             }
         };
         match self.flat {
@@ -35,20 +35,20 @@ impl<N: Real> RevolvedMeeting<'_, N> {
             }
             _ => {}
         }
-        let (height, place) = best?;
-        let is_proved = height <= N::ZERO && self.holds(&place.nearest, -height);
-        is_proved.then(|| place.proved(height)).flatten()
+        let (height, directed) = best?;
+        let is_proved = height <= N::ZERO && self.holds(&directed.nearest, -height);
+        is_proved.then(|| directed.proved(height)).flatten()
     }
 
     /// Tries the caps of the round solid, which has to contain the ball around the lowest vertex.
     fn by_cap(&self) -> Option<RevolvedFound<N>> {
         self.profile.round.caps().iter().find_map(|&up| {
             let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));
-            let (_, place): (NearestHull<N>, _) = self.at_point(vertex);
-            let low = self.lowest(&place.outward);
-            let is_lowest = place.outward.dot(&(place.point - low)) <= still();
-            let height = place.outward.dot(&low) - place.level;
-            is_lowest.then(|| place.proved(height)).flatten()
+            let (_, directed): (NearestHull<N>, _) = self.at_point(vertex);
+            let low = self.lowest(&directed.outward);
+            let is_lowest = directed.outward.dot(&(directed.point - low)) <= still();
+            let height = directed.outward.dot(&low) - directed.level;
+            is_lowest.then(|| directed.proved(height)).flatten()
         })
     }
 }

@@ -122,7 +122,7 @@ struct RevolvedMeeting<'a, N: Real> {
 
 /// A point of the flat solid with the direction along which it is nearest to the round one.
 #[derive(Clone, Copy)]
-struct RevolvedPlace<N: Real> {
+struct DirectedPoint<N: Real> {
     /// In the frame of the round solid, in units of the pair.
     point: Vector<N, 3>,
     /// The point of the round solid across from `point`.
@@ -146,14 +146,14 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
         let first = self.lowest(&self.profile.project(middle).outward);
-        let (mut hull, mut place) = self.at_point(first);
+        let (mut hull, mut directed) = self.at_point(first);
         for _ in 0..ROUNDS {
-            let low = self.lowest(&place.outward);
-            if let Some(result) = place.result(&low, beyond) {
+            let low = self.lowest(&directed.outward);
+            if let Some(result) = directed.result(&low, beyond) {
                 return result;
             }
-            match self.nearer(&hull, &place, low) {
-                Some(next) => (hull, place) = next,
+            match self.nearer(&hull, &directed, low) {
+                Some(next) => (hull, directed) = next,
                 None => break,
             }
         }
@@ -172,8 +172,8 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     }
 
     /// Returns the place of a single point.
-    fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, RevolvedPlace<N>) {
-        (NearestHull::Point(point), RevolvedPlace::of(&self.profile, &self.profile.project(point)))
+    fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, DirectedPoint<N>) {
+        (NearestHull::Point(point), DirectedPoint::of(&self.profile, &self.profile.project(point)))
     }
 
     /// Returns the nearest place over a hull and one more vertex, which is lower than all of the
@@ -181,33 +181,33 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     fn nearer(
         &self,
         hull: &NearestHull<N>,
-        place: &RevolvedPlace<N>,
+        directed: &DirectedPoint<N>,
         low: Vector<N, 3>,
-    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
+    ) -> Option<(NearestHull<N>, DirectedPoint<N>)> {
         match hull {
             NearestHull::Point(point) => self.profile.along([*point, low], true),
-            NearestHull::Chord([a, b]) => self.over([*a, *b, low], place),
+            NearestHull::Chord([a, b]) => self.over([*a, *b, low], directed),
             // Only chords and triangles are searched: the place stands for its triangle.
-            NearestHull::Triangle => self.profile.along([place.point, low], true),
+            NearestHull::Triangle => self.profile.along([directed.point, low], true),
         }
     }
 
-    /// Returns the nearest place over the triangle `a b c`, whose corner `c` is lower than `place`,
+    /// Returns the nearest place over the triangle `a b c`, whose corner `c` is lower than `directed`,
     /// the nearest place of the side `a b`.
     fn over(
         &self,
         [a, b, c]: [Vector<N, 3>; 3],
-        place: &RevolvedPlace<N>,
-    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
+        directed: &DirectedPoint<N>,
+    ) -> Option<(NearestHull<N>, DirectedPoint<N>)> {
         let across = cross(&(b - a), &(c - a));
         let (unit_across, area) = unit(&across).filter(|(_, area)| *area > noise())?;
         let outward =
-            if unit_across.dot(&place.outward) < N::ZERO { -unit_across } else { unit_across };
+            if unit_across.dot(&directed.outward) < N::ZERO { -unit_across } else { unit_across };
         let mut nearest = self.profile.round.support(&outward);
         let level = outward.dot(&nearest);
         // On a cap or a line the support point is not unique; take the one known to be near.
-        if outward.dot(&place.nearest) >= level - noise() {
-            nearest = place.nearest;
+        if outward.dot(&directed.nearest) >= level - noise() {
+            nearest = directed.nearest;
         }
         let height = outward.dot(&a) - level;
         let point = nearest + outward * height;
@@ -220,10 +220,10 @@ impl<N: Real> RevolvedMeeting<'_, N> {
             let is_proved = height > N::ZERO || self.holds(&nearest, -height);
             return is_proved.then_some((
                 NearestHull::Triangle,
-                RevolvedPlace { point, nearest, outward, level },
+                DirectedPoint { point, nearest, outward, level },
             ));
         }
-        let mut best: Option<(NearestHull<N>, RevolvedPlace<N>)> = None;
+        let mut best: Option<(NearestHull<N>, DirectedPoint<N>)> = None;
         for (chord, other) in [([b, c], a), ([a, c], b)] {
             let Some((hull, found)) = self.profile.along(chord, false) else { continue };
             let is_least = found.outward.dot(&(found.point - other)) <= still();
@@ -255,7 +255,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     }
 }
 
-impl<N: Real> RevolvedPlace<N> {
+impl<N: Real> DirectedPoint<N> {
     /// Takes the direction of a view. At a point on a corner, up to rounding, that direction may
     /// not be one along which the corner is farthest; `level` shows it.
     fn of(profile: &Profile<N>, projected: &ProfileView<N>) -> Self {

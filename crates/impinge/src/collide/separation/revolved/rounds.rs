@@ -6,7 +6,7 @@
 //! balls around one point, one in each solid, are the proof: their radii add up to the depth.
 
 use super::profile::Profile;
-use super::{RevolvedFound, RevolvedPlace, RevolvedResult, in_second_frame, noise, still};
+use super::{DirectedPoint, RevolvedFound, RevolvedResult, in_second_frame, noise, still};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
@@ -67,9 +67,9 @@ impl<N: Real> RoundView<N> {
     fn corners(&self, beyond: N) -> RevolvedResult<N> {
         let mut low = self.lowest(&self.own.project(self.center).outward);
         for _ in 0..TURNS {
-            let Some(place) = self.at_corner(&low) else { break };
-            low = self.lowest(&place.outward);
-            if let Some(result) = place.result(&low, beyond) {
+            let Some(directed) = self.at_corner(&low) else { break };
+            low = self.lowest(&directed.outward);
+            if let Some(result) = directed.result(&low, beyond) {
                 return result;
             }
         }
@@ -77,11 +77,11 @@ impl<N: Real> RoundView<N> {
     }
 
     /// Returns the place of the apex, or the nearest place of the rim, at which `low` lies.
-    fn at_corner(&self, low: &Vector<N, 3>) -> Option<RevolvedPlace<N>> {
+    fn at_corner(&self, low: &Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
         if is_up && round.is_cone {
-            return Some(RevolvedPlace::of(&self.own, &self.own.project(*low)));
+            return Some(DirectedPoint::of(&self.own, &self.own.project(*low)));
         }
         let end = if is_up { round.half } else { -round.half };
         let middle = self.center + self.axis * end;
@@ -98,7 +98,7 @@ impl<N: Real> RoundView<N> {
     }
 
     /// Returns the nearest place of the rim around `middle`, starting from the direction `out`.
-    fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
+    fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let radius = self.other.round.radius;
         for _ in 0..STEPS {
             let projected = self.own.project(middle + out * radius);
@@ -107,7 +107,7 @@ impl<N: Real> RoundView<N> {
             let bend = projected.bend(&around) * radius - pull.dot(&out);
             let is_level = slope.abs() <= still() || slope.abs() * radius <= still::<N>() * bend;
             if is_level {
-                return RevolvedPlace::across(&self.own, &projected, &around);
+                return DirectedPoint::across(&self.own, &projected, &around);
             }
             out = if bend > N::ZERO {
                 let turn = max(min(-slope / bend, N::HALF), -N::HALF);
@@ -147,7 +147,7 @@ impl<N: Real> RoundView<N> {
 
     /// Returns the nearest points of the lines of both sides that face each other along a
     /// direction.
-    fn between_sides(&self, outward: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
+    fn between_sides(&self, outward: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let line = |profile: &Profile<N>, along: &Vector<N, 3>| {
             let ends = profile.round.touched(along, core::iter::empty());
             Some([Point::from(*ends.first()?), Point::from(*ends.get(1)?)])
@@ -157,7 +157,7 @@ impl<N: Real> RoundView<N> {
         let other = other.mapped(|end| Point::from(self.center + self.rotation * end.coords));
         let (nearest, point) = nearest_of_segments(&own, &other);
         let level = self.own.level(&outward);
-        Some(RevolvedPlace { point: point.coords, nearest: nearest.coords, outward, level })
+        Some(DirectedPoint { point: point.coords, nearest: nearest.coords, outward, level })
     }
 
     /// Returns whether balls around the midpoint of both points, one in each solid, add up to the

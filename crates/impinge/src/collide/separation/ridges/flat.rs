@@ -63,7 +63,7 @@ impl<N: Real> Flat<N> {
             Kind::Polytope(polytope) => flat.fill_polytope(polytope, shrink)?,
             _ => return None,
         }
-        flat.place(&pose12.rotation.transpose(), &(pose12.translation * shrink));
+        flat.transform(&pose12.rotation.transpose(), &(pose12.translation * shrink));
         Some(flat)
     }
 
@@ -80,7 +80,7 @@ impl<N: Real> Flat<N> {
     }
 
     /// Transforms vertices and normals to the frame of the round solid; normals are negated.
-    fn place(&mut self, turn: &Matrix<N, 3>, translation: &Vector<N, 3>) {
+    fn transform(&mut self, turn: &Matrix<N, 3>, translation: &Vector<N, 3>) {
         for vertex in &self.own_vertices {
             self.vertices.push(turn * (vertex - translation));
         }

@@ -84,8 +84,8 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
 ) -> NearTriangles<N> {
-    let mut places: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
-    let mut seen =
+    let mut features: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
+    let mut candidates =
         NearTriangles { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
     for (block, tiles) in question.tiles.iter().enumerate() {
         let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
@@ -94,28 +94,28 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             continue;
         }
         let eight = TrianglePacket::<V>::of(simd, question, tiles);
-        let (mut own, least) = eight.places(simd, question, block, within, has_seams);
-        seen.from_middle = min(seen.from_middle, least);
+        let (mut own, least) = eight.nearest_features(simd, question, block, within, has_seams);
+        candidates.from_middle = min(candidates.from_middle, least);
         if own.near != 0 {
             own.sides &= own.near;
-            seen.near.push((block, [own.near, 0]));
-            places.push(own);
+            candidates.near.push((block, [own.near, 0]));
+            features.push(own);
         }
     }
-    for (at, own) in places.iter().enumerate() {
+    for (at, own) in features.iter().enumerate() {
         let mut asked = own.sides;
         while asked != 0 {
             let lane = asked.trailing_zeros() as usize;
             asked &= asked - 1;
             let around =
-                &places[at.saturating_sub(MAX_APART)..places.len().min(at + 1 + MAX_APART)];
+                &features[at.saturating_sub(MAX_APART)..features.len().min(at + 1 + MAX_APART)];
             if is_hidden::<S, N, V>(simd, question, around, own, lane) {
-                seen.near[at].1[1] |= 1 << lane;
-                seen.hidden_from = min(seen.hidden_from, own.least[lane]);
+                candidates.near[at].1[1] |= 1 << lane;
+                candidates.hidden_from = min(candidates.hidden_from, own.least[lane]);
             }
         }
     }
-    seen
+    candidates
 }
 
 /// Returns which of eight triangles have boxes that overlap the box of the question.
@@ -218,7 +218,7 @@ impl<V> TrianglePacket<V> {
 
     /// Returns the nearest features, and the least lower bound of the distances.
     #[inline(always)]
-    fn places<S: Simd, N: Real>(
+    fn nearest_features<S: Simd, N: Real>(
         &self,
         simd: S,
         question: &BallQuestion<'_, N>,
@@ -239,20 +239,20 @@ impl<V> TrianglePacket<V> {
         let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
         let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
         let near = within & bits(!is_beyond);
-        let mut places =
+        let mut features =
             NearestFeatures { block, near, sides: 0, kinds: blank, least: blank, most };
         if near != 0 && has_seams {
             let clear = V::all(simd, N::lit(CLEAR) * N::EPSILON) * (size * size);
             let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
             let (kind, room) = self.beside(simd);
             let is_beside = is_tall & room.simd_gt(clear.sqrt()) & is_bound;
-            places.sides = bits(is_beside);
-            kind.store(&mut places.kinds);
-            (self.squared - clear).store(&mut places.least);
+            features.sides = bits(is_beside);
+            kind.store(&mut features.kinds);
+            (self.squared - clear).store(&mut features.least);
             let most = is_tall.select(self.squared + clear, V::all(simd, N::INFINITY));
-            most.store(&mut places.most);
+            most.store(&mut features.most);
         }
-        (places, least)
+        (features, least)
     }
 
     /// Returns lower bounds of the distances, by the planes through the nearest points
@@ -328,7 +328,7 @@ impl<V> TrianglePacket<V> {
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
-    places: &[NearestFeatures<N>],
+    features: &[NearestFeatures<N>],
     own: &NearestFeatures<N>,
     lane: usize,
 ) -> bool {
@@ -338,7 +338,7 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let at = if number == N::ZERO { 0 } else { 1 + usize::from(number > N::ONE) };
     let corners = question.tiles[own.block].corners(lane);
     let (from, to) = (corners[at], corners[(at + 1) % 3]);
-    for other in places {
+    for other in features {
         let tiles = &question.tiles[other.block];
         let is_nearer = V::load(simd, &other.most).simd_lt(V::all(simd, least));
         let hides = is_nearer & has_corner::<S, N, V>(simd, tiles, &from);
@@ -398,8 +398,8 @@ mod tests {
         let mut points: Vec<Point<N, 3>> = Vec::new();
         for at in 0..12_u32 {
             let [x, z] = [at / 2, at % 2].map(|n| N::lit(f64::from(n) - 2.0));
-            let place = Vector::<N, 3>::new(x, N::ZERO, z * N::TWO + N::ONE);
-            points.push(Point::from(place + random.vector::<N>() * N::lit(0.3)));
+            let position = Vector::<N, 3>::new(x, N::ZERO, z * N::TWO + N::ONE);
+            points.push(Point::from(position + random.vector::<N>() * N::lit(0.3)));
         }
         let mut tiles = vec![PartPacket::blank(), PartPacket::blank()];
         for at in 0..16 {

@@ -74,7 +74,7 @@ pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap
 
 impl<N: Real> TiledTriangles<'_, N> {
     /// Tile and lane of each triangle that is meant.
-    fn places(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
+    fn slots(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
         let all = self.tiles.iter().zip(self.near);
         all.flat_map(move |(tiles, near)| {
             Ones::<LANES>((*near).into()).map(move |lane| (tiles, lane))
@@ -115,10 +115,10 @@ struct TriangleQuery<'a, N: Real> {
 impl<N: Real> TriangleQuery<'_, N> {
     /// Packs the triangles that are meant, eight at a time, and visits those within the limit.
     fn each(&self, visit: GapVisitor<'_, N>) {
-        let (mut places, mut first) = (self.parts.places(), 0);
+        let (mut slots, mut first) = (self.parts.slots(), 0);
         loop {
             let (mut packet, mut count) = (PartPacket::blank(), 0);
-            for (tiles, lane) in places.by_ref().take(LANES) {
+            for (tiles, lane) in slots.by_ref().take(LANES) {
                 packet.copy(count, tiles, lane);
                 count += 1;
             }

@@ -125,9 +125,9 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
             if is_middle {
                 let corners = self.corners(triangle);
                 let line = SideLine::of(&corners, opposite);
-                let [place, _] = line.span(&[corners[at], corners[at]]);
+                let [position, _] = line.span(&[corners[at], corners[at]]);
                 let is_within =
-                    |[from, to]: [N; 2]| from + line.room < place && place < to - line.room;
+                    |[from, to]: [N; 2]| from + line.room < position && position < to - line.room;
                 self.each_along(triangle, opposite, |other, inward, span| {
                     let found = Some(inward).filter(|_| span.is_none_or(is_within));
                     found.into_iter().for_each(|inward| visit(other, inward));

@@ -217,11 +217,11 @@ mod tests {
 
     /// A rough sheet of triangles.
     fn sheet(noise: &mut Noise) -> TriMesh<f64, 3> {
-        let place = |at: u32| {
+        let position = |at: u32| {
             let [x, z] = [at % 6, at / 6].map(f64::from);
             Point::<f64, 3>::new(x, 0.4 * noise.next(), z)
         };
-        let vertices = (0..36).map(place).collect();
+        let vertices = (0..36).map(position).collect();
         let cells = (0..30).filter(|at| at % 6 < 5);
         let triangles = cells.flat_map(|at| [[at, at + 6, at + 7], [at, at + 7, at + 1]]);
         TriMesh::new(vertices, triangles.collect())

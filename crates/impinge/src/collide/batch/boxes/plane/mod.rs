@@ -149,7 +149,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
             simd,
             &mut self.slots,
             #[inline(always)]
-            |[place, _], height| sides.point1(simd, &boxes, is_second, place, height),
+            |[coordinate, _], height| sides.point1(simd, &boxes, is_second, coordinate, height),
         );
     }
 

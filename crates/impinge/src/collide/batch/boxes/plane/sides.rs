@@ -53,7 +53,7 @@ pub(super) struct BoxSides<V, M> {
 #[derive(Clone, Copy)]
 struct End<V> {
     /// Coordinate along the lower side, zero at its middle.
-    place: V,
+    coordinate: V,
     /// Height above the lower side, outward from its box.
     height: V,
 }
@@ -98,7 +98,7 @@ impl<V, M> BoxSides<V, M> {
         let upper = Upper::facing(simd, boxes, axis, is_upward, level);
         let half = is_y.select(half[0], half[1]);
         let (tolerance, length) =
-            (tolerance(simd, boxes), upper.ends[1].place - upper.ends[0].place);
+            (tolerance(simd, boxes), upper.ends[1].coordinate - upper.ends[0].coordinate);
         let shortest = (half + half).smaller(length);
         let is_long = shortest.simd_gt(lit::<S, N, V>(simd, 8.0) * tolerance);
         Self {
@@ -145,7 +145,7 @@ impl<V, M> BoxSides<V, M> {
         }
         let (mut at_ends, [near, far], [low, high]) = ([0; 2 * SLOTS], &above, &below);
         for (slot, found) in [near, far, low, high].into_iter().enumerate() {
-            let flat = [found.end.place, V::all(simd, N::ZERO)];
+            let flat = [found.end.coordinate, V::all(simd, N::ZERO)];
             admission.store(simd, slots, slot, &flat, found.end.height, found.is_inside);
             at_ends[2 * slot] = bits(found.at_end[0]);
             at_ends[2 * slot + 1] = bits(found.at_end[1]);
@@ -162,7 +162,7 @@ impl<V, M> BoxSides<V, M> {
         simd: S,
         boxes: &Boxes<V, 2>,
         is_second: M,
-        place: V,
+        coordinate: V,
         height: V,
     ) -> [V; 2]
     where
@@ -171,7 +171,7 @@ impl<V, M> BoxSides<V, M> {
     {
         let rise = self.is_upward.select(height, -height);
         let level = self.level + is_second.select(rise, V::all(simd, N::ZERO));
-        let own = [self.is_y.select(place, level), self.is_y.select(level, place)];
+        let own = [self.is_y.select(coordinate, level), self.is_y.select(level, coordinate)];
         let ([x, y], shift) = (&boxes.rotation, &boxes.translation);
         filled(
             #[inline(always)]
@@ -190,22 +190,22 @@ impl<V, M> BoxSides<V, M> {
         M: SimdMask<S>,
     {
         let end = self.ends[end];
-        self.beside(simd, end, end.place + self.half, self.half + self.half)
+        self.beside(simd, end, end.coordinate + self.half, self.half + self.half)
     }
 
     /// Compares an end of the lower side with the upper one.
     #[inline(always)]
-    fn below<S: Simd, N: Real>(&self, simd: S, place: V) -> SideCandidate<V, M>
+    fn below<S: Simd, N: Real>(&self, simd: S, coordinate: V) -> SideCandidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
     {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
-        let along = place - self.ends[0].place;
+        let along = coordinate - self.ends[0].coordinate;
         let share = (along / self.length).larger(zero).smaller(one);
         let (low, high) = (self.ends[0].height, self.ends[1].height);
         let height = low + (high - low) * share;
-        self.beside(simd, End { place, height }, along, self.length)
+        self.beside(simd, End { coordinate, height }, along, self.length)
     }
 
     /// Compares an end with the other side, of the given length, at the coordinate `along` on it.
@@ -286,11 +286,11 @@ impl<V, M> Upper<V, M> {
                     },
                 );
                 let height = on(axis.is_y, &point) - level;
-                let place = axis.is_y.select(point[0], point[1]);
-                End { place, height: is_upward.select(height, -height) }
+                let coordinate = axis.is_y.select(point[0], point[1]);
+                End { coordinate, height: is_upward.select(height, -height) }
             },
         );
-        let is_reversed = far.place.simd_lt(near.place);
+        let is_reversed = far.coordinate.simd_lt(near.coordinate);
         let ends = [in_order(is_reversed, far, near), in_order(is_reversed, near, far)];
         // Both hold, or neither: the far end faces the other box, the ends are exchanged.
         let is_second_lower = is_reversed ^ !lean.simd_lt(zero);
@@ -300,5 +300,8 @@ impl<V, M> Upper<V, M> {
 
 #[inline(always)]
 fn in_order<S: Simd, V: Wide<S>>(is: V::Mask, one: End<V>, other: End<V>) -> End<V> {
-    End { place: is.select(one.place, other.place), height: is.select(one.height, other.height) }
+    End {
+        coordinate: is.select(one.coordinate, other.coordinate),
+        height: is.select(one.height, other.height),
+    }
 }

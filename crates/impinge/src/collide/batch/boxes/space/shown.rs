@@ -88,7 +88,7 @@ impl<M> ShownFaces<M> {
     /// Returns the lanes where a point at some ends of the face (`at_end`), on their positive sides
     /// or not (`beyond`), belongs to the feature, if that is more than a corner.
     #[inline(always)]
-    pub(super) fn has_place<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
+    pub(super) fn has_position<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
     where
         M: SimdMask<S>,
     {

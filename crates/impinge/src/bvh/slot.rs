@@ -7,7 +7,7 @@ const ROOM: f64 = 0.3;
 
 impl<const D: usize> Tree<D> {
     /// Returns a free slot near the box if there is one, else the slot at the end.
-    pub(super) fn find_place(&mut self, bounds: &Bounds<D>) -> usize {
+    pub(super) fn find_slot(&mut self, bounds: &Bounds<D>) -> usize {
         let has_holes = self.live < self.end;
         let hole = if has_holes { self.hole_near(bounds) } else { None };
         hole.unwrap_or_else(|| self.append_slot())
