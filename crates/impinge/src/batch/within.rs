@@ -218,18 +218,18 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
     }
 
     /// Returns the near pairs of an element of this side, which searches, and one of the other
-    /// side, as `named` maps them, in any order. `named` returns `None` for pairs to be left out.
+    /// side, as `pair_of` maps them, in any order. `pair_of` returns `None` for pairs to be left out.
     fn pairs_with(
         &self,
         other: &Self,
         distance: N,
         control: &Control<'_>,
-        named: impl Fn(u32, u32) -> Option<[u32; 2]> + Sync,
+        pair_of: impl Fn(u32, u32) -> Option<[u32; 2]> + Sync,
     ) -> Result<Vec<[u32; 2]>, BatchError> {
         let (numbers, tree) = other.tree()?;
         let margin = margin(distance);
         let near = |walker: usize, index: usize| {
-            let pair = named(number_of(walker), numbers[index])?;
+            let pair = pair_of(number_of(walker), numbers[index])?;
             let (one, found) =
                 (self.side.element(walker), other.side.element(numbers[index] as usize));
             let is_near = distance_within(&one, &found, distance).is_some();

@@ -13,13 +13,13 @@
 //!   layer of one block. Child and parent are computed from the index, so no links change when
 //!   objects move between slots;
 //! * each layer also has the bounds of its blocks as an array (the query side of a test of one box
-//!   against a block), and a mask of the lanes that changed since the last [`Tree::settle`];
+//!   against a block), and a mask of the lanes that changed since the last [`Tree::commit_boxes`];
 //! * layer 0 also has the boxes *before* the changes, again in blocks. A sparing tree, whose
 //!   objects seldom change, has these only while something has changed.
 //!
 //! Slots are in a balanced k-d order, so that a block holds neighbours. In each step the owner of
 //! the tree calls [`Tree::set_later`], [`Tree::insert`], [`Tree::remove`], then [`Tree::refit`],
-//! then the [`Joiner`] for the pairs that began and ended, then [`Tree::settle`] and
+//! then the [`Joiner`] for the pairs that began and ended, then [`Tree::commit_boxes`] and
 //! [`Tree::maintain`].
 //!
 //! **No set of pairs is stored.** A pair began exactly if the boxes overlap and the old ones did

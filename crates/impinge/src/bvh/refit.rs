@@ -147,7 +147,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Makes the present boxes the old ones, and clears all change bits.
-    pub(crate) fn settle(&mut self) {
+    pub(crate) fn commit_boxes(&mut self) {
         if self.touched.is_empty() {
             return;
         }
@@ -165,7 +165,7 @@ impl<const D: usize> Tree<D> {
         if self.changed > 0 {
             let mut dirty = core::mem::take(&mut self.touched);
             for layer in &mut self.layers {
-                dirty.iter().for_each(|&block| layer.settle(block as usize));
+                dirty.iter().for_each(|&block| layer.commit_boxes(block as usize));
                 to_parents(&mut dirty);
             }
             self.touched = dirty;
@@ -276,7 +276,7 @@ fn fetch<const D: usize>(mut changed: u16, ids: &[u32], block: &mut Block<D>, by
 
 impl<const D: usize> Layer<D> {
     /// Clears the change bits of a block; its reach becomes its bounds.
-    fn settle(&mut self, block: usize) {
+    fn commit_boxes(&mut self, block: usize) {
         self.changed[block] = 0;
         self.reach[block] = self.bounds[block];
         if let Some(reaches) = self.reaches.get_mut(block) {

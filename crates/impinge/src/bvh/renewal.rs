@@ -123,7 +123,7 @@ impl<const D: usize> Renewal<D> {
             Stage::Follow => return self.follow(tree),
         }
         self.other.refit_layers(&[]);
-        self.other.settle();
+        self.other.commit_boxes();
         false
     }
 
@@ -179,7 +179,7 @@ impl<const D: usize> Renewal<D> {
             self.add(tree, id, false);
         }
         self.other.refit();
-        self.other.settle();
+        self.other.commit_boxes();
         rest == 0
     }
 
@@ -251,7 +251,7 @@ mod tests {
             }
         }
         tree.refit();
-        tree.settle();
+        tree.commit_boxes();
         tree.maintain();
     }
 

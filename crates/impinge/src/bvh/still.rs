@@ -60,7 +60,7 @@ impl<const D: usize> Tree<D> {
         }
         tree.declare_ordered(tree.end);
         tree.refit_layers(&[]);
-        tree.settle();
+        tree.commit_boxes();
         tree
     }
 
@@ -79,7 +79,7 @@ impl<const D: usize> Tree<D> {
             self.insert_still(id, bounds);
         }
         self.refit();
-        self.settle();
+        self.commit_boxes();
     }
 }
 

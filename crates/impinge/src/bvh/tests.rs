@@ -102,8 +102,8 @@ impl<const D: usize> Twin<D> {
         self.tree.validate().expect("sound after a refit");
     }
 
-    fn settle(&mut self) {
-        self.tree.settle();
+    fn commit_boxes(&mut self) {
+        self.tree.commit_boxes();
         self.tree.maintain();
         self.tree.validate().expect("sound after settling");
         self.list.iter_mut().flatten().for_each(|(now, before)| *before = *now);
@@ -176,8 +176,8 @@ fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, reach: u32
         {
             found = (found.0 + counts.0, found.1 + counts.1);
         }
-        first.settle();
-        second.settle();
+        first.commit_boxes();
+        second.commit_boxes();
     }
     assert!(found.0 > 1000, "{} beginnings", found.0);
     assert!(found.1 > 1000 || reach > 4, "{} ends", found.1);
@@ -201,7 +201,7 @@ fn searches_find_what_a_list_finds() {
     let mut found_any = 0;
     for _ in 0..60 {
         twin.change(&mut state, 10, 1000, 10);
-        twin.settle();
+        twin.commit_boxes();
         let mut query = random_box(&mut state, 10);
         if next(&mut state, 4) == 0 {
             query.lo[1] = f32::NEG_INFINITY;
@@ -250,13 +250,13 @@ fn emptied_and_filled() {
     let mut state = 5;
     let mut twin = Twin::<2>::new(&mut state, 0, 300, 10);
     twin.tree.refit();
-    twin.settle();
+    twin.commit_boxes();
     for round in 0..3 {
         for id in 0..300 {
             twin.tree.remove(id);
         }
         twin.tree.refit();
-        twin.tree.settle();
+        twin.tree.commit_boxes();
         twin.tree.maintain();
         twin.tree.validate().expect("sound");
         assert!(twin.tree.is_empty(), "round {round}");
@@ -266,7 +266,7 @@ fn emptied_and_filled() {
         }
         twin.tree.refit();
         assert_eq!(twin.tree.changed, 300, "all are new");
-        twin.tree.settle();
+        twin.tree.commit_boxes();
         twin.tree.validate().expect("sound");
     }
 }

@@ -73,7 +73,7 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
     /// Layer 0 first; at least one layer, the last one with at most one block.
     pub(super) layers: Vec<Layer<D>>,
-    /// By leaf block: the boxes at the last [`Self::settle`]; see [`Self::was`].
+    /// By leaf block: the boxes at the last [`Self::commit_boxes`]; see [`Self::was`].
     pub(super) before: Vec<Block<D>>,
     /// `before` is stored only while a box has changed since the last settling. Saves memory in a
     /// tree whose objects seldom change.
@@ -90,7 +90,7 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) end: usize,
     /// Number of objects.
     pub(super) live: usize,
-    /// Leaf blocks written since the last [`Self::settle`], as a list and as flags.
+    /// Leaf blocks written since the last [`Self::commit_boxes`], as a list and as flags.
     pub(super) touched: Vec<u32>,
     pub(super) is_touched: Vec<bool>,
     /// Leaf blocks whose reach does not contain the old boxes; see [`Self::escaped`].
@@ -226,7 +226,7 @@ impl<const D: usize> Tree<D> {
         self.layers[0].blocks.len()
     }
 
-    /// Returns the boxes at the last [`Self::settle`], by leaf block.
+    /// Returns the boxes at the last [`Self::commit_boxes`], by leaf block.
     #[inline]
     pub(super) fn was(&self) -> &[Block<D>] {
         if self.remembers { &self.before } else { &self.layers[0].blocks }
@@ -242,7 +242,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Returns the box of the object at the last [`Self::settle`]: empty for a new object.
+    /// Returns the box of the object at the last [`Self::commit_boxes`]: empty for a new object.
     pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
@@ -258,7 +258,7 @@ impl<const D: usize> Tree<D> {
         self.slot(id).expect("the object is in the tree")
     }
 
-    /// Adds an object. `before` is its box at the last [`Self::settle`]: pairs that overlapped then
+    /// Adds an object. `before` is its box at the last [`Self::commit_boxes`]: pairs that overlapped then
     /// do not begin now. It is [`Bounds::NOWHERE`] for a new object.
     ///
     /// # Panics
@@ -271,7 +271,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Adds an object that has had this box, in another tree, since before the last
-    /// [`Self::settle`]: no pairs begin. Returns its slot.
+    /// [`Self::commit_boxes`]: no pairs begin. Returns its slot.
     pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");

@@ -41,12 +41,12 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Calls `settle` with each packet of up to eight configurations, after the scan.
+    /// Calls `finish` with each packet of up to eight configurations, after the scan.
     fn each(
         &mut self,
         range: Range<usize>,
         limit: N,
-        mut settle: impl FnMut(&mut Self, Range<usize>),
+        mut finish: impl FnMut(&mut Self, Range<usize>),
     ) {
         let mut start = range.start;
         while start < range.end {
@@ -54,7 +54,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
             self.scan(&eight, limit);
             self.exact.begin(eight.clone());
             start = eight.end;
-            settle(self, eight);
+            finish(self, eight);
         }
     }
 
@@ -260,8 +260,8 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
         let mut best: Option<(N, (u32, Other))> = None;
         for near in &candidates {
             let so_far = best.map_or(limit, |(distance, _)| distance);
-            let is_settled = best.is_some_and(|(distance, _)| distance <= N::ZERO);
-            if is_settled || f64::from(bound(near)) > so_far.as_f64() {
+            let is_decided = best.is_some_and(|(distance, _)| distance <= N::ZERO);
+            if is_decided || f64::from(bound(near)) > so_far.as_f64() {
                 break;
             }
             let pair = near.pair;

@@ -20,10 +20,10 @@ use super::candidate::SupportCandidate;
 use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
-use super::newton::settles;
+use super::newton::converges;
 use super::polish::polish;
 use super::simplex::Simplex;
-use super::witness::{Mix, locate, placed, settle};
+use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Real, Vector, cross2, perp, unit};
 
 /// Cap on the number of support points. Polygons need as many as they have sides near the origin.
@@ -126,10 +126,10 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
                     best.prefer(candidate, N::TWO * tolerance());
                 }
                 let mix = Mix::nearest(&best, &[side.start, next]);
-                return settle(difference, &best, &mix, &vertices(ring, &best));
+                return finish(difference, &best, &mix, &vertices(ring, &best));
             }
             // Flat sides are not far; smooth parts are found faster than by growing.
-            if settles(difference, &mut best) {
+            if converges(difference, &mut best) {
                 return locate(difference, &best, &vertices(ring, &best));
             }
         }

@@ -12,12 +12,12 @@ use super::climb::climb;
 use super::difference::{Difference, Vertex, noise, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::{EpaFace, Hull};
-use super::newton::settles;
+use super::newton::converges;
 use super::peak::at_peak;
 use super::polish::{lowest, polish};
 use super::side::better;
 use super::simplex::Simplex;
-use super::witness::{Mix, locate, placed, settle};
+use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Mapped, Real, Vector, cross, max, orthonormal_basis, unit};
 
 /// Cap on the local searches if the hull ends without an answer, and the cosine of the angle within
@@ -163,11 +163,11 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
         best.improve(&candidate);
         if let Some(top) = summits.beyond(difference, hull, &face, &candidate) {
             best.improve(&top);
-            hull.settle(index, -top.height);
+            hull.finalize(index, -top.height);
             continue;
         }
         if -candidate.height - face.offset <= tolerance() {
-            if face.settled {
+            if face.is_final {
                 break;
             }
             let corners = face.corners.mapped(|corner| *hull.vertex(corner));
@@ -181,17 +181,17 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
                     best.prefer(candidate, N::TWO * tolerance());
                 }
                 let mix = Mix::nearest(&best, &corners);
-                return settle(difference, &best, &mix, hull.vertices());
+                return finish(difference, &best, &mix, hull.vertices());
             }
             // Flat faces are not far; smooth parts are found faster than by growing.
-            if settles(difference, &mut best) {
+            if converges(difference, &mut best) {
                 hull.keep(&[best.vertex]);
                 return locate(difference, &best, hull.vertices());
             }
         }
         if hull.contains(&candidate.vertex) {
             // Rounding has bent the hull. From now on the certificate counts.
-            hull.settle(index, -candidate.height);
+            hull.finalize(index, -candidate.height);
         } else {
             hull.extend(index, candidate.vertex);
         }
@@ -240,7 +240,7 @@ impl<N: Real> Summits<N> {
         candidate: &SupportCandidate<N, 3>,
     ) -> Option<SupportCandidate<N, 3>> {
         let gap = -candidate.height - face.offset;
-        if gap <= tolerance() || gap > self.coarse || face.settled {
+        if gap <= tolerance() || gap > self.coarse || face.is_final {
             return None;
         }
         if let Some(known) = self.highest.as_ref().filter(|known| known.stands_for(face, gap)) {
@@ -308,7 +308,7 @@ fn climb_on<N: Real>(
         }
         best.improve(&start);
     }
-    settles(difference, best);
+    converges(difference, best);
 }
 
 /// Returns the candidate with the larger height, the first of equals.

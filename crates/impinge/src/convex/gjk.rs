@@ -18,11 +18,11 @@ use smallvec::SmallVec;
 use super::Separation;
 use super::candidate::SupportCandidate;
 use super::difference::{Difference, noise, tolerance};
-use super::newton::settles;
+use super::newton::converges;
 use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
 use super::simplex::{NearestOfSimplex, Simplex, Simplicial};
-use super::witness::{Mix, locate, placed, settle};
+use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Real, Vector, max, unit_or};
 
 /// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty.
@@ -266,10 +266,10 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     /// one solid is much larger than the other.
     fn finish(&mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.met() {
-            return self.settled(difference);
+            return self.final_separation(difference);
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
-        if settles(difference, &mut self.best) {
+        if converges(difference, &mut self.best) {
             bundle.push(self.best.vertex);
             return locate(difference, &self.best, &bundle);
         }
@@ -291,7 +291,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     /// known with the origin on its supporting plane.
     fn finish_overlap(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.best.height >= -noise::<N>() {
-            return self.settled(difference);
+            return self.final_separation(difference);
         }
         N::deepest(difference, &self.simplex)
     }
@@ -307,7 +307,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
 
     /// Returns the answer if the bounds meet. Of several valid normals, that of the nearest point
     /// is taken if its points lie across from each other along no other.
-    fn settled(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
+    fn final_separation(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
             return placed(&best, &polished, N::HALF);
@@ -315,12 +315,12 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         let raised = best.height > self.best.height;
         if !raised && !mix.meets(&best) {
             // The points of a sliver do not prove that its plane is as near as it seems.
-            if settles(difference, &mut best) {
+            if converges(difference, &mut best) {
                 return locate(difference, &best, &[best.vertex]);
             }
             best.prefer(self.last, N::TWO * gap());
         }
-        settle(difference, &best, &mix, self.simplex.vertices())
+        finish(difference, &best, &mix, self.simplex.vertices())
     }
 }
 

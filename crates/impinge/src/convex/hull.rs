@@ -26,7 +26,7 @@ pub(super) struct EpaFace<N: Real> {
     /// Signed distance of the face from the origin; infinite if it is too thin to have a normal.
     pub(super) offset: N,
     /// `offset` has been set to the difference's certificate; the face grows no more.
-    pub(super) settled: bool,
+    pub(super) is_final: bool,
 }
 
 /// Directed sides of a hole in the surface, each running as in the removed face.
@@ -91,9 +91,9 @@ impl<N: Real> Hull<N> {
     }
 
     /// Moves a face outwards to `offset`, where the difference is known to end.
-    pub(super) fn settle(&mut self, index: usize, offset: N) {
+    pub(super) fn finalize(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
-        self.faces[index].settled = true;
+        self.faces[index].is_final = true;
     }
 
     /// Keeps points for mixing witnesses, without a face.
@@ -172,6 +172,6 @@ impl<N: Real> Hull<N> {
             let (outward, _) = found;
             (outward, outward.dot(&a))
         });
-        EpaFace { corners, outward, offset, settled: false }
+        EpaFace { corners, outward, offset, is_final: false }
     }
 }

@@ -15,7 +15,7 @@ const STEPS: usize = 6;
 /// part of `w` perpendicular to `n`, and zero at the answer. Each step is judged by its certificate
 /// and by that slope: at kinks of the height (flat faces, sharp edges) steps fail and nothing is
 /// lost.
-pub(super) fn settles<N: Simplicial<D>, const D: usize>(
+pub(super) fn converges<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
 ) -> bool {

@@ -71,9 +71,9 @@ impl<N: Real> NormalRing<N> {
     /// Returns the ring of a side, with angles from a normal near it; `None` if the normal is not
     /// near.
     fn near(axis: Vector<N, 3>, rise: N, normal: &Vector<N, 3>) -> Option<Self> {
-        let lean = normal.dot(&axis);
-        let is_near = (lean - rise).abs() <= N::lit(NEAR);
-        let (from, _) = unit(&(normal - axis * lean)).filter(|_| is_near)?;
+        let cosine = normal.dot(&axis);
+        let is_near = (cosine - rise).abs() <= N::lit(NEAR);
+        let (from, _) = unit(&(normal - axis * cosine)).filter(|_| is_near)?;
         Some(Self { axis, rise, from, aside: cross(&axis, &from) })
     }
 

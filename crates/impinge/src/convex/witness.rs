@@ -131,7 +131,7 @@ fn share<N: Simplicial<D>, const D: usize>(
 
 /// Returns the answer with the points of `mix`, if they fit; else with a mix of `vertices` or, if
 /// that is not enough, of points that are searched for.
-pub(super) fn settle<N: Simplicial<D>, const D: usize>(
+pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,

@@ -395,7 +395,7 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
             }
         }
         self.tree.refit();
-        self.tree.settle();
+        self.tree.commit_boxes();
         self.tree.maintain();
         self.boxes.copy_from_slice(boxes);
         self.bounds = around(boxes);

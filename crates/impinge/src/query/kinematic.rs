@@ -251,7 +251,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// perpendicular to the line is near it: a quick sufficient test. Of two nearly parallel lines
     /// only the first counts.
     fn is_steep(&self) -> bool {
-        let leans = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
+        let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {
                 NeighborhoodGeometry::Line(along) => along.dot(normal).abs() > least,
                 _ => false,
@@ -259,8 +259,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         };
         let least = N::TWO * least_angle();
         let nearly_parallel = N::lit(MIN_SINE_SQUARED).sqrt();
-        leans(self.geometry1, &self.normal1, least)
-            || leans(self.geometry2, &self.normal2, least + N::TWO * nearly_parallel)
+        is_tilted(self.geometry1, &self.normal1, least)
+            || is_tilted(self.geometry2, &self.normal2, least + N::TWO * nearly_parallel)
     }
 
     fn normal(
@@ -348,12 +348,12 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
     fn rule(&mut self) -> NormalRule<N, D> {
         let (side1, side2) = (&self.side1, &self.side2);
         *self.rule.get_or_insert_with(|| {
-            let (lean1, lean2) = (side1.lean(), side2.lean());
-            let has_face = min(lean1, lean2) <= least_angle();
+            let (tilt1, tilt2) = (side1.tilt(), side2.tilt());
+            let has_face = min(tilt1, tilt2) <= least_angle();
             let edges = if has_face { None } else { level_edges(side1, side2, self.pose12) };
             match edges {
                 Some((edge1, edge2)) => NormalRule::Edges(edge1, edge2),
-                None if lean2 < lean1 => NormalRule::Second,
+                None if tilt2 < tilt1 => NormalRule::Second,
                 None => NormalRule::First,
             }
         })

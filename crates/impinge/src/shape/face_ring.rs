@@ -60,7 +60,7 @@ impl<N: Real> Cuboid<N, 3> {
     /// volume.
     #[inline]
     pub(crate) fn part_shown(direction: &Vector<N, 3>) -> FeatureId {
-        CuboidPart::<3>::facing(direction, Tilt::usual()).name()
+        CuboidPart::<3>::facing(direction, Tilt::usual()).id()
     }
 
     /// Fills a blank ring with face `index`. Returns false, with the ring unchanged, if the face

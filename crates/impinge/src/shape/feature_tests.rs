@@ -85,8 +85,8 @@ fn face3<N: Real>(solid: &dyn ConvexPolyhedron<N, 3>, id: FeatureId) -> bool {
     solid.face(id, &mut face);
     let Some(normal) = face.normal else { return false };
     assert!((normal.norm() - N::ONE).abs() <= N::lit(4.0) * N::EPSILON, "unit: {face:?}");
-    let named = solid.feature_normal(id);
-    assert!((normal - named).norm() <= N::lit(8.0) * N::EPSILON, "one normal: {face:?}, {named}");
+    let by_id = solid.feature_normal(id);
+    assert!((normal - by_id).norm() <= N::lit(8.0) * N::EPSILON, "one normal: {face:?}, {by_id}");
     let count = face.vertices.len();
     for at in 0..count {
         let (a, b) = (face.vertices[at], face.vertices[(at + 1) % count]);

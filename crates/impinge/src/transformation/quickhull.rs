@@ -357,17 +357,17 @@ impl<'a> HullSurface<'a> {
 
     /// Returns the facets that are left, renumbered.
     fn compacted(mut self) -> Vec<Facet> {
-        let mut renamed = vec![NONE; self.facets.len()];
+        let mut new_indices = vec![NONE; self.facets.len()];
         let mut count = 0;
-        for (facet, name) in self.facets.iter().zip(&mut renamed) {
+        for (facet, new_index) in self.facets.iter().zip(&mut new_indices) {
             if facet.visited != GONE {
-                *name = count;
+                *new_index = count;
                 count += 1;
             }
         }
         self.facets.retain(|facet| facet.visited != GONE);
         for facet in &mut self.facets {
-            facet.neighbors = facet.neighbors.mapped(|neighbor| renamed[at(neighbor)]);
+            facet.neighbors = facet.neighbors.mapped(|neighbor| new_indices[at(neighbor)]);
         }
         self.facets
     }

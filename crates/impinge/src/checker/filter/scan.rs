@@ -163,7 +163,7 @@ impl<const D: usize> Scan<'_, D> {
             wanted: within.wanted,
             exact: if outline.is_exact { group.exact } else { 0 },
         };
-        search.settle(
+        search.record(
             simd,
             lane,
             &distances,
@@ -234,7 +234,7 @@ impl<const D: usize> Scan<'_, D> {
                 exact: if one.exact >> ball & 1 == 1 { other.exact } else { 0 },
             };
             let body = one.bodies[ball];
-            search.settle(
+            search.record(
                 simd,
                 lane,
                 &distances,

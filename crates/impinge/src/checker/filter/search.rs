@@ -181,7 +181,7 @@ impl CollisionSearch {
 
     /// Records the balls that are near in a configuration; `pair_of` returns the pair of a ball.
     #[inline(always)]
-    pub(super) fn settle<S: Simd, V: Wide<S, Scalar = f32>>(
+    pub(super) fn record<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
         simd: S,
         lane: usize,

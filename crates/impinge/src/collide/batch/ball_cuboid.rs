@@ -58,7 +58,7 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
 
     #[inline(always)]
     fn features(parts: u8) -> [FeatureId; 2] {
-        [FeatureId::Face(0), Cuboid::<N, D>::part_named(parts)]
+        [FeatureId::Face(0), Cuboid::<N, D>::id_of_bits(parts)]
     }
 }
 

@@ -77,13 +77,13 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
     }
 
     #[inline(always)]
-    fn settle<const L: usize>(
+    fn write_manifold<const L: usize>(
         found: &LaneContacts<N, D, L>,
         lane: usize,
         _: usize,
         raw: &mut RawManifold<N, D>,
     ) -> bool {
-        found.settle::<F>(lane & (L - 1), raw)
+        found.write_manifold::<F>(lane & (L - 1), raw)
     }
 }
 
@@ -152,7 +152,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
 
     /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
-    fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
+    fn write_manifold<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
             [self.is_found, self.is_apart, self.is_two].mapped(|lanes| lanes >> lane & 1 == 1);
         if is_apart {

@@ -246,7 +246,7 @@ impl<V, M> LaneSide<V, M> {
     /// Returns the lanes where the end `end`, in tangent order, is the segment's first, and its
     /// last.
     #[inline(always)]
-    fn names<S: Simd>(&self, end: usize) -> [M; 2]
+    fn end_masks<S: Simd>(&self, end: usize) -> [M; 2]
     where
         M: SimdMask<S>,
     {
@@ -296,12 +296,12 @@ impl<V, M> LaneContact<V, M> {
         let distance = dot(&line.normal, &minus(&cores[1], &cores[0])) - lifts[0] - lifts[1];
         let point1 = plus(&cores[0], &times(&line.normal, lifts[0]));
         let (distance, is_admitted) = line.admit(distance, line.flat(&point1));
-        let (names1, names2) = (first.names(end), second.names(end));
+        let (end_masks1, end_masks2) = (first.end_masks(end), second.end_masks(end));
         let parts = [
-            is_at[0] & names1[0],
-            is_at[0] & names1[1],
-            is_at[1] & names2[0],
-            is_at[1] & names2[1],
+            is_at[0] & end_masks1[0],
+            is_at[0] & end_masks1[1],
+            is_at[1] & end_masks2[0],
+            is_at[1] & end_masks2[1],
         ];
         Self { point1, distance, is_admitted, parts }
     }

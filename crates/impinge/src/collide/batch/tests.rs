@@ -356,11 +356,11 @@ fn eight_pairs_of_segments_are_as_one() {
 
 fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
     for (seed, sine) in [(1, 0.0), (2, 0.01), (3, 0.3)] {
-        for lean in [0.005, 0.1, 3.0] {
-            let steps = faced::<N, D>(seed, lean, &request(0.1, sine));
+        for tilt in [0.005, 0.1, 3.0] {
+            let steps = faced::<N, D>(seed, tilt, &request(0.1, sine));
             let [points, declined, begun] = compare::<F, N, D>(&steps, "faced");
-            assert!(points > 200, "{points} points, lean {lean}");
-            assert!(declined * 2 < begun, "{declined} of {begun} declined, lean {lean}");
+            assert!(points > 200, "{points} points, lean {tilt}");
+            assert!(declined * 2 < begun, "{declined} of {begun} declined, lean {tilt}");
         }
     }
     check::<F, N, D>([Sort::Cuboid, Sort::Cuboid]);
@@ -369,13 +369,13 @@ fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
 /// Boxes with faces close together, in three steps.
 fn faced<N: Scene<D>, const D: usize>(
     seed: u64,
-    lean: f64,
+    tilt: f64,
     request: &ManifoldRequest<N>,
 ) -> Vec<Vec<Case<N, D>>> {
     let mut random = Random(seed);
     let mut draw = || {
         let mut draw = Draw::<D>::new(&mut random, [Sort::Cuboid, Sort::Cuboid], false);
-        draw.turns = draw.turns.map(|turn| turn.map(|angle| angle * lean / 3.0));
+        draw.turns = draw.turns.map(|turn| turn.map(|angle| angle * tilt / 3.0));
         let [half1, half2] = draw.ends.map(|ends| ends[1].abs());
         let gap = random.between(-0.1, 0.2);
         draw.positions[1] = draw.positions[0] + half1 * random.between(-0.5, 0.5);

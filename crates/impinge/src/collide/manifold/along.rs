@@ -138,7 +138,7 @@ pub(crate) fn on_face3<N: Real>(
             deepest.distance = nearest;
         }
     }
-    out.points.extend(candidates.iter().map(|candidate| candidate.named(0)));
+    out.points.extend(candidates.iter().map(|candidate| candidate.with_id(0)));
     true
 }
 

@@ -50,7 +50,7 @@ impl<N: Real> SegmentPair<'_, N> {
         }
         if let Kind::Ball(_) = self.pair.first {
             let touched = beside_ball(&self.pair, witness)?;
-            visit(Candidate::alone(witness, [FeatureId::Face(0), touched]).named(0));
+            visit(Candidate::alone(witness, [FeatureId::Face(0), touched]).with_id(0));
             return Some(());
         }
         let frame = self.frame(witness);
@@ -67,7 +67,7 @@ impl<N: Real> SegmentPair<'_, N> {
         // The smallest distance is that of the separation exactly.
         let nearest = deepest(&candidates, level);
         candidates[nearest].distance = witness.distance;
-        candidates.iter().for_each(|candidate| visit(candidate.named(0)));
+        candidates.iter().for_each(|candidate| visit(candidate.with_id(0)));
         Some(())
     }
 
@@ -109,7 +109,7 @@ impl<N: Real> SegmentPair<'_, N> {
         // Nearer than `least` by more than rounding: beside the face and below it.
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
         for candidate in kept {
-            let point = candidate.named(0);
+            let point = candidate.with_id(0);
             visit(RawPoint { distance: max(point.distance, along.least), ..point });
         }
         Some(())

@@ -130,7 +130,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
         self.kept.is_some_and(|kept| kept.is_old)
     }
 
-    pub(in crate::collide) fn named(&self, id: u32) -> RawPoint<N, D> {
+    pub(in crate::collide) fn with_id(&self, id: u32) -> RawPoint<N, D> {
         let [feature1, feature2] = self.features;
         RawPoint { point1: self.point1, distance: self.distance, feature1, feature2, id, code: 0 }
     }

@@ -71,7 +71,7 @@ pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
     /// Parts of composites, zero for a convex solid, and the features of the parts.
-    pub(super) names: ([u32; 2], [FeatureId; 2]),
+    pub(super) ids: ([u32; 2], [FeatureId; 2]),
     /// Position of the point on each solid, in that solid's frame.
     pub(super) positions: [Point<N, D>; 2],
     /// Normal of the contact, in the frame of the first solid.
@@ -95,13 +95,13 @@ impl<N: Real, const D: usize> PairPose<'_, N, D> {
         &self,
         point1: &Point<N, D>,
         distance: N,
-        names: ([u32; 2], [FeatureId; 2]),
+        ids: ([u32; 2], [FeatureId; 2]),
     ) -> Anchors<N, D> {
         let point2 = self.pose12.map_or_else(
             || Point::from(Vector::<N, D>::repeat(N::INFINITY)),
             |pose12| pose12.inverse_point(&(point1 + self.normal * distance)),
         );
-        Anchors { names, positions: [*point1, point2], normal: *self.normal }
+        Anchors { ids, positions: [*point1, point2], normal: *self.normal }
     }
 }
 
@@ -135,13 +135,13 @@ pub(super) fn moved<N: Real, const D: usize>(
     scale: N,
 ) -> N {
     if !normals_agree(&old.normal, &new.normal) {
-        let is_same = is_one_point(old.names.1) && old.names == new.names;
+        let is_same = is_one_point(old.ids.1) && old.ids == new.ids;
         return if is_same { N::ZERO } else { N::INFINITY };
     }
     // On the same vertex of either solid it has not moved.
     let is_on_vertex = |solid: usize| {
-        let name = |point: &Anchors<N, D>| (point.names.0[solid], point.names.1[solid]);
-        matches!(name(old).1, FeatureId::Vertex(_)) && name(old) == name(new)
+        let id_of = |point: &Anchors<N, D>| (point.ids.0[solid], point.ids.1[solid]);
+        matches!(id_of(old).1, FeatureId::Vertex(_)) && id_of(old) == id_of(new)
     };
     if is_on_vertex(0) || is_on_vertex(1) {
         return N::ZERO;
@@ -290,7 +290,7 @@ pub(in crate::collide) fn in_order<N: Real, const D: usize>(
 }
 
 /// Replaces the points of a manifold, in the order of their ids; those without an id get the next.
-pub(in crate::collide) fn settle<N: Real, const D: usize>(
+pub(in crate::collide) fn replace_points<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     chosen: &[usize],
     out: &mut RawManifold<N, D>,
@@ -302,7 +302,7 @@ pub(in crate::collide) fn settle<N: Real, const D: usize>(
     out.points.clear();
     for &at in chosen {
         let kept = candidates[at].kept.expect("the new ones have ids now, too");
-        out.points.push(candidates[at].named(kept.id));
+        out.points.push(candidates[at].with_id(kept.id));
     }
     out.sort_points();
 }

@@ -88,7 +88,7 @@ fn build_in_plane<N: Real>(
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
     if !stretch::build(pair, &frame, limit, out) {
         // A user's solid whose supporting feature is neither a point nor a side.
-        settle_witness(pair, separation, out);
+        build_witness_manifold(pair, separation, out);
     }
 }
 
@@ -122,7 +122,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
     if !is_near {
         out.points.clear();
     } else if let Kind::Ball(_) = pair.first {
-        settle_witness(pair, separation, out);
+        build_witness_manifold(pair, separation, out);
     } else if let Kind::Plane(_) = pair.second {
         let tangents = <N::Algorithms>::tangents(&separation.normal);
         half_space::build(
@@ -138,7 +138,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
 }
 
 /// Builds the manifold of the nearest points alone.
-fn settle_witness<N: Space<D>, const D: usize>(
+fn build_witness_manifold<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     out: &mut RawManifold<N, D>,
@@ -279,7 +279,7 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
             (candidate.is_old(), candidate.distance)
         });
         candidates[chosen[deepest]].distance = distance;
-        ids::settle(candidates, &chosen, out);
+        ids::replace_points(candidates, &chosen, out);
     }
     out.normal = *choice.pose.normal;
 }

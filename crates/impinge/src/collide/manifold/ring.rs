@@ -240,7 +240,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
             dot(&spread::<S, N, V, 3>(simd, v), &arms).store(&mut block.flats[1]);
             self.blocks.push(block);
         }
-        self.settle(frame);
+        self.simplify(frame);
         self.find_sides::<S, V>(simd);
     }
 
@@ -266,7 +266,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 
     /// Simplifies a feature that has no extent in projection.
-    fn settle(&mut self, frame: &ContactFrame<N, 3>) {
+    fn simplify(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
         // Corners that coincide have no extent: merged, they may have one.
         let mut extent = if self.is_point() { None } else { self.extent(tolerance) };

@@ -121,7 +121,7 @@ impl<N: Real> Stretch<N> {
             length: N::ZERO,
             top: (N::ZERO, Vector::<N, 2>::zeros()),
         };
-        stretch.settle(&which.outward(frame), frame.tolerance);
+        stretch.simplify(&which.outward(frame), frame.tolerance);
         if stretch.rounding > N::ZERO {
             stretch.find_top(frame);
         }
@@ -131,7 +131,7 @@ impl<N: Real> Stretch<N> {
     /// Reduces a side without length to its first corner, with the id of the side; and one that is
     /// tilted too far, or lies along the normal, to its nearest corner.
     #[inline(always)]
-    fn settle(&mut self, outward: &Vector<N, 2>, tolerance: N) {
+    fn simplify(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
         // Long in projection. A side along the normal is not, but it has a length.
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;

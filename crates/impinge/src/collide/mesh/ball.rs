@@ -9,7 +9,7 @@ use super::part_contact::{self, Arena, PartContact, PartStatus, is_beside, is_ce
 use super::patch::Piece;
 use super::scene::Scene;
 use super::{
-    CompositeContacts, PartContacts, Query, Travelled, advanced, is_settled, middle_of_first,
+    CompositeContacts, PartContacts, Query, Travelled, advanced, is_resolved, middle_of_first,
     of_parts,
 };
 use crate::bounding_volume::Aabb;
@@ -41,11 +41,11 @@ pub(crate) fn update_on_surface<N: Real>(
     };
     arena.rounding = rounding;
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
-    if !is_settled(&part_contacts) {
+    if !is_resolved(&part_contacts) {
         let around = &contacts.around;
         let request = &rolling.request;
         let query = Query { between, is_self: false, around, reference: &reference, request };
-        query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
+        query.resolve_contacts(&Scene::new(between, around), &mut part_contacts, &mut arena);
     }
     contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
     true

@@ -131,7 +131,7 @@ fn follow<N: Space<3>>(
         // Over a corner or an edge of the grid.
         position.x = N::HALF;
     }
-    let mut lean = [Pose::identity(), random.turn::<N>()][random.pick(2)];
+    let mut tilt = [Pose::identity(), random.turn::<N>()][random.pick(2)];
     let request = ManifoldRequest::new(
         N::lit([0.002, 0.3][random.pick(2)]),
         N::lit([0.0, 0.2][random.pick(2)]),
@@ -140,7 +140,7 @@ fn follow<N: Space<3>>(
     let (mut quick, mut slow) = (CompositeContacts::default(), CompositeContacts::default());
     let (mut done, mut points) = (0, 0);
     for step in 0..STEPS {
-        let pose = under.compose(&Pose { translation: position, ..lean });
+        let pose = under.compose(&Pose { translation: position, ..tilt });
         let placed1 = Placed::of_pose(&pose, solid.geometry());
         let placed2 = Placed::of_pose(&under, ground.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
@@ -155,7 +155,7 @@ fn follow<N: Space<3>>(
         (done, points) = (done + usize::from(is_done), points + quick.len());
         position += random.vector::<N>() * N::lit(0.04);
         if random.pick(8) == 0 {
-            lean = random.turn::<N>();
+            tilt = random.turn::<N>();
         }
     }
     (done, points)

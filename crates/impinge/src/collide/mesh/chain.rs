@@ -10,7 +10,7 @@ use super::part_contact::{Arena, PartContact, PartStatus};
 use super::patch::Piece;
 use super::scene::Scene;
 use super::{
-    CompositeContacts, PartContacts, Query, Travelled, advanced, is_settled, middle_of_first,
+    CompositeContacts, PartContacts, Query, Travelled, advanced, is_resolved, middle_of_first,
     of_parts,
 };
 use crate::bounding_volume::{Aabb, BoundingVolume};
@@ -53,8 +53,8 @@ pub(crate) fn update_chain<N: Real>(
         reference: &reference,
         request: &chain.request,
     };
-    if !is_settled(&part_contacts) {
-        query.settle(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
+    if !is_resolved(&part_contacts) {
+        query.resolve_contacts(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
     }
     contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
     true

@@ -228,7 +228,7 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
 }
 
 /// Settling would change nothing: all hold, with faces of about one normal, and as near as the nearest.
-fn is_settled<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
+fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
     for contact in contacts {
@@ -322,7 +322,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
             }
         }
         let inside = self.take_inside(&mut contacts);
-        self.settle(&scene, &mut contacts, arena);
+        self.resolve_contacts(&scene, &mut contacts, arena);
         for piece in &inside {
             self.add_inside(&scene, piece, &mut contacts, arena);
         }
@@ -330,7 +330,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     }
 
     /// Settles which of the contacts hold.
-    fn settle(
+    fn resolve_contacts(
         &self,
         scene: &Scene<'_, N, D>,
         found: &mut [PartContact<N, D>],

@@ -229,22 +229,22 @@ fn of_surfaces<N: Space<D>, const D: usize>(
     let filtered = meeting.filtered_normals(scene, gap, tolerance, over);
     let normal = placed.outward(&gap.normal);
     let raw = arena.blank();
-    let mut status = match settled(placed, &filtered, &normal) {
-        Settled::Nothing => return None,
-        Settled::Refused => PartStatus::Left,
-        Settled::Found(normal) | Settled::Forced(normal, _)
+    let mut status = match combined_normal(placed, &filtered, &normal) {
+        CombinedNormal::Nothing => return None,
+        CombinedNormal::Refused => PartStatus::Left,
+        CombinedNormal::Found(normal) | CombinedNormal::Forced(normal, _)
             if meeting.leads_into_body(scene, &normal) =>
         {
             PartStatus::Left
         }
-        Settled::Forced(..) if is_beside(over) => PartStatus::Left,
-        Settled::Found(normal) => {
+        CombinedNormal::Forced(..) if is_beside(over) => PartStatus::Left,
+        CombinedNormal::Found(normal) => {
             let witness = Separation { normal: placed.inward(&normal), ..*gap };
             let over = over.filter(|over| is_certain(*over, &filtered[1]));
             build_touching(&pair, &witness, over, (tolerance, request), raw);
             PartStatus::Own
         }
-        Settled::Forced(face, status) => {
+        CombinedNormal::Forced(face, status) => {
             // What touches but for rounding does not reach below the face, unless it does from inside of a body.
             let is_below = || {
                 distance <= N::ZERO && normal.dot(&face) < N::lit(BEHIND) && scene.are_bodies(parts)
@@ -338,7 +338,7 @@ pub(super) fn overlooks<N: Real, const D: usize>(
 }
 
 /// What both surfaces together say.
-enum Settled<N: Real, const D: usize> {
+enum CombinedNormal<N: Real, const D: usize> {
     Nothing,
     Refused,
     /// A contact with this normal at the witness.
@@ -349,11 +349,11 @@ enum Settled<N: Real, const D: usize> {
 
 /// Combines the results of both surfaces; `normal` is the one that they are about. All in the frame of
 /// the first shape.
-fn settled<N: Space<D>, const D: usize>(
+fn combined_normal<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],
     normal: &Vector<N, D>,
-) -> Settled<N, D> {
+) -> CombinedNormal<N, D> {
     use FilteredNormal::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
     let of_second = |face: &Vector<N, D>| -placed.in_first_frame(face);
     let status = if filtered.iter().any(|filtered| matches!(filtered, Beyond(_))) {
@@ -362,17 +362,17 @@ fn settled<N: Space<D>, const D: usize>(
         PartStatus::Snapped
     };
     match filtered {
-        [Nothing, _] | [_, Nothing] => Settled::Nothing,
+        [Nothing, _] | [_, Nothing] => CombinedNormal::Nothing,
         [Snapped(face1) | Beyond(face1), Snapped(face2) | Beyond(face2)] => {
             let face2 = of_second(face2);
             let is_first_nearer = face1.dot(normal) > face2.dot(normal);
-            Settled::Forced(if is_first_nearer { *face1 } else { face2 }, status)
+            CombinedNormal::Forced(if is_first_nearer { *face1 } else { face2 }, status)
         }
-        [_, Snapped(face) | Beyond(face)] => Settled::Forced(of_second(face), status),
-        [Snapped(face) | Beyond(face), _] => Settled::Forced(*face, status),
-        [Refused, _] | [_, Refused] => Settled::Refused,
-        [_, Face(face)] => Settled::Found(of_second(face)),
-        [Face(face), _] => Settled::Found(*face),
-        [Admitted, Admitted] => Settled::Found(*normal),
+        [_, Snapped(face) | Beyond(face)] => CombinedNormal::Forced(of_second(face), status),
+        [Snapped(face) | Beyond(face), _] => CombinedNormal::Forced(*face, status),
+        [Refused, _] | [_, Refused] => CombinedNormal::Refused,
+        [_, Face(face)] => CombinedNormal::Found(of_second(face)),
+        [Face(face), _] => CombinedNormal::Found(*face),
+        [Admitted, Admitted] => CombinedNormal::Found(*normal),
     }
 }

@@ -189,11 +189,13 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         (patch, old): (&Patch<N, D>, &PatchPoint<N, D>),
         piece: usize,
     ) -> Option<usize> {
-        let names = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
-        let (features, Piece { normal, parts, points }) = (names(&old.raw), &self.pieces[piece]);
-        let mut heirs = points.clone().filter(|&at| names(&self.points[at]) == features);
+        let features_of = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
+        let (features, Piece { normal, parts, points }) =
+            (features_of(&old.raw), &self.pieces[piece]);
+        let mut heirs = points.clone().filter(|&at| features_of(&self.points[at]) == features);
         let heir = heirs.next()?;
-        let is_twin = |at: &&PatchPoint<N, D>| at.parts == old.parts && names(&at.raw) == features;
+        let is_twin =
+            |at: &&PatchPoint<N, D>| at.parts == old.parts && features_of(&at.raw) == features;
         if heirs.next().is_some() {
             return None;
         }

@@ -286,10 +286,14 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
             if self.inner == 0 { (-outward, [low, high]) } else { (outward, [high, low]) };
         let [point1, point2] = points;
         let separation = Separation { distance: -depth, normal, point1, point2 };
-        let mut named = parts;
-        named[self.inner] = deepest;
-        let local = between.parts(named).in_first_part(&separation);
-        depth.is_finite_number().then_some(PartSeparation { separation, local, parts: named })
+        let mut deepest_parts = parts;
+        deepest_parts[self.inner] = deepest;
+        let local = between.parts(deepest_parts).in_first_part(&separation);
+        depth.is_finite_number().then_some(PartSeparation {
+            separation,
+            local,
+            parts: deepest_parts,
+        })
     }
 }
 

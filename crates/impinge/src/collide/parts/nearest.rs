@@ -30,9 +30,9 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     if let Some(parts) = first {
         PairVisitor::visit(&mut nearest, parts);
     }
-    let is_settled =
-        (wanted == Wanted::Touching && nearest.settles_touching()) || nearest.settles_apart();
-    if !is_settled {
+    let is_decided =
+        (wanted == Wanted::Touching && nearest.finds_touching()) || nearest.finds_apart();
+    if !is_decided {
         visit_near_pairs(between, &mut nearest);
     }
     if between.has_bodies() {
@@ -52,7 +52,7 @@ struct NearestPart<'a, N: Real, const D: usize> {
 impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns true if
     /// the search is settled: there is a contact, or `limit` admits nothing else.
-    fn settles_touching(&mut self) -> bool {
+    fn finds_touching(&mut self) -> bool {
         let (between, reach) = (self.between, min(self.limit, N::ZERO));
         let mut touching = TouchingPart { nearest: self, reach };
         let is_searched = each_meeting(between, reach, Meetings::Any, &mut touching);
@@ -61,7 +61,7 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
 
     /// Searches two composites for their nearest parts. Returns true if these are apart, so that
     /// they are the wanted pair; parts that overlap need the search by depth.
-    fn settles_apart(&mut self) -> bool {
+    fn finds_apart(&mut self) -> bool {
         let (between, reach) = (self.between, self.limit());
         reach > N::ZERO
             && each_meeting(between, reach, Meetings::Nearest, self)

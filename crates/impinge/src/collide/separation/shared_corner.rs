@@ -21,7 +21,7 @@ const ROUNDING: f64 = 64.0;
 /// Returns `found`, or a distance of zero at a shared corner. Pairs of two boxes stay as they are:
 /// their distance is a difference of their numbers.
 #[inline]
-pub(super) fn settled<N: Real, const D: usize>(
+pub(super) fn with_shared_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     found: Separation<N, D>,
 ) -> Separation<N, D> {

@@ -94,7 +94,7 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
 
     /// The tilt of the supporting face: the length of the difference of its normal and the
     /// contact's; 2, the maximum, without such a face.
-    pub(super) fn lean(&self) -> N {
+    pub(super) fn tilt(&self) -> N {
         let normal = match &self.facing {
             SideFacing::Boundary(normal) => Some(*normal),
             SideFacing::Part(part) => part.normal,
@@ -123,8 +123,9 @@ fn level_edge<N: Real, const D: usize>(
     outward: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
     let sides = (0..feature.side_ids.len()).filter_map(|index| along(feature, index));
-    let lean = |side: &Vector<N, D>| side.dot(outward).abs();
-    let level = sides.reduce(|best, side| if lean(&side) < lean(&best) { side } else { best });
+    let component = |side: &Vector<N, D>| side.dot(outward).abs();
+    let level =
+        sides.reduce(|best, side| if component(&side) < component(&best) { side } else { best });
     level.filter(|side| is_level(side, outward))
 }
 
@@ -156,9 +157,9 @@ fn line<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     id: FeatureId,
 ) -> NeighborhoodGeometry<N, D> {
-    let mut named = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
+    let mut matching = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
     // A round cap is represented by a polygon whose sides all have the id of the rim.
-    let (Some((index, _)), None) = (named.next(), named.next()) else {
+    let (Some((index, _)), None) = (matching.next(), matching.next()) else {
         return NeighborhoodGeometry::Point;
     };
     along(feature, index).map_or(NeighborhoodGeometry::Point, NeighborhoodGeometry::Line)

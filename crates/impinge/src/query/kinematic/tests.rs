@@ -198,8 +198,8 @@ fn capsules_segments_and_cylinders() {
     follow([&segment, &capsule], crossing, |a, b| matches!((a, b), (Edge(_), Edge(_))));
     // The edge of the box along y, in front of the capsule, which leans across it.
     let corner = at(0.9, 0.0, 0.0, [0.0, std::f64::consts::FRAC_PI_4, 0.0]);
-    let leaning = at(0.0, 0.0, 0.0, [0.7, 0.0, 0.0]);
-    follow([&capsule, &cuboid], Pose::relative(&leaning, &corner), |a, b| {
+    let tilted = at(0.0, 0.0, 0.0, [0.7, 0.0, 0.0]);
+    follow([&capsule, &cuboid], Pose::relative(&tilted, &corner), |a, b| {
         matches!((a, b), (Edge(_), Edge(_)))
     });
     let lying = at(0.0, 0.74, 0.0, [0.0, 0.0, std::f64::consts::FRAC_PI_2]);

@@ -2,7 +2,7 @@
 
 use super::ball::{around, roots};
 use super::clip::in_order;
-use super::segment::{RayNames, span as segment_span};
+use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit, unit_or};
@@ -18,7 +18,7 @@ pub(super) fn span<N: Real, const D: usize>(
 ) -> Option<Span<N, D>> {
     let (segment, radius) = (capsule.segment(), capsule.radius());
     if radius == N::ZERO {
-        return segment_span([segment.a(), segment.b()], RayNames::SEGMENT, ray);
+        return segment_span([segment.a(), segment.b()], RayFeatures::SEGMENT, ray);
     }
     let at_a = around(segment.a(), radius, FeatureId::Vertex(0), ray);
     let at_b = around(segment.b(), radius, FeatureId::Vertex(1), ray);

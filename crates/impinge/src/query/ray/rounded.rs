@@ -19,17 +19,18 @@ pub(super) fn span<N: Space<D>, const D: usize>(
         return <N::Algorithms>::ray_span(inner.0, ray);
     }
     let ball = Ball::new(N::ZERO);
-    let see = |point: &Vector<N, D>| {
+    let distance = |point: &Vector<N, D>| {
         let pose12 = Pose::from_translation(-point);
         let pair = Pair { first: Kind::Ball(&ball), second: Kind::Rounded(solid), pose12 };
         let found = separation(&pair, N::INFINITY)?;
         Some((found.distance, -found.normal))
     };
-    let name = |point: &Vector<N, D>, _: &Vector<N, D>| {
+    let feature = |point: &Vector<N, D>, _: &Vector<N, D>| {
         <N::Algorithms>::surface_point(inner.0, &Point::from(*point)).feature
     };
     let radius = solid.reach() + solid.rounding();
-    RaySolid { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)
+    RaySolid { distance: &distance, feature: &feature, radius, precision: precision(inner) }
+        .span(ray)
 }
 
 /// The accuracy of point distances, as a fraction of the size: closed forms are exact up to

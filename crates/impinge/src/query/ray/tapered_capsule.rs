@@ -2,7 +2,7 @@
 
 use super::ball::around;
 use super::clip::in_order;
-use super::segment::{RayNames, span as segment_span};
+use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit_or};
@@ -16,10 +16,10 @@ pub(super) fn span<N: Real, const D: usize>(
 ) -> Option<Span<N, D>> {
     if capsule.radii() == [N::ZERO; 2] {
         let segment = capsule.segment();
-        return segment_span([segment.a(), segment.b()], RayNames::SEGMENT, ray);
+        return segment_span([segment.a(), segment.b()], RayFeatures::SEGMENT, ray);
     }
-    let ball = |end: usize, name| {
-        around(capsule.end(end), capsule.radii()[end], FeatureId::Vertex(name), ray)
+    let ball = |end: usize, index| {
+        around(capsule.end(end), capsule.radii()[end], FeatureId::Vertex(index), ray)
     };
     let Some(taper) = capsule.taper() else {
         return if capsule.larger_end() == 0 { ball(0, 0) } else { ball(1, 1) };

@@ -106,7 +106,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// The id of a part.
-    fn named(part: HullPart) -> FeatureId {
+    fn id_of(part: HullPart) -> FeatureId {
         match part {
             HullPart::Face(face) => FeatureId::Face(face),
             HullPart::Side(side) => Self::side_id(side),
@@ -139,9 +139,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
                 let [from, to] = *self.face_vertices(&self.faces[face as usize]) else {
                     return None;
                 };
-                let named =
+                let with_id =
                     |vertex: u32| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
-                Some((FeatureId::Face(face), [named(from), named(to)]))
+                Some((FeatureId::Face(face), [with_id(from), with_id(to)]))
             }
             HullPart::Vertex(_) => None,
         }
@@ -223,10 +223,10 @@ impl<N: Real> Polytope<N, 2> {
         let (side, to) = if is_after { (vertex, after) } else { (before, vertex) };
         let slope = if is_after { slope_after } else { slope_before };
         let normal = Vector::<N, 2>::new(normals[0][side], normals[1][side]);
-        let (tilt, named) =
+        let (tilt, with_id) =
             (Tilt::usual(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
         if tilt.admits_face(&normal, direction) || tilt.admits(slope * slope) {
-            Shown::side(FeatureId::Face(count32(side)), [named(side), named(to)])
+            Shown::side(FeatureId::Face(count32(side)), [with_id(side), with_id(to)])
         } else {
             Shown::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
         }
@@ -237,7 +237,7 @@ impl<N: Real> Polytope<N, 3> {
     /// The id of the [`SupportMap::core_feature`].
     #[inline]
     pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
-        Self::named(self.part_toward(direction, Tilt::usual()))
+        Self::id_of(self.part_toward(direction, Tilt::usual()))
     }
 
     /// Fills a blank ring with face `index`. Returns false if the face has more corners than a ring
@@ -250,8 +250,8 @@ impl<N: Real> Polytope<N, 3> {
         }
         (ring.id, ring.normal) = (FeatureId::Face(index), face.normal);
         for (&vertex, &side) in vertices.iter().zip(sides) {
-            let names = [FeatureId::Vertex(vertex), Self::side_id(side)];
-            ring.push(&self.vertices[vertex as usize], names);
+            let ids = [FeatureId::Vertex(vertex), Self::side_id(side)];
+            ring.push(&self.vertices[vertex as usize], ids);
         }
         true
     }
@@ -314,6 +314,6 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
     }
 
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
-        Self::named(self.part_toward(direction, Tilt::least()))
+        Self::id_of(self.part_toward(direction, Tilt::least()))
     }
 }

@@ -83,7 +83,7 @@ impl<N: Real> Cone<N> {
 
     /// The sine of the slope, along a unit vector, of the generating line that faces it: positive
     /// if the apex lies farther along. `None` for a point.
-    fn lean(&self, direction: &Vector<N, 3>) -> Option<N> {
+    fn sine(&self, direction: &Vector<N, 3>) -> Option<N> {
         let line = Vector::<N, 2>::new(-self.radius, N::TWO * self.half_height);
         let (line, _) = unit(&line)?;
         Some(line.x * radial_of(direction).norm() + line.y * direction.y)
@@ -118,11 +118,11 @@ impl<N: Real> Cone<N> {
             return None;
         }
         let (apex, rim) = (FeatureId::Vertex(0), FeatureId::Edge(0));
-        let lean = self.lean(direction).unwrap_or(N::ZERO);
-        Some(if Tilt::usual().admits(lean * lean) && self.half_height > N::ZERO {
+        let sine = self.sine(direction).unwrap_or(N::ZERO);
+        Some(if Tilt::usual().admits(sine * sine) && self.half_height > N::ZERO {
             let ends = [(rim, self.base().rim_toward(direction)), (apex, self.apex())];
             RoundPart::Line(FeatureId::Face(1), ends)
-        } else if lean > N::ZERO {
+        } else if sine > N::ZERO {
             RoundPart::Point(apex, self.apex())
         } else {
             RoundPart::Point(rim, self.base().rim_toward(direction))

@@ -97,13 +97,13 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
             free |= u32::from(point[axis].abs() < half - noise) << axis;
         }
         let part = CuboidPart::<D> { free, corner: signs(&point.coords) };
-        (free != CuboidPart::<D>::ALL).then(|| part.name())
+        (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
     /// The id of a part from `2 D` bits: its free axes, and above them its positive ones.
     #[inline]
-    pub(crate) const fn part_named(bits: u8) -> FeatureId {
-        CuboidPart::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
+    pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
+        CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
     }
 }
 
@@ -136,8 +136,9 @@ impl<N: Real, const D: usize> FacingPart<N, D> {
         let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
         let axes =
             (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.part.free, axis));
-        let lean = |axis: usize| vector[axis].abs();
-        let level = axes.reduce(|best, axis| if lean(axis) < lean(best) { axis } else { best })?;
+        let component = |axis: usize| vector[axis].abs();
+        let level =
+            axes.reduce(|best, axis| if component(axis) < component(best) { axis } else { best })?;
         Some(axis_vector(level))
     }
 }
@@ -156,28 +157,28 @@ impl<const D: usize> CuboidPart<D> {
 
     /// The ids of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three
     /// dimensions.
-    const NAMES: [FeatureId; 64] = {
-        let mut names = [FeatureId::Vertex(0); 64];
+    const IDS: [FeatureId; 64] = {
+        let mut ids = [FeatureId::Vertex(0); 64];
         let mut bits = 0;
         while bits < 1 << (2 * D) {
             let free = bits & Self::ALL;
             if free != Self::ALL {
-                names[bits as usize] = Self { free, corner: bits >> D }.name();
+                ids[bits as usize] = Self { free, corner: bits >> D }.id();
             }
             bits += 1;
         }
-        names
+        ids
     };
 
     /// The supporting feature for a unit vector. Frees axes, the smallest component first, while
     /// the tilt admits the sum of their squares; equals the rule for the flattest edge and its most
     /// aligned face.
     pub(in crate::shape) fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
-        let (mut free, mut leans) = (0, N::ZERO);
+        let (mut free, mut sine_squared) = (0, N::ZERO);
         for _ in 1..D {
             let Some(axis) = weakest(direction, free) else { break };
-            leans += direction[axis] * direction[axis];
-            if !tilt.admits(leans) {
+            sine_squared += direction[axis] * direction[axis];
+            if !tilt.admits(sine_squared) {
                 break;
             }
             free |= 1 << axis;
@@ -212,7 +213,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// The id by the numbering documented at [`Cuboid`].
-    pub(in crate::shape) const fn name(self) -> FeatureId {
+    pub(in crate::shape) const fn id(self) -> FeatureId {
         let dimension = self.dimension();
         let index = if dimension == 0 {
             self.corner
@@ -228,7 +229,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// The part with an id; `None` if the box has no such part.
-    fn named(id: FeatureId) -> Option<Self> {
+    fn of_id(id: FeatureId) -> Option<Self> {
         let part = match id {
             FeatureId::Vertex(corner) => Self { free: 0, corner },
             FeatureId::Face(index) => {
@@ -243,7 +244,7 @@ impl<const D: usize> CuboidPart<D> {
                 Self { free: 1_u32.checked_shl(axis)?, corner }
             }
         };
-        (part.free <= Self::ALL && part.corner <= Self::ALL && part.name() == id).then_some(part)
+        (part.free <= Self::ALL && part.corner <= Self::ALL && part.id() == id).then_some(part)
     }
 
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
@@ -270,7 +271,7 @@ impl<const D: usize> CuboidPart<D> {
         let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
         while at < ring.count {
             let (from, to) = (ring.corners[at], ring.corners[(at + 1) % ring.count]);
-            ids[at] = Self { free: from ^ to, corner: from }.name();
+            ids[at] = Self { free: from ^ to, corner: from }.id();
             at += 1;
         }
         ids
@@ -297,7 +298,7 @@ impl<const D: usize> CuboidPart<D> {
             let mut corner = 0;
             while corner < 1 << D {
                 let part = Self { free: 1 << axis, corner };
-                if let FeatureId::Edge(index) = part.name() {
+                if let FeatureId::Edge(index) = part.id() {
                     let ring = part.ring();
                     edges[index as usize] = Some([ring.corners[0], ring.corners[1]]);
                 }
@@ -397,7 +398,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 
     fn fill(&self, part: CuboidPart<D>, out: &mut Feature<N, D>) {
         out.clear();
-        out.id = part.name();
+        out.id = part.id();
         let (ring, side_ids) = match out.id {
             FeatureId::Face(index) => CuboidPart::<D>::FACES[index as usize],
             _ => (part.ring(), CuboidPart::<D>::side_ids(&part.ring())),
@@ -417,7 +418,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 
     #[track_caller]
     fn part(id: FeatureId, dimension: usize) -> CuboidPart<D> {
-        match CuboidPart::named(id) {
+        match CuboidPart::of_id(id) {
             Some(part) if part.dimension() == dimension => part,
             _ => panic!("a cuboid has no {} named {id:?}", FeatureId::word::<D>(dimension)),
         }
@@ -428,14 +429,14 @@ impl<N: Real> Cuboid<N, 2> {
     /// See [`Shown::of`]; `None` if the side has no length.
     pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
         let part = CuboidPart::<2>::facing(direction, Tilt::usual());
-        let named = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
-        let FeatureId::Face(index) = part.name() else {
-            let (id, point) = named(part.corner);
+        let with_id = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
+        let FeatureId::Face(index) = part.id() else {
+            let (id, point) = with_id(part.corner);
             return Some(Shown::vertex(id, point));
         };
         let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
         let [from, to, ..] = CuboidPart::<2>::FACES[index as usize].0.corners;
-        (!is_flat).then(|| Shown::side(FeatureId::Face(index), [named(from), named(to)]))
+        (!is_flat).then(|| Shown::side(FeatureId::Face(index), [with_id(from), with_id(to)]))
     }
 }
 
@@ -461,7 +462,7 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
-        match CuboidPart::<D>::named(id) {
+        match CuboidPart::<D>::of_id(id) {
             Some(part) => part.normal(),
             None => panic!("a cuboid has no feature named {id:?}"),
         }
@@ -476,7 +477,7 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
-        CuboidPart::facing(direction, Tilt::least()).name()
+        CuboidPart::facing(direction, Tilt::least()).id()
     }
 }
 

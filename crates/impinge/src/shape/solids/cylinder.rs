@@ -153,8 +153,8 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
             Some(part) => part.fill(out),
             None => {
                 let (side, y) = self.end_toward(direction);
-                let names = [FeatureId::Face(side), FeatureId::Edge(side)];
-                self.disk(y).fill_polygon(names[0], names[1], direction, out);
+                let ids = [FeatureId::Face(side), FeatureId::Edge(side)];
+                self.disk(y).fill_polygon(ids[0], ids[1], direction, out);
             }
         }
     }

@@ -268,7 +268,7 @@ mod tests {
                 assert!((opposite - face.vertices[0]).dot(&normal) < 0.0, "outward: {face:?}");
             }
             for (index, ends) in (0..).zip(EDGES) {
-                let found = solid.edge(FeatureId::Edge(index)).map(|(name, _)| name);
+                let found = solid.edge(FeatureId::Edge(index)).map(|(id, _)| id);
                 assert_eq!(found, ends.map(FeatureId::Vertex), "edge {index}");
             }
         }

@@ -78,11 +78,11 @@ impl<N: Real> FlatOutline<N> {
 
     /// Writes a side, or the vertex if there is only one.
     fn fill_side(&self, side: usize, out: &mut Feature<N, 3>) {
-        let named = |at: usize| (FeatureId::Vertex(self.ring[at]), self.points[at]);
+        let with_id = |at: usize| (FeatureId::Vertex(self.ring[at]), self.points[at]);
         if self.ring.len() == 1 {
-            return out.set_point(named(0).0, named(0).1);
+            return out.set_point(with_id(0).0, with_id(0).1);
         }
-        out.set_segment(self.edge_id(side), [named(side), named(self.next(side))]);
+        out.set_segment(self.edge_id(side), [with_id(side), with_id(self.next(side))]);
     }
 
     /// Writes the whole outline, with the id of the face opposite to the corner that is not in the

@@ -36,7 +36,7 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
     }
 
     /// The squared component of a direction in the plane; `None` if the corners lie on a line.
-    fn lean_squared(&self, direction: &Vector<N, D>) -> Option<N> {
+    fn squared_sine(&self, direction: &Vector<N, D>) -> Option<N> {
         let (along, rise) = (self.along.dot(direction), self.rise?.dot(direction));
         Some(along * along + rise * rise)
     }
@@ -105,7 +105,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         let Some(span) = TriangleSpan::of(self.corners()) else {
             return out.set_point(vertex_id(0), self.corners()[0]);
         };
-        if span.lean_squared(direction).is_some_and(|lean| tilt.admits(lean)) {
+        if span.squared_sine(direction).is_some_and(|sine_squared| tilt.admits(sine_squared)) {
             return self.fill_polygon(&span, direction, out);
         }
         let (side, slope) = self.flattest_side(&span, direction);

@@ -97,8 +97,8 @@ impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
             return Some(false);
         }
         let cosine = own.dot(self.normal);
-        let is_leaning = N::ONE - cosine * cosine > N::lit(2.0 * FLAT_SINE * FLAT_SINE);
-        ((is_leaning || is_bent) && !self.has_level && !is_one_sided).then_some(true)
+        let is_tilted = N::ONE - cosine * cosine > N::lit(2.0 * FLAT_SINE * FLAT_SINE);
+        ((is_tilted || is_bent) && !self.has_level && !is_one_sided).then_some(true)
     }
 }
 
@@ -110,8 +110,8 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     /// none.
     own: Vector<N, D>,
     /// The component of the normal along the face or segment that asks.
-    lean: Vector<N, D>,
-    /// A piece lies on the side that the normal tilts to if a direction into it rises along `lean`
+    tilt: Vector<N, D>,
+    /// A piece lies on the side that the normal tilts to if a direction into it rises along `tilt`
     /// by more than `room`.
     room: N,
     /// The normal is that of the asking face or segment, and all pieces are coplanar with this,
@@ -140,7 +140,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
     /// of a rim.
     pub(in crate::shape) fn along(mut self, edge: &Vector<N, D>) -> Self {
         if let Some((along, _)) = unit(edge) {
-            self.room -= along.dot(&self.lean).abs();
+            self.room -= along.dot(&self.tilt).abs();
         }
         self
     }
@@ -151,11 +151,11 @@ impl<N: Real, const D: usize> Seam<N, D> {
         Self::new(own, normal, own * along, is_flat(along))
     }
 
-    fn new(own: Vector<N, D>, normal: &Vector<N, D>, lean: Vector<N, D>, is_flat: bool) -> Self {
+    fn new(own: Vector<N, D>, normal: &Vector<N, D>, tilt: Vector<N, D>, is_flat: bool) -> Self {
         Self {
             normal: *normal,
             own,
-            lean,
+            tilt,
             room: slack(),
             is_flat,
             is_hemmed: false,
@@ -192,7 +192,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
         let (own, flatness) = (rise(&self.normal), front.abs());
         self.is_in_cone &= own <= slack();
         self.is_flat &= is_level(line.dot(&self.own));
-        self.is_hemmed |= self.is_flat && rise(&self.lean) > self.room;
+        self.is_hemmed |= self.is_flat && rise(&self.tilt) > self.room;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
             // A piece that was added twice has its front up if it has in either.

@@ -145,12 +145,12 @@ impl<N: Real> LaneClip<'_, N> {
         if !self.has(in_triangle.is_on[vertex]) {
             return None;
         }
-        let named = |corner: usize| {
+        let with_ids = |corner: usize| {
             let number = [0, 1, 2][corner];
             (self.corner(corner), FeatureId::Vertex(number), FeatureId::Edge(number))
         };
         let sides = (0..3).filter(|side| self.has(in_triangle.on(vertex, *side)));
-        self.part_with(at, sides, |side| [named(side), named((side + 1) % 3)])
+        self.part_with(at, sides, |side| [with_ids(side), with_ids((side + 1) % 3)])
     }
 
     /// The side or corner of the face that a corner of the triangle faces.
@@ -159,9 +159,9 @@ impl<N: Real> LaneClip<'_, N> {
         if !self.has(in_face.is_on[corner]) {
             return None;
         }
-        let named = |side: usize| (self.clip.vertex(side), ring.ids[side], ring.sides[side]);
+        let with_ids = |side: usize| (self.clip.vertex(side), ring.ids[side], ring.sides[side]);
         let sides = (0..ring.count).filter(|side| self.has(in_face.on(corner, *side)));
-        self.part_with(at, sides, |side| [named(side), named((side + 1) % ring.count)])
+        self.part_with(at, sides, |side| [with_ids(side), with_ids((side + 1) % ring.count)])
     }
 
     /// Sides that cross well inside both.

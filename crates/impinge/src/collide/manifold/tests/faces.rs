@@ -146,7 +146,7 @@ fn check<N: Real>(
         let foot = position - normal * distance;
         assert!(position.z.abs() <= room, "on the bottom: {position}");
         assert!(up.dot(&(foot - corners[0])).abs() <= room, "on the triangle: {foot}");
-        let is_at = |at: &Point<f64, 3>, names: &Point<f64, 3>| (at - names).norm() <= room;
+        let is_at = |at: &Point<f64, 3>, corner: &Point<f64, 3>| (at - corner).norm() <= room;
         match point.feature1 {
             FeatureId::Vertex(_) => {
                 assert!(
@@ -253,8 +253,8 @@ fn lanes_do_not_matter<N: Real>() {
                 let position = noise.vector::<N>(1.5);
                 Point::<N, 3>::new(position.x, position.y, position.z * N::lit(0.1) - N::HALF)
             });
-            let leaning = upward(&corners) + noise.vector::<N>(0.3);
-            (corners, leaning.normalize())
+            let tilted = upward(&corners) + noise.vector::<N>(0.3);
+            (corners, tilted.normalize())
         };
         let scene = Scene::new(&solid, (0..13).map(|_| triangle()).collect());
         for (turn, origin) in frames(&mut noise) {

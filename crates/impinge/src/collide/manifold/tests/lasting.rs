@@ -7,9 +7,9 @@ use crate::collide::{Pair, RawManifold};
 use crate::math::{Pose, Unit, Vector};
 use crate::shape::{Cuboid, FeatureId, Plane, Shape};
 
-type Names = BTreeMap<[FeatureId; 2], u32>;
+type IdsByFeatures = BTreeMap<[FeatureId; 2], u32>;
 
-fn names<N: Scene<D>, const D: usize>(raw: &RawManifold<N, D>) -> Names {
+fn ids_by_features<N: Scene<D>, const D: usize>(raw: &RawManifold<N, D>) -> IdsByFeatures {
     raw.points.iter().map(|point| ([point.feature1, point.feature2], point.id)).collect()
 }
 
@@ -18,7 +18,7 @@ fn names<N: Scene<D>, const D: usize>(raw: &RawManifold<N, D>) -> Names {
 /// of ids given.
 fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usize {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
-    let (mut raw, mut old) = (RawManifold::default(), Names::new());
+    let (mut raw, mut old) = (RawManifold::default(), IdsByFeatures::new());
     let mut last_given = None;
     let full = 1 << (D - 1);
     for step in 0..1000 {
@@ -33,7 +33,7 @@ fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usi
         let pose12 = Pose::relative(&pose1, &N::pose(below, [0.0; 3]));
         let pair = Pair { first: solid.geometry().0, second: ground.geometry().0, pose12 };
         N::build(&pair, &fact(&pair), &request(0.02, 0.0), &mut raw);
-        let new = names(&raw);
+        let new = ids_by_features(&raw);
         assert_eq!(new.len(), raw.points.len(), "no two points share their features");
         assert_eq!(new.len(), full, "all corners, step {step}: {raw:?}");
         for (features, id) in &new {
@@ -63,14 +63,14 @@ fn on_box<N: Scene<D>, const D: usize>(reach: f64) -> usize {
 }
 
 #[test]
-fn a_sliding_box_keeps_its_names() {
+fn a_sliding_box_keeps_its_ids() {
     assert_eq!([on_plane::<f32, 2>(), on_plane::<f64, 2>()], [2; 2], "two corners in 2D");
     assert_eq!([on_plane::<f32, 3>(), on_plane::<f64, 3>()], [4; 2], "four corners in 3D");
     assert_eq!([on_box::<f32, 2>(4.0), on_box::<f64, 3>(4.0)], [2, 4], "on a large box");
 }
 
 #[test]
-fn a_box_sliding_over_an_edge_keeps_its_names_on_new_features() {
+fn a_box_sliding_over_an_edge_keeps_its_ids_on_new_features() {
     assert_eq!(on_box::<f32, 2>(0.6), 2, "the corner that leaves goes on as the point on the edge");
     assert!(on_box::<f32, 3>(0.6) <= 6, "{} numbers", on_box::<f32, 3>(0.6));
     assert!(on_box::<f64, 3>(0.45) <= 6, "{} numbers", on_box::<f64, 3>(0.45));
@@ -100,7 +100,7 @@ fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
 }
 
 #[test]
-fn a_stack_at_rest_keeps_its_names() {
+fn a_stack_at_rest_keeps_its_ids() {
     for shift in [0.0, 0.25] {
         stack_rests::<f32, 2>(shift);
         stack_rests::<f64, 2>(shift);

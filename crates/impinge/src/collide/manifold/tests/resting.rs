@@ -194,8 +194,8 @@ fn crossed_boxes_touch_where_their_edges_cross() {
     assert!((separation.normal.y - 1.0).abs() < 1e-12, "{separation:?}");
     assert_eq!(raw.points.len(), 4, "{raw:?}");
     for point in &raw.points {
-        let names = (point.feature1, point.feature2);
-        assert!(matches!(names, (FeatureId::Edge(_), FeatureId::Edge(_))), "{point:?}");
+        let features = (point.feature1, point.feature2);
+        assert!(matches!(features, (FeatureId::Edge(_), FeatureId::Edge(_))), "{point:?}");
         assert!((point.point1.z.abs() - 0.5).abs() < 1e-12, "on a long edge of the lower");
         let other = pair.pose12.inverse_point(&point.point1);
         assert!((other.z.abs() - 0.5).abs() < 1e-12, "on a long edge of the upper");

@@ -65,9 +65,9 @@ fn around_end<N: Real, const D: usize>(
     let (outward, away) = unit(&(point - center)).unwrap_or((*fallback, N::ZERO));
     let is_certain = away > noise(center.coords.norm());
     let outward = if is_certain { outward } else { *fallback };
-    let name = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
+    let feature = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
     let nearest = center + outward * radius;
-    (Projection { distance: away - radius, outward, point: nearest }, name)
+    (Projection { distance: away - radius, outward, point: nearest }, feature)
 }
 
 #[cfg(test)]
@@ -85,17 +85,24 @@ mod tests {
     #[test]
     fn ends_side_and_inside() {
         let projected = |x: f64, y: f64| project(&club(), &P::new(0.0, y, x));
-        let (below, name) = projected(0.0, -3.0);
-        assert_eq!((below.distance, name), (2.0, FeatureId::Vertex(0)), "below the small end");
-        let (above, name) = projected(6.0, 13.0);
-        assert_eq!((above.distance, name), (6.0, FeatureId::Vertex(1)), "(6, 8) from its centre");
+        let (below, feature) = projected(0.0, -3.0);
+        assert_eq!((below.distance, feature), (2.0, FeatureId::Vertex(0)), "below the small end");
+        let (above, feature) = projected(6.0, 13.0);
+        assert_eq!(
+            (above.distance, feature),
+            (6.0, FeatureId::Vertex(1)),
+            "(6, 8) from its centre"
+        );
         let outward = Vector::<f64, 3>::new(0.0, -0.6, 0.8);
         let position = P::new(0.0, 2.5, 0.0) + outward * 12.5;
-        let (side, name) = project(&club(), &position);
-        assert!((side.distance - 10.0).abs() < 1e-14 && name == FeatureId::Edge(0), "{side:?}");
+        let (side, feature) = project(&club(), &position);
+        assert!((side.distance - 10.0).abs() < 1e-14 && feature == FeatureId::Edge(0), "{side:?}");
         assert!((side.outward - outward).norm() < 1e-15, "the normal of the side: {side:?}");
-        let (inside, name) = projected(0.0, 2.5);
-        assert!((inside.distance + 2.5).abs() < 1e-14 && name == FeatureId::Edge(0), "{inside:?}");
+        let (inside, feature) = projected(0.0, 2.5);
+        assert!(
+            (inside.distance + 2.5).abs() < 1e-14 && feature == FeatureId::Edge(0),
+            "{inside:?}"
+        );
     }
 
     #[test]
@@ -115,8 +122,8 @@ mod tests {
     #[test]
     fn a_ball_in_a_ball() {
         let one = TaperedCapsule::<f64, 2>::new(1.0, 5.0, 0.5);
-        let (projected, name) = project(&one, &Point::<f64, 2>::new(0.0, 7.0));
-        assert_eq!((projected.distance, name), (3.0, FeatureId::Vertex(0)), "around (0, -1)");
+        let (projected, feature) = project(&one, &Point::<f64, 2>::new(0.0, 7.0));
+        assert_eq!((projected.distance, feature), (3.0, FeatureId::Vertex(0)), "around (0, -1)");
         let (middle, _) = project(&one, &Point::<f64, 2>::new(0.0, -1.0));
         assert_eq!((middle.distance, middle.outward.x), (-5.0, 1.0), "the first axis");
     }

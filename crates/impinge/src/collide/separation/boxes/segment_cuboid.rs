@@ -42,7 +42,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
         SegmentResult::Beyond => None,
         SegmentResult::Found(parting) => {
             let found = segment.restored(&parting).rounded(radius, N::ZERO);
-            let found = shared_corner::settled(pair, found);
+            let found = shared_corner::with_shared_corner(pair, found);
             (found.distance <= limit).then_some(found)
         }
         SegmentResult::Unproved => general::of_flat_cores(pair, limit),

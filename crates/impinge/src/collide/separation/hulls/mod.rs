@@ -71,9 +71,8 @@ pub(super) const PLANE_BLOCKS: usize = 8;
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     match result(Level::new(), pair, limit) {
         SatResult::Beyond => None,
-        SatResult::Found(found) => {
-            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
-        }
+        SatResult::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
+            .filter(|found| found.distance <= limit),
         SatResult::Unproved => general::of_flat_cores(pair, limit),
     }
 }

@@ -44,7 +44,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     match result(Level::new(), pair, limit + radius) {
         SatResult::Beyond => None,
         SatResult::Found(found) => {
-            let found = shared_corner::settled(pair, found.rounded(radius, N::ZERO));
+            let found = shared_corner::with_shared_corner(pair, found.rounded(radius, N::ZERO));
             Some(found).filter(|found| found.distance <= limit)
         }
         SatResult::Unproved => general::of_flat_cores(pair, limit),

@@ -43,10 +43,10 @@ impl<'a, N: Real> Facing<'a, N> {
         simd: S,
     ) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
-        match self.settled() {
+        match self.clear_case() {
             None if gap <= N::ZERO => Some(self.overlapping()),
             None if gap.is_finite_number() => self.apart::<S, V>(simd),
-            settled => settled,
+            found => found,
         }
     }
 
@@ -54,7 +54,7 @@ impl<'a, N: Real> Facing<'a, N> {
     /// above it, the outlines certainly overlap, or corners next to the axis are the nearest
     /// points. In these cases the best normal of a side is enough as axis.
     #[inline(always)]
-    pub(in crate::collide::separation) fn settled(&self) -> Option<Separation<N, 2>> {
+    pub(in crate::collide::separation) fn clear_case(&self) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
         if !gap.is_finite_number() {
             return None;

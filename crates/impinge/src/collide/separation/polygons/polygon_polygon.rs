@@ -6,7 +6,7 @@
 //! positive, so the nearest points lie on the sides next to the best normal, ends included.
 //!
 //! Eight sides are tried at a time, each against all vertices of the other solid. If the best
-//! normal leads to the nearest points, as it mostly does ([`Facing::settled`]), the tips of sharp
+//! normal leads to the nearest points, as it mostly does ([`Facing::clear_case`]), the tips of sharp
 //! corners are skipped. The rest goes to the [general
 //! algorithm](crate::collide::separation::general): outlines with too many vertices, sides whose
 //! squared length is close to underflow or overflow, and nearest points that do not lie along the
@@ -64,9 +64,8 @@ pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
 ) -> Option<Separation<N, 2>> {
     match between(Level::new(), pair, limit) {
         OutlineResult::Beyond => None,
-        OutlineResult::Found(found) => {
-            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
-        }
+        OutlineResult::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
+            .filter(|found| found.distance <= limit),
         OutlineResult::Undecided => general::separation(pair, limit),
     }
 }
@@ -115,7 +114,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         return OutlineResult::Beyond;
     }
     let facing = Facing::of::<S, V>(simd, outlines, &sides, noise);
-    let found = match facing.settled() {
+    let found = match facing.clear_case() {
         Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
         None => {
             let is_known = known.is_some();

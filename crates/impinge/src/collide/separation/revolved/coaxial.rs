@@ -267,10 +267,10 @@ mod tests {
             if one.geometry().kind() > other.geometry().kind() {
                 continue;
             }
-            let [about, lean, offset] = [(); 3].mapped(|()| random.vector::<N>());
+            let [about, tilt, offset] = [(); 3].mapped(|()| random.vector::<N>());
             let up = if round % 2 == 0 { N::ZERO } else { N::lit(core::f64::consts::PI) };
             let turns =
-                [lean * N::lit(slight), Vector::<N, 3>::x() * up, Vector::<N, 3>::y() * about.y];
+                [tilt * N::lit(slight), Vector::<N, 3>::x() * up, Vector::<N, 3>::y() * about.y];
             let turn = turns.mapped(UnitQuaternion::from_scaled_axis);
             let rotation = (turn[0] * turn[1] * turn[2]).to_rotation_matrix().into_inner();
             let at = Vector::<N, 3>::y() * (about.x * N::HALF) + offset * N::lit(slight);

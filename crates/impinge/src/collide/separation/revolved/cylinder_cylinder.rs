@@ -180,9 +180,9 @@ impl<N: Real> CylinderView<N> {
     fn cap(&self) -> Tried<N> {
         let up = if self.center.y < N::ZERO { -N::ONE } else { N::ONE };
         let normal = Vector::<N, 3>::new(N::ZERO, up, N::ZERO);
-        let (lean, sine) = (self.axis.y, radial(&self.axis).norm());
+        let (cosine, sine) = (self.axis.y, radial(&self.axis).norm());
         let height = self.center.y * up
-            - lean.abs() * self.other.half
+            - cosine.abs() * self.other.half
             - sine * self.other.radius
             - self.own.half;
         let point = self.lowest_above_cap(&normal, sine);
@@ -200,16 +200,16 @@ impl<N: Real> CylinderView<N> {
     /// are lowest: then the middle of those above the cap. `sine` is that of the angle between the
     /// axes.
     fn lowest_above_cap(&self, normal: &Vector<N, 3>, sine: N) -> Vector<N, 3> {
-        let lean = normal.dot(&self.axis);
-        let end = if lean < N::ZERO { self.axis } else { -self.axis } * self.other.half;
+        let cosine = normal.dot(&self.axis);
+        let end = if cosine < N::ZERO { self.axis } else { -self.axis } * self.other.half;
         if sine * self.other.radius <= noise() {
             return self.over_disk(&(self.center + end));
         }
         // Direction down along the other cap: the normal minus its axial part, without a
         // difference.
-        let aside = radial(&self.axis) * (lean / sine * self.other.radius);
+        let aside = radial(&self.axis) * (cosine / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
-        if lean.abs() * self.other.half <= noise() {
+        if cosine.abs() * self.other.half <= noise() {
             let middle = self.center + down;
             let along = radial(&self.axis);
             let nearest = -radial(&middle).dot(&along) / along.norm_squared();
@@ -246,9 +246,9 @@ impl<N: Real> CylinderView<N> {
         let (away, sizes) = (away.abs(), self.own.radius + self.other.radius);
         let height = away - sizes;
         // Points where the common perpendicular meets the axes.
-        let (lean, along) = (self.axis.y, self.center.dot(&self.axis));
-        let at_own = (self.center.y - lean * along) / squared;
-        let at_other = (lean * self.center.y - along) / squared;
+        let (cosine, along) = (self.axis.y, self.center.dot(&self.axis));
+        let at_own = (self.center.y - cosine * along) / squared;
+        let at_other = (cosine * self.center.y - along) / squared;
         let (room1, room2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
         let is_between = room1 >= -noise::<N>() && room2 >= -noise::<N>();
         // The proof: a ball around a point between the axes, or one in each solid with radii that
@@ -302,7 +302,7 @@ impl<N: Real> CylinderView<N> {
     /// rate of motion as that turns; `None` for a tilted side, whose lowest point is not unique.
     fn lowest_beside(&self, normal: &Vector<N, 2>) -> Option<(Vector<N, 3>, N)> {
         let (out, across) = (lifted(normal), lifted(&Vector::<N, 2>::new(-normal.y, normal.x)));
-        let (lean, turn) = (self.axis.dot(&out), self.axis.dot(&across));
+        let (axial, turn) = (self.axis.dot(&out), self.axis.dot(&across));
         let squared = turn * turn + self.axis.y * self.axis.y;
         let is_resolved = squared > N::lit(16.0) * N::EPSILON;
         if !is_resolved {
@@ -310,13 +310,13 @@ impl<N: Real> CylinderView<N> {
         }
         let (cosine, radius) = (squared.sqrt(), self.other.radius);
         let aside = across * turn + Vector::<N, 3>::y() * self.axis.y;
-        let down = aside * (lean * radius / cosine) - out * (cosine * radius);
-        let ratio = lean * turn / cosine;
+        let down = aside * (axial * radius / cosine) - out * (cosine * radius);
+        let ratio = axial * turn / cosine;
         let bend = radius * (N::ONE - turn * turn - ratio * ratio) / cosine;
-        if lean.abs() * self.other.half <= noise() {
+        if axial.abs() * self.other.half <= noise() {
             return self.beside_parallel(&down).map(|point| (point, bend));
         }
-        let end = if lean < N::ZERO { self.axis } else { -self.axis } * self.other.half;
+        let end = if axial < N::ZERO { self.axis } else { -self.axis } * self.other.half;
         Some((self.center + end + down, bend))
     }
 
@@ -362,10 +362,10 @@ impl<N: Real> CylinderView<N> {
         } else {
             (self.other, self.center, self.axis)
         };
-        let lean = axis.dot(direction);
-        let (out, cosine) = unit(&(direction - axis * lean))?;
+        let axial = axis.dot(direction);
+        let (out, cosine) = unit(&(direction - axis * axial))?;
         let (out, _) = unit(&(out - axis * axis.dot(&out)))?;
-        let end = if lean < N::ZERO { -axis } else { axis } * size.half;
+        let end = if axial < N::ZERO { -axis } else { axis } * size.half;
         let along = cross(&axis, &out);
         Some(Rim { point: center + end + out * size.radius, along, bend: size.radius / cosine })
     }

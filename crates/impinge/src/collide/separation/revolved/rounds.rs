@@ -121,14 +121,15 @@ impl<N: Real> RoundView<N> {
 
     /// Tries side against side.
     fn sides(&self) -> Option<RevolvedFound<N>> {
-        let (lean, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
+        let (cosine, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
         let squared = self.axis.x * self.axis.x + self.axis.z * self.axis.z;
         if squared <= N::lit(16.0) * N::EPSILON {
             return None;
         }
         // The part in the plane of the axes follows from the angles of the normal with both axes.
         let up = Vector::<N, 3>::y();
-        let level = (up * (rise1 + rise2 * lean) - self.axis * (rise2 + rise1 * lean)) / squared;
+        let level =
+            (up * (rise1 + rise2 * cosine) - self.axis * (rise2 + rise1 * cosine)) / squared;
         let left = N::ONE - level.norm_squared();
         if left <= N::ZERO {
             return None;

@@ -184,7 +184,7 @@ fn an_arc_without_length_has_no_other_side() {
 /// A roof bent by less than the root of epsilon, and a cylinder on its ridge, tilted along the
 /// ridge by less still. The least depth is between the normals of the slopes, not at one of a face.
 fn a_column_on_a_roof<N: Real>() {
-    let (bend, lean) = (N::EPSILON.sqrt(), N::EPSILON.sqrt() / N::lit(6.0));
+    let (bend, tilt) = (N::EPSILON.sqrt(), N::EPSILON.sqrt() / N::lit(6.0));
     let (zero, one) = (N::ZERO, N::ONE);
     let corner = |x: N, y: N, z: N| Point::<N, 3>::new(x, y, z);
     let mut corners = vec![corner(one, zero, zero), corner(-one, zero, zero)];
@@ -193,7 +193,7 @@ fn a_column_on_a_roof<N: Real>() {
     }
     let column = Cylinder::new(N::HALF, N::lit(0.25));
     let shapes: Solids<N> = [Box::new(ConvexHull::from_points(&corners)), Box::new(column)];
-    let rotation = Matrix::<N, 3>::new(one, -lean, zero, lean, one, zero, zero, zero, one);
+    let rotation = Matrix::<N, 3>::new(one, -tilt, zero, tilt, one, zero, zero, zero, one);
     let translation = Vector::<N, 3>::new(zero, N::lit(0.4375), zero);
     let pair = pair_of(&shapes, Pose { rotation, translation });
     let found = separation(&pair, N::INFINITY).expect("no limit");
@@ -201,8 +201,8 @@ fn a_column_on_a_roof<N: Real>() {
     assert!(-found.distance <= up + N::lit(4.0) * N::EPSILON, "{found:?}, not {up}");
     let gap = max(N::lit(8.0) * N::EPSILON, N::lit(1e-12));
     let peak = OverlapPeaks { pair: &pair }.best(N::ONE, gap).expect("it is found");
-    let named = depth(&pair, &peak.normal);
-    assert!(named <= up + gap * N::TWO, "{named}, not {up}");
+    let at_normal = depth(&pair, &peak.normal);
+    assert!(at_normal <= up + gap * N::TWO, "{at_normal}, not {up}");
 }
 
 #[test]

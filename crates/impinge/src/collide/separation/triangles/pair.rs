@@ -40,9 +40,8 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     };
     match by_axes([first, second], &pair.pose12, limit) {
         Axes::Beyond => None,
-        Axes::Found(found) => {
-            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
-        }
+        Axes::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
+            .filter(|found| found.distance <= limit),
         Axes::Unproved => hulls::separation(pair, limit),
     }
 }

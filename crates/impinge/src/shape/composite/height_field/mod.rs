@@ -134,7 +134,7 @@ impl<N: Real, const D: usize> HeightField<N, D> {
     }
 
     /// The cache key of the field with its options.
-    fn named(&self) -> Revision {
+    fn revision_with_options(&self) -> Revision {
         self.revision.with(&[self.is_one_sided, self.keeps_internal_edges])
     }
 

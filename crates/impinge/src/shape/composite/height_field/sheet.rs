@@ -427,7 +427,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
     }
 
     fn revision(&self) -> Option<Revision> {
-        Some(self.named())
+        Some(self.revision_with_options())
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, 3>> {

@@ -80,10 +80,10 @@ impl<V> Boxes<V, 2> {
         M: SimdMask<S>,
     {
         let (r, t, zero) = (&self.rotation, &self.translation, V::all(simd, N::ZERO));
-        let leans = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
+        let abs_rotation = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
         let reach2: [V; 2] = filled(
             #[inline(always)]
-            |i| dot(&[leans[0][i], leans[1][i]], &self.half2),
+            |i| dot(&[abs_rotation[0][i], abs_rotation[1][i]], &self.half2),
         );
         let gaps: [V; 2] = filled(
             #[inline(always)]
@@ -97,7 +97,7 @@ impl<V> Boxes<V, 2> {
         let offset2 = [dot(&r[0], t), dot(&r[1], t)];
         let gaps: [V; 2] = filled(
             #[inline(always)]
-            |j| offset2[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
+            |j| offset2[j].abs() - self.half2[j] - dot(&abs_rotation[j], &self.half1),
         );
         let is = [offset2[0].simd_gt(zero), offset2[1].simd_ge(zero)];
         // The side of the second box is opposite to the normal: x is first only for left and below.

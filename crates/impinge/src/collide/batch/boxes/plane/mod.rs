@@ -8,14 +8,14 @@
 //!
 //!   byte `sides` of a pair, from bit 0 on: lower side is across y, and faces up; upper side is
 //!   across its own y, and on its positive side; lower side is the second box's; upper ends swapped;
-//!   beyond the prediction; slots are filled. `names` encodes bits 0..6 in a code.
+//!   beyond the prediction; slots are filled. `features` encodes bits 0..6 in a code.
 //! ```
 
 mod axis;
-mod names;
+mod features;
 mod sides;
 
-use self::names::SideNames;
+use self::features::SideFeatures;
 use self::sides::BoxSides;
 use super::admit::{Admission, Limits, Slots};
 use super::choose::SlotChoice;
@@ -99,13 +99,13 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
     }
 
     #[inline(always)]
-    fn settle<const L: usize>(
+    fn write_manifold<const L: usize>(
         found: &LaneSides<N, L>,
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 2>,
     ) -> bool {
-        found.settle(lane & (L - 1), max_points, raw)
+        found.write_manifold(lane & (L - 1), max_points, raw)
     }
 }
 
@@ -164,9 +164,9 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
 
     /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
-    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
-        let names = SideNames { sides: self.sides[lane], at_ends: self.at_ends[lane] };
-        let (is_apart, is_built) = (names.sides & 64 != 0, names.sides & 128 != 0);
+    fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
+        let features = SideFeatures { sides: self.sides[lane], at_ends: self.at_ends[lane] };
+        let (is_apart, is_built) = (features.sides & 64 != 0, features.sides & 128 != 0);
         if is_apart {
             raw.points.clear();
         } else if is_built {
@@ -181,7 +181,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
                 size: self.size[lane],
                 normal: &self.normal,
             };
-            choice.settle(&names, max_points.clamp(1, 2), raw);
+            choice.write_manifold(&features, max_points.clamp(1, 2), raw);
         }
         is_apart | is_built
     }

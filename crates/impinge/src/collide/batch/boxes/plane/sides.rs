@@ -264,9 +264,9 @@ impl<V, M> Upper<V, M> {
             },
         );
         let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
-        let (across, lean) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
+        let (across, sine) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
         // The limit of supporting features: `FACING_SINE_SQUARED`.
-        let is_aligned = (lean * lean).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
+        let is_aligned = (sine * sine).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
         let zero = V::all(simd, N::ZERO);
         let is_positive = across.simd_gt(zero);
         let half = either(axis.is_second, &boxes.half1, &boxes.half2);
@@ -293,7 +293,7 @@ impl<V, M> Upper<V, M> {
         let is_reversed = far.coordinate.simd_lt(near.coordinate);
         let ends = [in_order(is_reversed, far, near), in_order(is_reversed, near, far)];
         // Both hold, or neither: the far end faces the other box, the ends are exchanged.
-        let is_second_lower = is_reversed ^ !lean.simd_lt(zero);
+        let is_second_lower = is_reversed ^ !sine.simd_lt(zero);
         Self { is_own_y, is_positive, is_reversed, ends, is_second_lower, is_aligned }
     }
 }

@@ -12,7 +12,7 @@
 //!             6 -------------- 7
 //! ```
 //!
-//! `valid` says which of the 24 exist, so nothing is moved until all is known. `names` has the same
+//! `valid` says which of the 24 exist, so nothing is moved until all is known. `features` has the same
 //! order.
 
 use super::super::admit::{Admission, Limits, Slots};

@@ -11,12 +11,12 @@
 mod axis;
 mod clip;
 mod faces;
-mod names;
+mod features;
 mod shown;
 
 use self::clip::{Clip, Corners};
 use self::faces::FacesInLanes;
-use self::names::{BoxPairNames, FaceSide, parts_at};
+use self::features::{BoxPairFeatures, FaceSide, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::SlotChoice;
 use super::masks::per_pair;
@@ -99,13 +99,13 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
     }
 
     #[inline(always)]
-    fn settle<const L: usize>(
+    fn write_manifold<const L: usize>(
         found: &LaneFaces<N, L>,
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 3>,
     ) -> bool {
-        found.settle(lane & (L - 1), max_points, raw)
+        found.write_manifold(lane & (L - 1), max_points, raw)
     }
 }
 
@@ -156,15 +156,15 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
 
     /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
-    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
+    fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {
             raw.points.clear();
             return true;
         }
         let is_built = self.is_built >> lane & 1 == 1;
         if is_built {
-            let (choice, names) = self.choice(lane);
-            choice.settle(&names, max_points.max(1), raw);
+            let (choice, features) = self.choice(lane);
+            choice.write_manifold(&features, max_points.max(1), raw);
         }
         is_built
     }
@@ -194,7 +194,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
 
     /// Returns the candidates of one pair, and their names.
     #[inline(always)]
-    fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairNames) {
+    fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairFeatures) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
         let sides = FaceSides::of(bits);
         let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
@@ -208,7 +208,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
             size: self.size[lane],
             normal: &self.normal,
         };
-        (choice, BoxPairNames::new(&sides, bits, parts))
+        (choice, BoxPairFeatures::new(&sides, bits, parts))
     }
 }
 
