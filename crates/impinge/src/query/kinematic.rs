@@ -416,30 +416,30 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
     }
 
     /// A unit vector projected perpendicular to the lines and normalised.
-    fn upright(&self, usual: &Vector<N, D>) -> Vector<N, D> {
-        unit(&self.reject(usual)).map_or(*usual, |(upright, _)| upright)
+    fn upright(&self, fallback: &Vector<N, D>) -> Vector<N, D> {
+        unit(&self.reject(fallback)).map_or(*fallback, |(upright, _)| upright)
     }
 
     /// The unit vector of the shortest connection of two points that may slide along the lines, on
-    /// the side of `usual`. Returns `usual` itself, projected perpendicular, if the connection
+    /// the side of `fallback`. Returns `fallback` itself, projected perpendicular, if the connection
     /// vanishes or two lines leave no choice.
     fn connection(
         &self,
         point1: &Point<N, D>,
         point2: &Point<N, D>,
-        usual: &Vector<N, D>,
+        fallback: &Vector<N, D>,
     ) -> Vector<N, D> {
         if self.are_two {
-            return self.upright(usual);
+            return self.upright(fallback);
         }
         let Some((along, length)) = unit(&self.reject(&(point2 - point1))) else {
-            return self.upright(usual);
+            return self.upright(fallback);
         };
         let size = point1.coords.norm() + point2.coords.norm();
         if length <= N::lit(16.0) * N::EPSILON * size {
-            return self.upright(usual);
+            return self.upright(fallback);
         }
-        if along.dot(usual) < N::ZERO { -along } else { along }
+        if along.dot(fallback) < N::ZERO { -along } else { along }
     }
 }
 

@@ -59,8 +59,8 @@ impl<N: Real> Cuboid<N, 3> {
     /// Returns the id of the [`core_feature`](super::SupportMap::core_feature) of a box with a
     /// volume.
     #[inline]
-    pub(crate) fn part_shown(direction: &Vector<N, 3>) -> FeatureId {
-        CuboidPart::<3>::facing(direction, Tilt::usual()).id()
+    pub(crate) fn supporting_part(direction: &Vector<N, 3>) -> FeatureId {
+        CuboidPart::<3>::facing(direction, Tilt::default_limit()).id()
     }
 
     /// Fills a blank ring with face `index`. Returns false, with the ring unchanged, if the face
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn rings_are_the_faces_that_solids_show() {
+    fn rings_are_the_supporting_faces() {
         let (mut faces, mut parts, mut feature) = (0, [0; 3], Feature::default());
         let solids = [[1.0, 2.0, 3.0], [1.0, 0.0, 3.0], [0.0, 0.0, 1.0]];
         let corner = |at: usize| {
@@ -132,18 +132,18 @@ mod tests {
             for half in solids {
                 let cuboid = Cuboid::new(Vector::<f64, 3>::from(half));
                 cuboid.core_feature(&way, &mut feature);
-                let part = Cuboid::<f64, 3>::part_shown(&way);
+                let part = Cuboid::<f64, 3>::supporting_part(&way);
                 let ring = ring_of(part, |face, ring| cuboid.fill_ring(face, ring));
                 faces += usize::from(same(ring, &feature, "a box"));
             }
             hull.core_feature(&way, &mut feature);
-            let part = hull.part_shown(&way);
+            let part = hull.supporting_part(&way);
             let ring = ring_of(part, |face, ring| hull.fill_ring(face, ring));
             faces += usize::from(same(ring, &feature, "a hull"));
             let [a, b, c] = [corners[at % 8], corners[at / 8 % 8], corners[at / 64 % 8]];
             let triangle = Triangle::new(a, b, c);
             triangle.core_feature(&way, &mut feature);
-            if let Some(part) = triangle.part_shown(&way) {
+            if let Some(part) = triangle.supporting_part(&way) {
                 assert_eq!(part, feature.id, "a triangle shows {feature:?} to {way}");
                 if let FeatureId::Face(_) = part {
                     let mut ring = FaceRing::blank();

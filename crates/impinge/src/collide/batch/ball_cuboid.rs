@@ -52,8 +52,8 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let touched = pose12.inverse_point(&pose12.point(&clamped));
         radius.smaller(reach).store(&mut found.size);
         let is_thick = found.put_part(simd, [&touched, &half], noise);
-        let is_usual = is_outside & is_box & is_thick;
-        found.put(simd, inputs, (away - radius, is_usual), [&normal, &point1]);
+        let is_certain = is_outside & is_box & is_thick;
+        found.put(simd, inputs, (away - radius, is_certain), [&normal, &point1]);
     }
 
     #[inline(always)]

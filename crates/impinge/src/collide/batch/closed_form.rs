@@ -129,20 +129,20 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Stores the distances, normals and points on the first solid, and sets the masks. `is_usual`
+    /// Stores the distances, normals and points on the first solid, and sets the masks. `is_certain`
     /// are the lanes where they hold.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
         inputs: &Inputs<N, D, L>,
-        (distance, is_usual): (V, V::Mask),
+        (distance, is_certain): (V, V::Mask),
         [normal, point1]: [&[V; D]; 2],
     ) {
         let prediction = inputs.prediction::<S, V>(simd);
-        let is_usual = is_usual & is_finite(simd, distance);
-        self.is_apart = bits(distance.simd_gt(prediction) & is_usual);
-        self.is_found = bits(distance.simd_le(prediction) & is_usual);
+        let is_certain = is_certain & is_finite(simd, distance);
+        self.is_apart = bits(distance.simd_gt(prediction) & is_certain);
+        self.is_found = bits(distance.simd_le(prediction) & is_certain);
         distance.store(&mut self.gap);
         for axis in 0..D {
             normal[axis].store(&mut self.normal[axis]);

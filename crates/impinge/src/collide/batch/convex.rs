@@ -18,7 +18,8 @@ use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::core;
 use crate::collide::separation::segments::segment_segment::of_points;
 use crate::collide::separation::{
-    apart, distance_in_plane, distance_in_space, is_usual, separation_in_plane, separation_in_space,
+    apart, distance_in_plane, distance_in_space, is_square_in_range, separation_in_plane,
+    separation_in_space,
 };
 use crate::convex::Separation;
 use crate::math::lanes::{load, with_vectors};
@@ -192,7 +193,7 @@ impl<N: Real> SegmentPacket<N> {
     ) {
         let ends1: [[V; 3]; 2] = [load(simd, &ends[0][0]), load(simd, &ends[0][1])];
         let ends2: [[V; 3]; 2] = [load(simd, &ends[1][0]), load(simd, &ends[1][1])];
-        let (points, is_moderate) = nearest_of_segments(simd, &ends1, &ends2);
+        let (points, has_scale) = nearest_of_segments(simd, &ends1, &ends2);
         let between = minus(&points[1], &points[0]);
         let squared = dot(&between, &between);
         squared.sqrt().store(&mut self.distances);
@@ -202,7 +203,7 @@ impl<N: Real> SegmentPacket<N> {
             }
         }
         // Squared distances close to underflow or overflow are computed alone.
-        self.is_known = bits(is_moderate & is_usual(simd, squared));
+        self.is_known = bits(has_scale & is_square_in_range(simd, squared));
     }
 
     /// Applies `answer` to each lane with known nearest points.

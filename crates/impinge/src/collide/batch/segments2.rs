@@ -49,7 +49,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
         let radii = [inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1)];
         let apart = SegmentGap::of(simd, [&ends1, &ends2]);
-        let ((reach1, is_usual1), (reach2, is_usual2)) =
+        let ((reach1, is_in_range1), (reach2, is_in_range2)) =
             (farther(simd, &ends1), farther(simd, &local2));
         let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
@@ -72,7 +72,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
         contacts.store(found);
         line.tolerance.store(&mut found.tolerance);
         let is_apart = apart.is_known & line.distance.simd_gt(line.prediction);
-        let is_fit = apart.is_known & is_usual1 & is_usual2 & contacts.is_known;
+        let is_fit = apart.is_known & is_in_range1 & is_in_range2 & contacts.is_known;
         found.put(
             simd,
             inputs,

@@ -18,7 +18,7 @@ struct Case<N: Real, const D: usize> {
     solids: [Solid<N, D>; 2],
     request: ManifoldRequest<N>,
     /// The pair is to be updated.
-    is_due: bool,
+    is_pending: bool,
 }
 
 impl<N: Real, const D: usize> Case<N, D> {
@@ -33,7 +33,7 @@ impl<N: Real, const D: usize> Case<N, D> {
 struct Kept<'a, N: Real, const D: usize> {
     cases: &'a [Case<N, D>],
     /// Indices of the cases to update.
-    due: Vec<usize>,
+    pending: Vec<usize>,
     /// Manifolds of all cases.
     raws: &'a mut [RawManifold<N, D>],
     /// Pairs without points that began and that fell back, and all that ended.
@@ -43,28 +43,28 @@ struct Kept<'a, N: Real, const D: usize> {
 impl<N: Real, const D: usize> Kept<'_, N, D> {
     /// Returns whether the pair had no points.
     fn is_new(&self, index: usize) -> bool {
-        self.raws[self.due[index]].points.is_empty()
+        self.raws[self.pending[index]].points.is_empty()
     }
 }
 
 impl<N: Real, const D: usize> KeptPairs<N, D> for Kept<'_, N, D> {
     fn len(&self) -> usize {
-        self.due.len()
+        self.pending.len()
     }
 
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D> {
         self.counts[0] += usize::from(self.is_new(index));
-        self.cases[self.due[index]].question()
+        self.cases[self.pending[index]].question()
     }
 
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
         self.counts[1] += usize::from(self.is_new(index));
-        let case_index = self.due[index];
+        let case_index = self.pending[index];
         (self.cases[case_index].question(), &mut self.raws[case_index])
     }
 
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D> {
-        &mut self.raws[self.due[index]]
+        &mut self.raws[self.pending[index]]
     }
 
     fn end(&mut self, index: usize) {
@@ -133,7 +133,8 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
         sums = [0; 3];
         for (step, cases) in steps.iter().enumerate() {
             let alone = lone.iter_mut().zip(&mut expected);
-            for (case, (one, other)) in cases.iter().zip(alone).filter(|(case, _)| case.is_due) {
+            for (case, (one, other)) in cases.iter().zip(alone).filter(|(case, _)| case.is_pending)
+            {
                 compute_alone(case, [one, other]);
             }
             let [begun, declined] = in_lanes::<F, N, D>(level, cases, &mut found);
@@ -158,11 +159,11 @@ fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     cases: &[Case<N, D>],
     raws: &mut [RawManifold<N, D>],
 ) -> [usize; 2] {
-    let due = (0..cases.len()).filter(|&index| cases[index].is_due).collect();
-    let mut kept = Kept { cases, due, raws, counts: [0; 3] };
+    let pending = (0..cases.len()).filter(|&index| cases[index].is_pending).collect();
+    let mut kept = Kept { cases, pending, raws, counts: [0; 3] };
     Many { level, pairs: &mut kept }.run::<F>();
     let [begun, declined, ended] = kept.counts;
-    assert_eq!(kept.due.len(), ended, "all that began ended");
+    assert_eq!(kept.pending.len(), ended, "all that began ended");
     [begun, declined]
 }
 
@@ -225,7 +226,7 @@ impl<const D: usize> Draw<D> {
                 Sort::Cuboid => Solid::Cuboid(Cuboid::new(ends[1].coords.abs())),
             }
         });
-        Case { poses, solids, request, is_due: true }
+        Case { poses, solids, request, is_pending: true }
     }
 }
 
@@ -243,7 +244,7 @@ fn drawn<N: Scene<D>, const D: usize>(
         let asked = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
         let mut cases: Vec<_> = draws.iter().map(|draw| draw.case(unit, asked)).collect();
         let rests = |index: usize| (index * 7 + step) % 11 == 3;
-        cases.iter_mut().enumerate().for_each(|(index, case)| case.is_due = !rests(index));
+        cases.iter_mut().enumerate().for_each(|(index, case)| case.is_pending = !rests(index));
         steps.push(cases);
         draws = draws.iter().map(|draw| draw.shaken(&mut random, by)).collect();
     }

@@ -96,9 +96,9 @@ fn nearest_first<K: PartialOrd + Copy>(
     mut visit: impl FnMut(usize, usize, K),
 ) {
     let (mut keys, mut others) = ([never; FEW], [0; FEW]);
-    let mut due = old;
+    let mut pending = old;
     loop {
-        for at in Ones::<FEW>(due) {
+        for at in Ones::<FEW>(pending) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
             // A point without a match now has none later.
@@ -114,7 +114,7 @@ fn nearest_first<K: PartialOrd + Copy>(
         let taken = others[first];
         visit(first, taken, key);
         (old, new) = (old & !(1 << first), new & !(1 << taken));
-        due = Ones::<FEW>(old).fold(0, |bits, at| bits | u32::from(others[at] == taken) << at);
+        pending = Ones::<FEW>(old).fold(0, |bits, at| bits | u32::from(others[at] == taken) << at);
     }
 }
 

@@ -13,7 +13,7 @@ pub(crate) fn features2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
 ) -> [FeatureId; 2] {
-    features(pair, separation, shown2)
+    features(pair, separation, supporting_part2)
 }
 
 /// Returns the features of two solids in 3D that the points of their separation lie on.
@@ -21,7 +21,7 @@ pub(crate) fn features3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
 ) -> [FeatureId; 2] {
-    features(pair, separation, shown3)
+    features(pair, separation, supporting_part3)
 }
 
 /// Returns the feature of one solid in 2D, the second if `is_second`: one of [`features2`].
@@ -31,7 +31,7 @@ pub(crate) fn feature2<N: Real>(
     tolerance: N,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, separation, tolerance, shown2, is_second)
+    feature(pair, separation, tolerance, supporting_part2, is_second)
 }
 
 /// Returns the feature of one solid in 3D, the second if `is_second`: one of [`features3`].
@@ -41,12 +41,13 @@ pub(crate) fn feature3<N: Real>(
     tolerance: N,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, separation, tolerance, shown3, is_second)
+    feature(pair, separation, tolerance, supporting_part3, is_second)
 }
 
 /// Computes the smallest part of one solid's supporting feature that contains the point of a
 /// separation; of the second solid if the flag is set.
-type ShownFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
+type SupportingPartFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 
 /// Creates a frame that is used for its witness only.
 fn frame<N: Real, const D: usize>(
@@ -62,7 +63,7 @@ fn frame<N: Real, const D: usize>(
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
-    shown: ShownFn<N, D>,
+    supporting_part: SupportingPartFn<N, D>,
 ) -> [FeatureId; 2] {
     if let Some(touched) = of_ball(pair, separation) {
         return [FeatureId::Face(0), touched];
@@ -75,8 +76,8 @@ fn features<N: Real, const D: usize>(
         by_position(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
     };
     [
-        first.unwrap_or_else(|| shown(pair, separation, false)),
-        second().unwrap_or_else(|| shown(pair, separation, true)),
+        first.unwrap_or_else(|| supporting_part(pair, separation, false)),
+        second().unwrap_or_else(|| supporting_part(pair, separation, true)),
     ]
 }
 
@@ -112,7 +113,7 @@ fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     noise: N,
-    shown: ShownFn<N, D>,
+    supporting_part: SupportingPartFn<N, D>,
     is_second: bool,
 ) -> FeatureId {
     match of_ball(pair, separation) {
@@ -121,7 +122,7 @@ fn feature<N: Real, const D: usize>(
         None => {}
     }
     let seam = on_seam(pair, separation, noise, is_second);
-    seam.unwrap_or_else(|| shown(pair, separation, is_second))
+    seam.unwrap_or_else(|| supporting_part(pair, separation, is_second))
 }
 
 /// Returns the side or corner of a triangle touched by a flat-faced solid or the core of a capsule.
@@ -188,7 +189,7 @@ fn solid<'a, N: Real, const D: usize>(
     }
 }
 
-fn shown2<N: Real>(
+fn supporting_part2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
     is_second: bool,
@@ -199,7 +200,7 @@ fn shown2<N: Real>(
     side.map_or(FeatureId::Face(0), |side| side.at_witness(&frame))
 }
 
-fn shown3<N: Real>(
+fn supporting_part3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
     is_second: bool,

@@ -114,7 +114,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             limit: self.request.prediction,
             within,
         };
-        let candidates = near_triangles(&question, self.surface.has_plain_seams());
+        let candidates = near_triangles(&question, self.surface.has_regular_seams());
         // Everything outside the box is beyond reach.
         let reach = self.ball.radius() + self.request.prediction;
         let clearance = min(reach, candidates.from_middle);
@@ -190,7 +190,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         let kind = Kind::Triangle(&centered.triangle);
         let pair = Pair { first: Kind::Ball(self.ball), second: kind, pose12: self.turn };
         let Some(found) = ball_triangle(&pair, self.request.prediction) else { return };
-        let found = self.plainly(centered, &found, arena).unwrap_or_else(|| {
+        let found = self.certain_contact(centered, &found, arena).unwrap_or_else(|| {
             let scene = Scene::new(self.between, around);
             let parts = [0, centered.part];
             let query = Query {
@@ -208,7 +208,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     /// Computes the contact of a triangle without the generic path: `Some(None)` if there is no
     /// contact, `None` if the case is not certain.
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
-    fn plainly(
+    fn certain_contact(
         &self,
         centered: &CenteredTriangle<N>,
         found: &Separation<N, 3>,

@@ -43,9 +43,9 @@ pub(crate) fn face_contacts<N: Real>(
     let parts = TiledTriangles { tiles, near, origin };
     let pose12 = Pose { rotation: meeting.turn, translation: Vector::<N, 3>::zeros() };
     let limit = query.request.prediction;
-    let (slot, due, clip) = (None, Due::default(), FaceClip::blank());
+    let (slot, pending, clip) = (None, PendingClips::default(), FaceClip::blank());
     let mut found =
-        FaceContacts { meeting: &meeting, contacts, arena, slot, due, clip, missing: 0 };
+        FaceContacts { meeting: &meeting, contacts, arena, slot, pending, clip, missing: 0 };
     let is_served = gaps3(&parts, meeting.solid, &pose12, prediction, limit, &mut |index, gap| {
         found.add(meeting.cache_indices[index], gap);
     });
@@ -199,13 +199,13 @@ pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) ->
 }
 
 /// Triangles that are to be clipped together, each with the number of its contact and its place.
-struct Due<N: Real> {
+struct PendingClips<N: Real> {
     triangles: PartPacket<N, 3>,
     asked: SmallVec<[TriangleAsked<N>; LANES]>,
     contacts: SmallVec<[(usize, usize); LANES]>,
 }
 
-impl<N: Real> Default for Due<N> {
+impl<N: Real> Default for PendingClips<N> {
     fn default() -> Self {
         let triangles = PartPacket::blank();
         Self { triangles, asked: SmallVec::new(), contacts: SmallVec::new() }
@@ -218,7 +218,7 @@ struct FaceContacts<'s, 'a, N: Real> {
     contacts: &'s mut PartContacts<N, 3>,
     arena: &'s mut Arena<N, 3>,
     slot: Option<PlacedPair<'a, N, 3>>,
-    due: Due<N>,
+    pending: PendingClips<N>,
     clip: FaceClip<N>,
     /// So many contacts turned out to be none; they have no distance.
     missing: usize,
@@ -227,17 +227,17 @@ struct FaceContacts<'s, 'a, N: Real> {
 impl<N: Real> FaceContacts<'_, '_, N> {
     /// Adds the contact of a triangle, of which it may be known how near it is.
     fn add(&mut self, cache_index: usize, gap: Option<&TriangleGap<N>>) {
-        if gap.is_none_or(|gap| self.add_plain(cache_index, gap).is_none()) {
+        if gap.is_none_or(|gap| self.add_certain(cache_index, gap).is_none()) {
             let found = self.in_general(cache_index);
             self.contacts.extend(found);
         }
-        if self.due.asked.len() == LANES {
+        if self.pending.asked.len() == LANES {
             self.clip();
         }
     }
 
     /// Adds the contact of a triangle with a plain gap, if there is one; `None` where the general way finds it.
-    fn add_plain(&mut self, cache_index: usize, gap: &TriangleGap<N>) -> Option<()> {
+    fn add_certain(&mut self, cache_index: usize, gap: &TriangleGap<N>) -> Option<()> {
         let triangle = self.meeting.triangle(cache_index)?;
         let contact = match self.meeting.answer(&triangle, gap) {
             SurfaceAnswer::Nothing => return Some(()),
@@ -246,9 +246,9 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         };
         if contact.status != PartStatus::Left {
             let asked = self.meeting.asked(&contact, gap.distance, triangle.tolerance)?;
-            self.due.triangles.put(self.due.asked.len(), &triangle.corners);
-            self.due.asked.push(asked);
-            self.due.contacts.push((self.contacts.len(), cache_index));
+            self.pending.triangles.put(self.pending.asked.len(), &triangle.corners);
+            self.pending.asked.push(asked);
+            self.pending.contacts.push((self.contacts.len(), cache_index));
         }
         self.note_face(cache_index, contact.face.as_ref());
         let (to_first, parts) = (&self.meeting.query.between.pair.pose12, [0, triangle.part]);
@@ -274,8 +274,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
 
     /// Finds the points of the triangles that are due.
     fn clip(&mut self) {
-        let (Due { triangles, asked, contacts }, meeting) =
-            (core::mem::take(&mut self.due), self.meeting);
+        let (PendingClips { triangles, asked, contacts }, meeting) =
+            (core::mem::take(&mut self.pending), self.meeting);
         if asked.is_empty() {
             return;
         }

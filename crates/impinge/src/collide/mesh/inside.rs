@@ -1,7 +1,7 @@
 //! Contacts of pieces that lie wholly inside a body: they lead out through the nearest part of its
 //! boundary.
 
-use super::part_contact::{Arena, plain};
+use super::part_contact::{Arena, contact_of_solids};
 use super::scene::Scene;
 use super::{PartContacts, Query};
 use crate::collide::parts::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
@@ -47,7 +47,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
         piece.each_part(self.between, |part| {
             let (placed, mut pair_parts) = (scene.above(&plane, &point, (inner, part)), parts);
             pair_parts[inner] = part;
-            contacts.extend(plain(&placed, pair_parts, self.request, arena));
+            contacts.extend(contact_of_solids(&placed, pair_parts, self.request, arena));
         });
     }
 }

@@ -32,8 +32,8 @@ pub(crate) fn over3<N: Real>(
     let normal = cross(&sides[0], &sides[1]);
     let (area, room) = (normal.norm(), N::lit(CERTAIN) * tolerance);
     // False for NaN.
-    let is_plain = area > N::lit(MIN_HEIGHT) * longest * longest && longest > room;
-    if !is_plain {
+    let is_nondegenerate = area > N::lit(MIN_HEIGHT) * longest * longest && longest > room;
+    if !is_nondegenerate {
         return None;
     }
     let front = normal / area;

@@ -109,7 +109,7 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
         // A half-space has the same normal everywhere: there are no seams to slide over.
-        return plain(placed, parts, request, arena);
+        return contact_of_solids(placed, parts, request, arena);
     }
     let centers = match scene.surfaces[0] {
         // Of a convex first shape nothing is asked.
@@ -125,7 +125,7 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
 }
 
 /// Solids side by side: their contacts are those of the whole.
-pub(super) fn plain<N: Space<D>, const D: usize>(
+pub(super) fn contact_of_solids<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,

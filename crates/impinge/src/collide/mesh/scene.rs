@@ -22,12 +22,12 @@ pub(crate) struct Scene<'a, N: Real, const D: usize> {
     around: &'a PartCache<N, D>,
     /// The placement that the parts of a surface have relative to a convex solid; most have the
     /// same.
-    usual: OnceCell<Usual<N, D>>,
+    shared: OnceCell<SharedPlacement<N, D>>,
 }
 
 /// The placement of a part with corners relative to a convex first shape.
 #[derive(Clone, Copy)]
-struct Usual<N: Real, const D: usize> {
+struct SharedPlacement<N: Real, const D: usize> {
     /// The pose of the part in the frame of its shape.
     pose: Pose<N, D>,
     is_segment: bool,
@@ -76,7 +76,7 @@ pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// The anchor in the frames of the two shapes.
     origins: [Point<N, D>; 2],
     /// Whether the part of the second shape has the usual placement of its [`Scene`].
-    is_usual: bool,
+    is_shared: bool,
 }
 
 /// Translates a part to another origin. Corners are moved instead of the pose, so that parts keep
@@ -129,7 +129,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn new(between: &'a Between<'a, N, D>, around: &'a PartCache<N, D>) -> Self {
         let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface_access();
         let surfaces = between.composites().mapped(surface);
-        Self { between, surfaces, around, usual: OnceCell::new() }
+        Self { between, surfaces, around, shared: OnceCell::new() }
     }
 
     /// Returns a part of the second shape, from the cache or else from the shape.
@@ -190,9 +190,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         slot: &'s mut Option<PlacedPair<'a, N, D>>,
         parts: [u32; 2],
     ) -> &'s PlacedPair<'a, N, D> {
-        let is_exchanged = match (&mut *slot, self.usual.get(), self.between.composites()) {
-            (Some(old), Some(usual), [_, Some(composite)]) if old.is_usual => {
-                old.exchange(usual, &self.part2(composite, parts[1]))
+        let is_exchanged = match (&mut *slot, self.shared.get(), self.between.composites()) {
+            (Some(old), Some(shared), [_, Some(composite)]) if old.is_shared => {
+                old.exchange(shared, &self.part2(composite, parts[1]))
             }
             _ => false,
         };
@@ -208,7 +208,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let piece1 = composite1.map(|composite| composite.part(part1));
         let piece2 = composite2.map(|composite| self.part2(composite, part2));
         if let (None, Some(piece2)) = (&piece1, &piece2)
-            && let Some(pair) = self.as_usual(piece2)
+            && let Some(pair) = self.with_shared_placement(piece2)
         {
             return pair;
         }
@@ -262,27 +262,27 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 
     /// Returns the pair of a convex solid and a part with the usual placement, at less cost; `None`
     /// for other parts.
-    fn as_usual(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
+    fn with_shared_placement(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;
         }
-        let usual = self.usual.get_or_init(|| self.usual(part));
-        let solid = WholeOrPart::Part(usual.recentred(part)?);
+        let shared = self.shared.get_or_init(|| self.placement_of(part));
+        let solid = WholeOrPart::Part(shared.recentred(part)?);
         let pose = Pose { rotation: part.pose.rotation, translation: Vector::<N, D>::zeros() };
         let whole = WholeOrPart::Whole(self.between.pair.first);
         let bodies =
             [PlacedPart { pose: Pose::identity(), solid: whole }, PlacedPart { pose, solid }];
-        Some(PlacedPair { is_usual: true, ..PlacedPair::of(bodies, usual.lying, usual.origins) })
+        Some(PlacedPair { is_shared: true, ..PlacedPair::of(bodies, shared.lying, shared.origins) })
     }
 
     /// Returns the placement of a part, which serves all parts with the same pose and kind.
-    fn usual(&self, part: &Part<'a, N, D>) -> Usual<N, D> {
+    fn placement_of(&self, part: &Part<'a, N, D>) -> SharedPlacement<N, D> {
         let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
         let rotation = part.pose.rotation;
         let pose = Pose { rotation, translation: Vector::<N, D>::zeros() };
         let kind = part.solid.geometry().kind();
         let is_swapped = Geometry(self.between.pair.first).kind() > kind;
-        Usual {
+        SharedPlacement {
             pose: part.pose,
             is_segment: matches!(part.solid, PartSolid::Segment(_)),
             local: part.pose.inverse_point(&origins[1]).coords,
@@ -292,7 +292,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> Usual<N, D> {
+impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
     /// Returns a part translated to the anchor; `None` if it has another placement.
     fn recentred<'a>(&self, part: &Part<'a, N, D>) -> Option<PartSolid<'a, N, D>> {
         let is_segment = matches!(part.solid, PartSolid::Segment(_));
@@ -329,13 +329,13 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
         origins: [Point<N, D>; 2],
     ) -> Self {
         let bodies = if lying.is_swapped { [body2, body1] } else { [body1, body2] };
-        Self { bodies, lying, origins, is_usual: false }
+        Self { bodies, lying, origins, is_shared: false }
     }
 
     /// Replaces the part of the second shape; returns false, without a change, if the new part does
     /// not have the usual placement.
-    fn exchange(&mut self, usual: &Usual<N, D>, part: &Part<'a, N, D>) -> bool {
-        let Some(solid) = usual.recentred(part) else { return false };
+    fn exchange(&mut self, shared: &SharedPlacement<N, D>, part: &Part<'a, N, D>) -> bool {
+        let Some(solid) = shared.recentred(part) else { return false };
         let at = usize::from(!self.lying.is_swapped);
         self.bodies[at].solid = WholeOrPart::Part(solid);
         true

@@ -68,7 +68,7 @@ pub(crate) use overlap::{distance_in_plane, distance_in_space};
 pub(crate) use project::{project_on_solid_2d, project_on_solid_3d};
 pub(crate) use projection::Projection;
 pub(crate) use rounded::bare;
-pub(crate) use segments::segment_lanes::{SegmentGap, is_usual, nearest_on_segment};
+pub(crate) use segments::segment_lanes::{SegmentGap, is_square_in_range, nearest_on_segment};
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
 pub(crate) use triangles::{

@@ -47,11 +47,11 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
     if limit >= N::ZERO && inner_balls_meet(pair) {
         return Some(N::ZERO);
     }
-    if is_plain(pair, limit) && are_faceted(pair) {
+    if is_distance_only(pair, limit) && are_faceted(pair) {
         return apart::distance(pair, limit);
     }
     let way = way_in_space(pair);
-    if way == DistanceMethod::Revolved && is_plain(pair, limit) && are_bare(pair) {
+    if way == DistanceMethod::Revolved && is_distance_only(pair, limit) && are_bare(pair) {
         return revolved::distance(pair, limit);
     }
     distance(pair, limit, way)
@@ -157,14 +157,14 @@ fn beside_ball<N: Real, const D: usize>(
     Some(apart - radius)
 }
 
-/// Computes the distance by a method; [`is_plain`] pairs prove an overlap first where that is
+/// Computes the distance by a method; [`is_distance_only`] pairs prove an overlap first where that is
 /// faster.
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
     way: DistanceMethod,
 ) -> Option<N> {
-    if is_plain(pair, limit) {
+    if is_distance_only(pair, limit) {
         if way == DistanceMethod::Search && are_bare(pair) {
             return general::distance(pair, limit);
         }
@@ -176,7 +176,7 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
 }
 
 /// Returns whether depths are not needed and the solids are in the order of kinds.
-fn is_plain<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
+fn is_distance_only<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
     limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
 }
 

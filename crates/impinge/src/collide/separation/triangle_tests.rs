@@ -226,12 +226,12 @@ fn check_together<N: Real>(
     let mut near = vec![u8::MAX; tiles.len()];
     *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
     let parts = TiledTriangles { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
-    let (mut touching, mut plain) = (0, vec![false; count]);
+    let (mut touching, mut certain) = (0, vec![false; count]);
     let mut is_met = vec![false; count];
     let is_known = gaps3(&parts, solid, pose12, limit, limit, &mut |at, gap| {
         is_met[at] = true;
         if let Some(gap) = gap {
-            plain[at] = true;
+            certain[at] = true;
             check_gap(gap, &triangles[at], solid, pose12, round);
         }
     });
@@ -240,7 +240,7 @@ fn check_together<N: Real>(
         let pair = Pair { first: Kind::Triangle(triangle), second: solid, pose12: *pose12 };
         let is_near = separation(&pair, limit).is_some();
         assert!(is_met[at] || !is_near, "round {round}: {triangle:?} is within the limit");
-        touching += usize::from(is_near && plain[at]);
+        touching += usize::from(is_near && certain[at]);
     }
     touching
 }

@@ -3,7 +3,9 @@
 use crate::math::{Point, Real, Vector, unit, unit_or};
 use crate::shape::polytope::count32;
 use crate::shape::tilt::Tilt;
-use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Shown, SupportMap};
+use crate::shape::{
+    ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, SupportMap, SupportingFeature,
+};
 
 /// The supporting feature for a direction: the index of a face, a side or a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +43,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         direction: &Vector<N, D>,
         noise: N,
     ) -> FeatureId {
-        match self.part_toward(direction, Tilt::usual()) {
+        match self.part_toward(direction, Tilt::default_limit()) {
             HullPart::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
             HullPart::Side(side) => {
                 self.end_at(&self.side(side).vertices, point, noise).unwrap_or(Self::side_id(side))
@@ -177,29 +179,29 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real> Polytope<N, 2> {
-    /// See [`Shown::of`].
-    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Shown<N> {
+    /// See [`SupportingFeature::of`].
+    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> SupportingFeature<N> {
         if let ([vertices], [planes]) = (self.blocks(), self.planes())
             && self.faces.len() == self.vertices.len()
         {
-            return self.shown_of_few(vertices, &planes.normals, direction);
+            return self.supporting_of_few(vertices, &planes.normals, direction);
         }
-        let part = self.part_toward(direction, Tilt::usual());
+        let part = self.part_toward(direction, Tilt::default_limit());
         if let Some((id, ends)) = self.ends_of(part) {
-            return Shown::side(id, ends);
+            return SupportingFeature::side(id, ends);
         }
         let vertex = if let HullPart::Vertex(vertex) = part { vertex } else { 0 };
-        Shown::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
+        SupportingFeature::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 
-    /// [`Self::shown`] for up to eight vertices, from the rows of the vertices and of the sides'
+    /// [`Self::supporting`] for up to eight vertices, from the rows of the vertices and of the sides'
     /// normals: the rule of [`Self::part_toward`] without access to the lists of sides.
-    fn shown_of_few(
+    fn supporting_of_few(
         &self,
         [xs, ys]: &[[N; 8]; 2],
         normals: &[[N; 8]; 2],
         direction: &Vector<N, 2>,
-    ) -> Shown<N> {
+    ) -> SupportingFeature<N> {
         let count = self.vertices.len().min(8);
         let at = |vertex: usize| Point::<N, 2>::new(xs[vertex], ys[vertex]);
         let height = |vertex: usize| xs[vertex] * direction.x + ys[vertex] * direction.y;
@@ -224,11 +226,11 @@ impl<N: Real> Polytope<N, 2> {
         let slope = if is_after { slope_after } else { slope_before };
         let normal = Vector::<N, 2>::new(normals[0][side], normals[1][side]);
         let (tilt, with_id) =
-            (Tilt::usual(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
+            (Tilt::default_limit(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
         if tilt.admits_face(&normal, direction) || tilt.admits(slope * slope) {
-            Shown::side(FeatureId::Face(count32(side)), [with_id(side), with_id(to)])
+            SupportingFeature::side(FeatureId::Face(count32(side)), [with_id(side), with_id(to)])
         } else {
-            Shown::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
+            SupportingFeature::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
         }
     }
 }
@@ -236,8 +238,8 @@ impl<N: Real> Polytope<N, 2> {
 impl<N: Real> Polytope<N, 3> {
     /// The id of the [`SupportMap::core_feature`].
     #[inline]
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
-        Self::id_of(self.part_toward(direction, Tilt::usual()))
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> FeatureId {
+        Self::id_of(self.part_toward(direction, Tilt::default_limit()))
     }
 
     /// Fills a blank ring with face `index`. Returns false if the face has more corners than a ring
@@ -271,7 +273,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Polytope<N, D> {
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(self.part_toward(direction, Tilt::usual()), out);
+        self.fill(self.part_toward(direction, Tilt::default_limit()), out);
     }
 }
 

@@ -112,14 +112,14 @@ impl<N: Real> Cone<N> {
 impl<N: Real> Cone<N> {
     /// The supporting feature for a unit vector; `None` for the base, and for both sides of a cone
     /// without height.
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
-        let is_axial = Tilt::usual().admits(radial_of(direction).norm_squared());
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
+        let is_axial = Tilt::default_limit().admits(radial_of(direction).norm_squared());
         if is_axial && (direction.y < N::ZERO || self.half_height == N::ZERO) {
             return None;
         }
         let (apex, rim) = (FeatureId::Vertex(0), FeatureId::Edge(0));
         let sine = self.sine(direction).unwrap_or(N::ZERO);
-        Some(if Tilt::usual().admits(sine * sine) && self.half_height > N::ZERO {
+        Some(if Tilt::default_limit().admits(sine * sine) && self.half_height > N::ZERO {
             let ends = [(rim, self.base().rim_toward(direction)), (apex, self.apex())];
             RoundPart::Line(FeatureId::Face(1), ends)
         } else if sine > N::ZERO {
@@ -159,7 +159,7 @@ impl<N: Real> SupportMap<N, 3> for Cone<N> {
     }
 
     fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
-        match self.part_shown(direction) {
+        match self.supporting_part(direction) {
             Some(part) => part.fill(out),
             None => {
                 let is_below = direction.y < N::ZERO;

@@ -7,7 +7,7 @@ use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
 use crate::shape::{
     ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
-    ShapeHandle, Shown, SupportMap, tilt::Tilt,
+    ShapeHandle, SupportMap, SupportingFeature, tilt::Tilt,
 };
 
 /// The points whose coordinate on each axis has a magnitude of at most the half extent.
@@ -80,7 +80,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(CuboidPart::facing(direction, Tilt::usual()), out);
+        self.fill(CuboidPart::facing(direction, Tilt::default_limit()), out);
     }
 }
 
@@ -387,7 +387,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 
     /// The [`SupportMap::core_feature`] without corners; `None` if it is flat along a free axis.
     pub(crate) fn facing_part(&self, direction: &Vector<N, D>) -> Option<FacingPart<N, D>> {
-        let part = CuboidPart::<D>::facing(direction, Tilt::usual());
+        let part = CuboidPart::<D>::facing(direction, Tilt::default_limit());
         let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
         if (0..D).any(is_flat) {
             return None;
@@ -426,17 +426,21 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 }
 
 impl<N: Real> Cuboid<N, 2> {
-    /// See [`Shown::of`]; `None` if the side has no length.
-    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
-        let part = CuboidPart::<2>::facing(direction, Tilt::usual());
+    /// See [`SupportingFeature::of`]; `None` if the side has no length.
+    pub(in crate::shape) fn supporting(
+        &self,
+        direction: &Vector<N, 2>,
+    ) -> Option<SupportingFeature<N>> {
+        let part = CuboidPart::<2>::facing(direction, Tilt::default_limit());
         let with_id = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
         let FeatureId::Face(index) = part.id() else {
             let (id, point) = with_id(part.corner);
-            return Some(Shown::vertex(id, point));
+            return Some(SupportingFeature::vertex(id, point));
         };
         let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
         let [from, to, ..] = CuboidPart::<2>::FACES[index as usize].0.corners;
-        (!is_flat).then(|| Shown::side(FeatureId::Face(index), [with_id(from), with_id(to)]))
+        (!is_flat)
+            .then(|| SupportingFeature::side(FeatureId::Face(index), [with_id(from), with_id(to)]))
     }
 }
 

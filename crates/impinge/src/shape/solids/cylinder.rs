@@ -104,13 +104,14 @@ impl<N: Real> Cylinder<N> {
     }
 
     /// The supporting feature for a unit vector; `None` for a cap.
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
-        if Tilt::usual().admits(radial_of(direction).norm_squared()) {
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
+        if Tilt::default_limit().admits(radial_of(direction).norm_squared()) {
             return None;
         }
         let (side, y) = self.end_toward(direction);
         let (rim, near) = (FeatureId::Edge(side), self.disk(y).rim_toward(direction));
-        let is_line = Tilt::usual().admits(direction.y * direction.y) && self.half_height > N::ZERO;
+        let is_line =
+            Tilt::default_limit().admits(direction.y * direction.y) && self.half_height > N::ZERO;
         Some(if is_line {
             let far = Point::<N, 3>::new(near.x, -y, near.z);
             RoundPart::Line(FeatureId::Face(2), [(FeatureId::Edge(1 - side), far), (rim, near)])
@@ -149,7 +150,7 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
     }
 
     fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
-        match self.part_shown(direction) {
+        match self.supporting_part(direction) {
             Some(part) => part.fill(out),
             None => {
                 let (side, y) = self.end_toward(direction);

@@ -63,8 +63,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
         let stretched = direction.component_mul(&self.half_axes);
         let squared = stretched.norm_squared();
-        let is_usual = squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt();
-        let on_sphere = if is_usual {
+        let is_in_range = squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt();
+        let on_sphere = if is_in_range {
             stretched / squared.sqrt()
         } else {
             // Both factors are scaled to about 1, so that no product overflows or underflows.

@@ -197,7 +197,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
         // Positive if the second end lies farther along the direction than the first.
         let sine = taper.cosine * climb - taper.sine * across;
         let faces = taper.cosine * across + taper.sine * climb > N::ZERO;
-        if !(faces && Tilt::usual().admits(sine * sine)) {
+        if !(faces && Tilt::default_limit().admits(sine * sine)) {
             let end = usize::from(sine > N::ZERO);
             return out.set_point(ids[end], self.core_support(direction));
         }

@@ -277,22 +277,22 @@ mod tests {
     #[test]
     fn without_volume_it_is_flat() {
         let up = Vector::<f64, 3>::z();
-        let shown = |points, direction: &Vector<f64, 3>| {
+        let supporting = |points, direction: &Vector<f64, 3>| {
             let (solid, mut feature) = (Tetrahedron::new(corners(points)), Feature::default());
             assert_eq!(solid.polytope(), None, "no volume");
             solid.core_feature(direction, &mut feature);
             feature
         };
         let square = [[0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
-        let top = shown(square, &up);
+        let top = supporting(square, &up);
         assert_eq!((top.vertices.len(), top.normal), (4, Some(up)), "all of it: {top:?}");
-        let side = shown(square, &Vector::<f64, 3>::x());
+        let side = supporting(square, &Vector::<f64, 3>::x());
         assert_eq!(side.id, FeatureId::Edge(3), "between the vertices 1 and 2: {side:?}");
         let inner = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.25, 0.25, 0.0]];
-        let below = shown(inner, &-up);
+        let below = supporting(inner, &-up);
         assert_eq!((below.vertices.len(), below.id), (3, FeatureId::Face(3)), "{below:?}");
         let line = [[0.0; 3], [1.0; 3], [3.0; 3], [2.0; 3]];
-        assert_eq!(shown(line, &up).id, FeatureId::Edge(1), "from end to end");
-        assert_eq!(shown([[5.0; 3]; 4], &up).id, FeatureId::Vertex(0), "a point");
+        assert_eq!(supporting(line, &up).id, FeatureId::Edge(1), "from end to end");
+        assert_eq!(supporting([[5.0; 3]; 4], &up).id, FeatureId::Vertex(0), "a point");
     }
 }

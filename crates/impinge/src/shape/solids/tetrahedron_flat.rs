@@ -39,7 +39,7 @@ impl<N: Real> FlatOutline<N> {
         }
         let back = -self.normal;
         for normal in [self.normal, back] {
-            if Tilt::usual().admits_face(&normal, direction) {
+            if Tilt::default_limit().admits_face(&normal, direction) {
                 return self.fill_face(normal, normal == back, out);
             }
         }
@@ -52,7 +52,7 @@ impl<N: Real> FlatOutline<N> {
         let flatter =
             if self.slope(before, direction) < self.slope(best, direction) { before } else { best };
         let slope = self.slope(flatter, direction);
-        if Tilt::usual().admits(slope * slope) {
+        if Tilt::default_limit().admits(slope * slope) {
             self.fill_side(flatter, out);
         } else {
             out.set_point(FeatureId::Vertex(self.ring[best]), self.points[best]);

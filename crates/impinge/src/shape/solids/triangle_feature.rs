@@ -4,7 +4,9 @@
 use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 use crate::shape::tilt::{FACING_SINE_SQUARED, Tilt};
-use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Shown, SupportMap, Triangle};
+use crate::shape::{
+    ConvexPolyhedron, FaceRing, Feature, FeatureId, SupportMap, SupportingFeature, Triangle,
+};
 
 /// The plane (in 2D: the whole space) that a triangle spans.
 struct TriangleSpan<N: Real, const D: usize> {
@@ -250,16 +252,19 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 }
 
 impl<N: Real> Triangle<N, 2> {
-    /// See [`Shown::of`]; `None` if the corners coincide.
-    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
+    /// See [`SupportingFeature::of`]; `None` if the corners coincide.
+    pub(in crate::shape) fn supporting(
+        &self,
+        direction: &Vector<N, 2>,
+    ) -> Option<SupportingFeature<N>> {
         let span = TriangleSpan::of(self.corners())?;
         let (side, slope) = self.flattest_side(&span, direction);
-        if Tilt::usual().admits(slope * slope) {
+        if Tilt::default_limit().admits(slope * slope) {
             let ends = self.side_ends(side, direction);
-            return Some(Shown::side(side_id::<2>(side), ends));
+            return Some(SupportingFeature::side(side_id::<2>(side), ends));
         }
         let (id, point) = self.point(self.support_corner(direction));
-        Some(Shown::vertex(id, point))
+        Some(SupportingFeature::vertex(id, point))
     }
 }
 
@@ -298,7 +303,7 @@ pub(crate) const CLEAR: f64 = 1.0 / 1024.0;
 impl<N: Real> Triangle<N, 3> {
     /// The id of the [`SupportMap::core_feature`] for a unit vector, by products alone; `None` for
     /// thin triangles, and where rounding decides.
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
         let [a, b, c] = self.corners();
         let sides = [b - a, c - b, a - c];
         let size = max(max_component(&sides[0]), max_component(&sides[1]));
@@ -455,23 +460,23 @@ mod tests {
     use crate::math::noise::Noise;
 
     #[test]
-    fn what_a_triangle_shows_is_known_at_every_scale() {
+    fn the_supporting_part_is_known_at_every_scale() {
         let (mut noise, mut known) = (Noise(3), 0);
         for _ in 0..2000 {
             let corners = [(); 3].map(|()| Point::from(noise.vector::<f32>(1.0)));
             let direction = noise.vector::<f32>(1.0).normalize();
-            let shown = |scale: f32| {
+            let supporting = |scale: f32| {
                 let [a, b, c] = corners.map(|corner| corner * scale);
-                Triangle::new(a, b, c).part_shown(&direction)
+                Triangle::new(a, b, c).supporting_part(&direction)
             };
-            let part = shown(1.0);
-            assert_eq!([shown(2.0_f32.powi(-60)), shown(2.0_f32.powi(60))], [part; 2]);
+            let part = supporting(1.0);
+            assert_eq!([supporting(2.0_f32.powi(-60)), supporting(2.0_f32.powi(60))], [part; 2]);
             known += usize::from(part.is_some());
         }
-        assert!(known > 1500, "{known} are plain");
+        assert!(known > 1500, "{known} are decided");
         assert_eq!(
             Triangle::new(Point::origin(), Point::origin(), Point::<f32, 3>::origin())
-                .part_shown(&Vector::<f32, 3>::y()),
+                .supporting_part(&Vector::<f32, 3>::y()),
             None,
             "it has no area"
         );

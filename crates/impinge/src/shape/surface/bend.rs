@@ -121,8 +121,8 @@ impl BendShape {
     ) -> Option<Self> {
         let cosine = fronts[0].dot(&fronts[1]);
         // False for NaN. Beyond 90° between the fronts the rule of seams decides.
-        let is_plain = cosine > N::ZERO && corners.iter().all(|corners| is_plain(corners));
-        if !is_plain {
+        let is_certain = cosine > N::ZERO && corners.iter().all(|corners| is_well_shaped(corners));
+        if !is_certain {
             return None;
         }
         let (squared_sine, flat) = (N::ONE - cosine * cosine, N::lit(FLAT_SINE * FLAT_SINE));
@@ -157,7 +157,7 @@ fn height_of<N: Real>(
 
 /// Whether the triangle is not thin, its sides are longer than 4096 rounding units of its
 /// coordinates, and its squared area does not underflow.
-fn is_plain<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
+fn is_well_shaped<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac) = (b - a, c - a);
     let squared = [ab.norm_squared(), ac.norm_squared(), (c - b).norm_squared()];

@@ -80,16 +80,16 @@ pub(in crate::collide) struct FaceClip<N: Real> {
     pub(super) in_triangle: SideHeights<N, MAX, 3>,
     /// Lengths below this are rounding errors.
     pub(super) tolerance: [N; LANES],
-    pub(super) shown: ShownBits,
+    pub(super) supporting: SupportingBits,
     /// The lanes in which both rings have an extent.
-    pub(super) plain: u8,
+    pub(super) with_extent: u8,
     /// Those in which a side of the triangle, given first, and one of the face cross.
     pub(super) crossed: [[u8; MAX]; 3],
 }
 
 /// The lanes in which a triangle shows its face, and of its corners and sides those of what it shows.
 #[derive(Clone, Copy, Default)]
-pub(super) struct ShownBits {
+pub(super) struct SupportingBits {
     pub(super) face: u8,
     /// The face is the back.
     pub(super) back: u8,
@@ -108,8 +108,8 @@ impl<N: Real> FaceClip<N> {
             in_face: SideHeights::blank(),
             in_triangle: SideHeights::blank(),
             tolerance: zeros,
-            shown: ShownBits::default(),
-            plain: 0,
+            supporting: SupportingBits::default(),
+            with_extent: 0,
             crossed: [[0; MAX]; 3],
         }
     }
@@ -148,10 +148,10 @@ impl<N: Real> FaceClip<N> {
         let rounding = V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON);
         let tolerance = rounding * (V::all(simd, solid.reach()) + reach);
         let projected = ProjectedTriangles::new(simd, &corners, &normal);
-        let (shown, is_shown) = projected.shown(simd, tolerance);
-        let is_plain = is_shown & self.measure_face(simd, &projected, tolerance);
+        let (supporting, is_supporting) = projected.supporting(simd, tolerance);
+        let has_extent = is_supporting & self.measure_face(simd, &projected, tolerance);
         self.measure_triangles(simd, &projected, tolerance);
-        (self.shown, self.plain) = (shown, bits(is_plain));
+        (self.supporting, self.with_extent) = (supporting, bits(has_extent));
         self.find_crossings();
         tolerance.store(&mut self.tolerance);
         for (rows, corner) in self.corners.iter_mut().zip(&corners) {
@@ -168,7 +168,7 @@ impl<N: Real> FaceClip<N> {
             for (other, crossed) in crossed.iter_mut().enumerate().take(sides) {
                 let own = self.in_face.parted([side, (side + 1) % 3], other);
                 let others = self.in_triangle.parted([other, (other + 1) % count], side);
-                *crossed = own & others & self.shown.sides[side];
+                *crossed = own & others & self.supporting.sides[side];
             }
         }
     }
@@ -280,7 +280,7 @@ impl<V> ProjectedTriangles<V> {
     /// What the triangles show along the normals, by the rule of
     /// [`core_feature`](crate::shape::SupportMap::core_feature), and where that is clear and has an extent.
     #[inline(always)]
-    fn shown<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (ShownBits, V::Mask)
+    fn supporting<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (SupportingBits, V::Mask)
     where
         V: Wide<S, Scalar = N>,
     {
@@ -313,23 +313,23 @@ impl<V> ProjectedTriangles<V> {
         let (least, other) = (is_back.select(back, out), is_back.select(out, back));
         let is_corner = is_steep & limit.simd_lt(least * less);
         let is_side = is_steep & least.simd_lt(limit * less) & least.simd_lt(other * less);
-        let mut bits_of = ShownBits {
+        let mut bits_of = SupportingBits {
             face: bits(is_face),
             back: bits(is_face & self.rise.simd_lt(zero)),
-            ..ShownBits::default()
+            ..SupportingBits::default()
         };
-        let mut is_plain = is_face | is_corner | is_side;
+        let mut has_extent = is_face | is_corner | is_side;
         for side in 0..3 {
             let is_own = (tops[side] & !is_back) | (tops[(side + 1) % 3] & is_back);
-            let is_shown = is_face | (is_side & is_own);
+            let is_supporting = is_face | (is_side & is_own);
             let is_long = self.lengths[side].simd_gt(tolerance + tolerance);
-            is_plain &= is_long | !is_shown;
-            bits_of.sides[side] = bits(is_shown);
-            bits_of.corners[side] |= bits(is_shown | (is_corner & tops[side]));
-            bits_of.corners[(side + 1) % 3] |= bits(is_shown);
+            has_extent &= is_long | !is_supporting;
+            bits_of.sides[side] = bits(is_supporting);
+            bits_of.corners[side] |= bits(is_supporting | (is_corner & tops[side]));
+            bits_of.corners[(side + 1) % 3] |= bits(is_supporting);
         }
         // A face without width counts as a segment.
         let width = (tolerance + tolerance) * longest.sqrt();
-        (bits_of, is_plain & (self.rise.abs().simd_gt(width) | !is_face))
+        (bits_of, has_extent & (self.rise.abs().simd_gt(width) | !is_face))
     }
 }

@@ -20,7 +20,7 @@ mod measure;
 mod points;
 
 pub(in crate::collide) use self::measure::FaceClip;
-use super::supporting::{fill_part, part_shown};
+use super::supporting::{fill_part, supporting_part};
 use crate::collide::RawPoints;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::math::ones::Ones;
@@ -49,7 +49,7 @@ impl<N: Real> TriangleAsked<N> {
         nearest: Option<N>,
         least: N,
     ) -> Option<Self> {
-        Some(Self { normal, part: part_shown(solid, &-normal)?, nearest, least })
+        Some(Self { normal, part: supporting_part(solid, &-normal)?, nearest, least })
     }
 }
 

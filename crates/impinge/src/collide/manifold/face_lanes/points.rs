@@ -16,10 +16,10 @@ impl<N: Real> FaceClip<N> {
         prediction: N,
         points: &mut RawPoints<N, 3>,
     ) -> Option<N> {
-        let is_plain = self.plain >> lane & 1 == 1;
+        let has_extent = self.with_extent >> lane & 1 == 1;
         // Two edges may be parallel, two corners coincide.
-        let has_area = self.ring.count > 2 || self.shown.face >> lane & 1 == 1;
-        if !(is_plain && has_area) {
+        let has_area = self.ring.count > 2 || self.supporting.face >> lane & 1 == 1;
+        if !(has_extent && has_area) {
             return None;
         }
         let (tolerance, first) = (self.tolerance[lane], points.len());
@@ -104,13 +104,13 @@ impl<N: Real> LaneClip<'_, N> {
 
     /// Corners of what the triangle shows in the face; `None` if one lies on the line of the edge that the solid shows.
     fn corners(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
-        let FaceClip { ring, in_face, shown, depths, .. } = self.clip;
+        let FaceClip { ring, in_face, supporting, depths, .. } = self.clip;
         if ring.count < 3 {
             let is_on = (0..3).any(|corner| self.has(in_face.is_on[corner]));
             return (ring.count < 2 || !is_on).then_some(());
         }
         for corner in 0..3 {
-            if !self.has(shown.corners[corner] & !in_face.is_beyond[corner]) {
+            if !self.has(supporting.corners[corner] & !in_face.is_beyond[corner]) {
                 continue;
             }
             let (at, id) = (self.corner(corner), FeatureId::Vertex([0, 1, 2][corner]));
@@ -122,11 +122,11 @@ impl<N: Real> LaneClip<'_, N> {
 
     /// Corners of the face in that of the triangle; `None` if one lies on the line of a side that the triangle shows.
     fn vertices(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
-        let FaceClip { ring, in_triangle, shown, vertex_depths, .. } = self.clip;
-        let face = FeatureId::Face(u32::from(self.has(shown.back)));
+        let FaceClip { ring, in_triangle, supporting, vertex_depths, .. } = self.clip;
+        let face = FeatureId::Face(u32::from(self.has(supporting.back)));
         for (vertex, depths) in vertex_depths.iter().enumerate().take(ring.count) {
-            if !self.has(shown.face) {
-                let is_on = |side| self.has(in_triangle.on(vertex, side) & shown.sides[side]);
+            if !self.has(supporting.face) {
+                let is_on = |side| self.has(in_triangle.on(vertex, side) & supporting.sides[side]);
                 if (0..3).any(is_on) {
                     return None;
                 }

@@ -294,7 +294,7 @@ fn what_touches_is_as_near_as_is_known() {
 }
 
 #[test]
-fn edges_and_corners_of_a_solid_are_shown_too() {
+fn edges_and_corners_of_a_solid_are_clipped_too() {
     let solid = Cuboid::new(Vector::<f64, 3>::repeat(1.0));
     let found = |up: [f64; 3], reach: f64| {
         let normal = Vector::<f64, 3>::from(up).normalize();

@@ -205,8 +205,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
         let is_small = solids.iter().all(|solid| {
             vertices(solid).is_none_or(|points| points.vertices.len() <= MAX_VERTICES)
         });
-        let is_usual = units.scale.is_finite_number() && units.shrink.is_finite_number();
-        (is_small && is_usual).then(|| Self {
+        let is_scalable = units.scale.is_finite_number() && units.shrink.is_finite_number();
+        (is_small && is_scalable).then(|| Self {
             middles: [
                 solids[0].center().coords * units.shrink,
                 solids[1].center().coords * units.shrink,

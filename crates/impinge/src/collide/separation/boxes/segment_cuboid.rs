@@ -96,8 +96,8 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         let size = max(max(reach, max_component(&pose12.translation)), of_ends);
         let scale = size.power_of_two_below();
         let shrink = N::ONE / scale;
-        let is_plain = size > N::ZERO && size.is_finite_number() && shrink.is_finite_number();
-        if !(is_plain && pose12.is_finite()) {
+        let is_scalable = size > N::ZERO && size.is_finite_number() && shrink.is_finite_number();
+        if !(is_scalable && pose12.is_finite()) {
             return None;
         }
         let local = |end: &Point<N, 3>| {
@@ -201,8 +201,8 @@ impl<N: Real> LocalBox<'_, N> {
             let reach = x.abs() * self.half[one] + y.abs() * self.half[other];
             let sine = (x * x + y * y).sqrt();
             // Written so that NaN and segments parallel to the axis are skipped.
-            let is_plain = sine > noise() && (height.abs() - reach) > bound * sine;
-            if is_plain {
+            let is_certain = sine > noise() && (height.abs() - reach) > bound * sine;
+            if is_certain {
                 let signed_sine = if height < N::ZERO { -sine } else { sine };
                 let mut outward = Vector::<N, 3>::zeros();
                 (outward[one], outward[other]) = (x / signed_sine, y / signed_sine);

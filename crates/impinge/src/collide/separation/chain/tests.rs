@@ -70,7 +70,7 @@ fn compare<N: Real>(seed: u64) {
             }
         }
     }
-    assert!(decided * 10 > count * 9, "{decided} of {count} are usual");
+    assert!(decided * 10 > count * 9, "{decided} of {count} are decided");
     assert!(found > decided, "{found} segments are found by {decided}");
 }
 

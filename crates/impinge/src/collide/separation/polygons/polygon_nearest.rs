@@ -230,8 +230,8 @@ pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S
     let (low1, lane1) = highest(simd, -dot(&way1, &way1));
     let (low2, lane2) = highest(simd, -dot(&way2, &way2));
     let (low1, low2) = (-low1, -low2);
-    let is_usual = low1 < N::INFINITY && low2 < N::INFINITY;
-    if !is_usual {
+    let is_finite = low1 < N::INFINITY && low2 < N::INFINITY;
+    if !is_finite {
         return None;
     }
     let (rank1, rank2) = ((lane1 >> 1) * 4 + (lane1 & 1), (lane2 >> 1) * 4 + (lane2 & 1) + 2);

@@ -360,7 +360,7 @@ pub(in crate::collide::separation) mod tests {
                 }
             }
         }
-        assert!(decided * 10 > count * 9, "{decided} of {count} are usual");
+        assert!(decided * 10 > count * 9, "{decided} of {count} are decided");
         assert!(overlapping * 4 > decided, "{overlapping} of {decided} overlap");
     }
 

@@ -375,9 +375,9 @@ fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (mut sizes, mut shrinks) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
     most.store(&mut sizes);
     for (size, shrink) in sizes.iter_mut().zip(&mut shrinks) {
-        let is_plain = *size > N::ZERO && size.is_finite_number();
+        let is_scalable = *size > N::ZERO && size.is_finite_number();
         let scale = size.power_of_two_below();
-        *shrink = if is_plain { N::ONE / scale } else { N::INFINITY };
+        *shrink = if is_scalable { N::ONE / scale } else { N::INFINITY };
         *size = scale;
     }
     [sizes, shrinks]

@@ -128,7 +128,7 @@ impl<N: Real> TriangleQuery<'_, N> {
             for run in Level::new().runs(count) {
                 let axes = self.axes(run, &packet);
                 for lane in run.lanes().filter(|lane| axes.beyond >> lane & 1 == 0) {
-                    visit(first + lane, self.plain(&axes, lane).as_ref());
+                    visit(first + lane, self.certain_gap(&axes, lane).as_ref());
                 }
             }
             first += count;
@@ -136,7 +136,7 @@ impl<N: Real> TriangleQuery<'_, N> {
     }
 
     /// Returns the gap along the axis of a triangle, if the case is plain.
-    fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
+    fn certain_gap(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
         let triangle = PlacedTriangle {
             corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
             normal: of_lane(&axes.normals, lane),
@@ -196,11 +196,11 @@ impl<N: Real> PlacedTriangle<'_, N> {
         let longest = max(own, max(third.norm_squared(), (third - way).norm_squared()));
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * noise::<N>());
         // Written so that NaN is not plain.
-        let is_plain = is_inside
+        let is_certain = is_inside
             && det > N::lit(MIN_SINE) * own * other
             && own > long * long
             && cross(&way, &third).norm_squared() > tall * tall;
-        is_plain.then(|| FeatureId::Edge([0, 1, 2][side]))
+        is_certain.then(|| FeatureId::Edge([0, 1, 2][side]))
     }
 
     /// Returns the corner of the triangle that alone is nearest to a face of the solid and over its
@@ -218,7 +218,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
             let from = self.vertex(*from);
             cross(&outward, &(self.vertex(*to) - from)).dot(&(at - from)) > N::ZERO
         };
-        let is_plain = is_alone && ring.iter().zip(ring.iter().cycle().skip(1)).all(is_over);
-        is_plain.then(|| FeatureId::Vertex([0, 1, 2][lowest]))
+        let is_certain = is_alone && ring.iter().zip(ring.iter().cycle().skip(1)).all(is_over);
+        is_certain.then(|| FeatureId::Vertex([0, 1, 2][lowest]))
     }
 }

@@ -71,7 +71,7 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
     }
 
     /// Grid points have distinct positions unless the field has no extent.
-    fn has_plain_seams(&self) -> bool {
+    fn has_regular_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
 }

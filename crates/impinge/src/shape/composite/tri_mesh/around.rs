@@ -116,7 +116,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         for &triangle in self.topology.joints.parts(joint) {
             let at = self.corner_at(triangle, joint);
             let opposite = (at + 1) % 3;
-            let has_area = self.is_plain(triangle) || self.inward(triangle, opposite).is_some();
+            let has_area =
+                self.has_certain_area(triangle) || self.inward(triangle, opposite).is_some();
             if has_area {
                 continue;
             }
@@ -138,8 +139,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 
     /// Whether the triangle is tall enough that its area is beyond doubt; false leaves the area
     /// undecided.
-    pub(super) fn is_plain(&self, triangle: u32) -> bool {
-        self.bends.is_plain(triangle, || is_tall(&self.corners(triangle)))
+    pub(super) fn has_certain_area(&self, triangle: u32) -> bool {
+        self.bends.has_certain_area(triangle, || is_tall(&self.corners(triangle)))
     }
 
     /// The unit vectors along the sides of a triangle that leave a joint.

@@ -128,7 +128,7 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
         self.is_solid()
     }
 
-    fn has_plain_seams(&self) -> bool {
+    fn has_regular_seams(&self) -> bool {
         !(self.keeps_internal_edges || self.topology.is_moved)
     }
 }

@@ -163,7 +163,9 @@ impl<N: Real> TriMesh<N, 3> {
         match self.ways_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
             Some(false) => return false,
             // Triangles without area may have others beyond them.
-            Some(true) if around.iter().all(|&triangle| self.is_plain(triangle)) => return true,
+            Some(true) if around.iter().all(|&triangle| self.has_certain_area(triangle)) => {
+                return true;
+            }
             _ => {}
         }
         let mut seam = Seam::of_faces(*own, normal);

@@ -18,7 +18,7 @@
 use super::super::admit::{Admission, Limits, Slots};
 use super::SLOTS;
 use super::faces::{FacesInLanes, cross};
-use super::shown::ShownFaces;
+use super::supporting::SupportingParts;
 use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
@@ -73,7 +73,7 @@ pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,
     /// Supporting features of the rectangle and of the parallelogram.
-    shown: [ShownFaces<M>; 2],
+    supporting: [SupportingParts<M>; 2],
     /// Collects heights and level candidates while the slots are filled.
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS, L>,
@@ -98,8 +98,8 @@ where
         corners: &'a mut Corners,
         is_partial: bool,
     ) -> Self {
-        let (shown, admission) = (faces.shown(simd), Admission::new(simd, *limits));
-        Self { simd, faces, shown, admission, slots, corners, is_partial }
+        let (supporting, admission) = (faces.supporting(simd), Admission::new(simd, *limits));
+        Self { simd, faces, supporting, admission, slots, corners, is_partial }
     }
 
     /// Fills the slots with the candidates.
@@ -144,7 +144,8 @@ where
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
         let mut position = self.compare((flat, height), inside, flat);
         if self.is_partial {
-            position.is_inside &= self.shown[0].is_whole() & self.shown[1].has_corner(corner);
+            position.is_inside &=
+                self.supporting[0].is_whole() & self.supporting[1].has_corner(corner);
         }
         position
     }
@@ -164,8 +165,8 @@ where
         let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
         let mut position = self.compare((flat, height), inside, along);
         if self.is_partial {
-            position.is_inside &= self.shown[0].is_whole()
-                & self.shown[1].has_position(&position.at_end, &position.beyond);
+            position.is_inside &= self.supporting[0].is_whole()
+                & self.supporting[1].has_position(&position.at_end, &position.beyond);
         }
         position
     }
@@ -210,11 +211,11 @@ where
         let side = [to[0] - from[0], to[1] - from[1]];
         let (from, side) = ((&from, low), (&side, high - low));
         let ends = [from, side, (&to, high)];
-        let is_shown = self.shown[1].has_side(arm, sign);
-        self.crossing(slot, ends, (0, true), is_shown);
-        self.crossing(slot + 1, ends, (0, false), is_shown);
-        self.crossing(slot + 2, ends, (1, true), is_shown);
-        self.crossing(slot + 3, ends, (1, false), is_shown);
+        let is_supporting = self.supporting[1].has_side(arm, sign);
+        self.crossing(slot, ends, (0, true), is_supporting);
+        self.crossing(slot + 1, ends, (0, false), is_supporting);
+        self.crossing(slot + 2, ends, (1, true), is_supporting);
+        self.crossing(slot + 3, ends, (1, false), is_supporting);
     }
 
     /// Crosses a side with the side of the rectangle at one end of an axis; only crossings away
@@ -225,7 +226,7 @@ where
         slot: usize,
         [from, side, to]: [(&[V; 2], V); 3],
         (axis, is_positive): (usize, bool),
-        is_shown: M,
+        is_supporting: M,
     ) {
         let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
         let at = signed(across[axis], is_positive);
@@ -244,7 +245,7 @@ where
         let height = from.1 + side.1 * along;
         let mut is_there = (leaves | enters) & is_within;
         if self.is_partial {
-            is_there &= is_shown & self.shown[0].has_side(axis, is_positive);
+            is_there &= is_supporting & self.supporting[0].has_side(axis, is_positive);
         }
         self.store(slot, &flat, height, is_there);
     }

@@ -17,7 +17,7 @@
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
-use super::shown::ShownFaces;
+use super::supporting::SupportingParts;
 use crate::math::lanes::{dot, either, lit, negated, norm, rotated_into};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
@@ -146,23 +146,23 @@ fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     boxes: &Boxes<V, 3>,
     axis: &BestAxis<V, M>,
 ) -> ([V; 3], M) {
-    let is_tilted_too_far = axis.is_edges & !is_shown(simd, &axis.normal);
+    let is_tilted_too_far = axis.is_edges & !is_supporting(simd, &axis.normal);
     if !is_tilted_too_far.any_true() {
         return (axis.normal, axis.is_second);
     }
     let toward2 = negated(&rotated_into(&boxes.rotation, &axis.normal));
-    let is_second = is_tilted_too_far & is_shown(simd, &toward2);
+    let is_second = is_tilted_too_far & is_supporting(simd, &toward2);
     (either(is_second, &toward2, &axis.normal), axis.is_second | is_second)
 }
 
 /// Returns the lanes where the face of a box most aligned with a unit vector is not tilted too far.
 #[inline(always)]
-fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
+fn is_supporting<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
     toward: &[V; 3],
 ) -> M {
     let [_, u, v] = in_turn(&largest(toward), toward);
-    ShownFaces::is_all(simd, [u, v])
+    SupportingParts::is_all(simd, [u, v])
 }
 
 /// Selects one of three axes in each lane, times a length.
@@ -237,8 +237,8 @@ impl<V, M> FacesInLanes<V, M> {
             is_m,
             is_positive,
             tilt_above: [f1, f2],
-            is_whole: ShownFaces::is_all(simd, [toward[1], toward[2]])
-                & ShownFaces::is_all(simd, [f1, f2]),
+            is_whole: SupportingParts::is_all(simd, [toward[1], toward[2]])
+                & SupportingParts::is_all(simd, [f1, f2]),
             center,
             arms: [arm1, arm2],
             height,
@@ -252,13 +252,13 @@ impl<V, M> FacesInLanes<V, M> {
 
     /// Returns the supporting features of the rectangle and of the parallelogram.
     #[inline(always)]
-    pub(super) fn shown<S: Simd, N: Real>(&self, simd: S) -> [ShownFaces<M>; 2]
+    pub(super) fn supporting<S: Simd, N: Real>(&self, simd: S) -> [SupportingParts<M>; 2]
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
     {
-        let below = ShownFaces::of(simd, self.is_w[1], self.tilt);
-        [below, ShownFaces::of(simd, self.is_m[1], self.tilt_above)]
+        let below = SupportingParts::of(simd, self.is_w[1], self.tilt);
+        [below, SupportingParts::of(simd, self.is_m[1], self.tilt_above)]
     }
 
     /// Returns the point on the first box, in its frame, of projected coordinates and a height. A

@@ -12,7 +12,7 @@ mod axis;
 mod clip;
 mod faces;
 mod features;
-mod shown;
+mod supporting;
 
 use self::clip::{Clip, Corners};
 use self::faces::FacesInLanes;

@@ -15,12 +15,12 @@ use crate::shape::FACING_SINE_SQUARED;
 /// A part of a face, by its two axes: the lanes where it extends along the axis, and, for the
 /// others, those where it is at the positive end.
 #[derive(Clone, Copy)]
-pub(super) struct ShownFaces<M> {
+pub(super) struct SupportingParts<M> {
     is_free: [M; 2],
     is_positive: [M; 2],
 }
 
-impl<M> ShownFaces<M> {
+impl<M> SupportingParts<M> {
     /// Computes the feature from the components of a unit vector on the two axes of the face.
     /// `is_middle` are the lanes where the face's own axis is the second axis of the box; it breaks
     /// ties.
