@@ -213,7 +213,7 @@ fn rank_of<N: Real>(value: N) -> i64 {
 mod tests {
     use super::*;
     use crate::bvh::{Bounds, Lanes};
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
 
     /// A ranking in which an object near `target` has the rank of its least x coordinate, any other its distance.
     struct ByFirst<'a> {
@@ -246,11 +246,11 @@ mod tests {
 
     #[test]
     fn objects_come_by_rank_up_to_the_limit() {
-        let noise = &mut Noise(9);
+        let random = &mut Xorshift(9);
         for count in [0, 1, 16, 17, 700, 5000] {
             let each = |_| {
-                let corner = Point::from(noise.vector::<f64>(20.0));
-                Aabb::new(corner, corner + noise.vector::<f64>(1.0).abs())
+                let corner = Point::from(random.vector::<f64>(20.0));
+                Aabb::new(corner, corner + random.vector::<f64>(1.0).abs())
             };
             let boxes: Vec<_> = (0..count).map(each).collect();
             let tree =

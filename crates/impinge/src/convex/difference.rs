@@ -6,7 +6,7 @@ use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit_or
 use crate::shape::SupportMap;
 
 /// Returns the rounding error of arithmetic, in units of the pair.
-pub(super) fn noise<N: Real>() -> N {
+pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
@@ -15,7 +15,7 @@ pub(super) fn noise<N: Real>() -> N {
 /// Flat-faced cores are solved exactly after finitely many steps; curved ones stop at this gap:
 /// 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
 pub(super) fn tolerance<N: Real>() -> N {
-    max(noise(), N::lit(1.0 / 1_099_511_627_776.0))
+    max(rounding_error(), N::lit(1.0 / 1_099_511_627_776.0))
 }
 
 /// A point of the difference, and the points of the two cores that it comes from.
@@ -228,7 +228,7 @@ where
     }
 
     fn peak(&self) -> Option<Peak<N, D>> {
-        self.peaks?.best(self.shrink, noise())
+        self.peaks?.best(self.shrink, rounding_error())
     }
 }
 

@@ -9,7 +9,7 @@
 use super::Separation;
 use super::candidate::SupportCandidate;
 use super::climb::climb;
-use super::difference::{Difference, Vertex, noise, tolerance};
+use super::difference::{Difference, Vertex, rounding_error, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::{EpaFace, Hull};
 use super::newton::converges;
@@ -105,18 +105,20 @@ fn is_wide<N: Real>([a, b, c]: &[Vertex<N, 3>; 3]) -> bool {
 }
 
 fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>; 2]) -> Start<N> {
-    let Some((along, _)) = unit(&(b.point - a.point)).filter(|&(_, width)| width > noise()) else {
+    let Some((along, _)) =
+        unit(&(b.point - a.point)).filter(|&(_, width)| width > rounding_error())
+    else {
         let axis = Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO);
         return Err(locate(difference, &best_of(difference, &[axis]), &[a]));
     };
     let (u, v) = orthonormal_basis(&along);
-    let mut side = (a, noise());
+    let mut side = (a, rounding_error());
     for across in [u, -u, v, -v] {
         let found = farthest(difference, &across, &a.point);
         side = if found.1 > side.1 { found } else { side };
     }
     let (c, found) = side;
-    if found > noise() {
+    if found > rounding_error() {
         return from_triangle(difference, [a, b, c]);
     }
     // A segment through the origin, or nearly: all directions across are equal.
@@ -133,7 +135,7 @@ fn from_triangle<N: Real>(
     };
     let (above, height) = farthest(difference, &normal, &a.point);
     let (below, depth) = farthest(difference, &-normal, &a.point);
-    if max(height, depth) > noise() {
+    if max(height, depth) > rounding_error() {
         return Ok([a, b, c, if height > depth { above } else { below }]);
     }
     // A flat disk through the origin, or nearly: its depth across is zero.
@@ -175,7 +177,7 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             if let Some(mix) = polish(difference, &mut best, &corners) {
                 return placed(&best, &mix, N::HALF);
             }
-            let is_closed = -candidate.height - face.offset <= noise();
+            let is_closed = -candidate.height - face.offset <= rounding_error();
             if is_closed {
                 if best.height <= before {
                     best.prefer(candidate, N::TWO * tolerance());
@@ -226,8 +228,8 @@ impl<N: Real> Summits<N> {
         best: &SupportCandidate<N, 3>,
     ) -> Option<Separation<N, 3>> {
         let Summit { top, mix } = self.highest.as_ref()?;
-        let is_answer =
-            -nearest.offset - top.height <= tolerance() && best.height - top.height <= noise();
+        let is_answer = -nearest.offset - top.height <= tolerance()
+            && best.height - top.height <= rounding_error();
         is_answer.then(|| placed(top, mix, N::HALF))
     }
 

@@ -17,7 +17,7 @@ use smallvec::SmallVec;
 
 use super::Separation;
 use super::candidate::SupportCandidate;
-use super::difference::{Difference, noise, tolerance};
+use super::difference::{Difference, rounding_error, tolerance};
 use super::newton::converges;
 use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
@@ -162,7 +162,7 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     start: &Vector<N, D>,
 ) -> Vector<N, D> {
     let mut search = GjkSearch::new(SupportCandidate::along(difference, *start));
-    (search.gap, search.for_points) = (noise(), false);
+    (search.gap, search.for_points) = (rounding_error(), false);
     search.run(difference, N::INFINITY);
     search.best.normal
 }
@@ -208,7 +208,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         let mut nearest = N::nearest(self.simplex.points());
         for _ in 0..ROUNDS {
             // Written so that NaN counts as an overlap, whose loops end by their caps.
-            let away = nearest.squared > noise::<N>() * noise();
+            let away = nearest.squared > rounding_error::<N>() * rounding_error();
             if nearest.enclosed || !away {
                 return Outcome::Overlap;
             }
@@ -290,7 +290,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     /// Returns the answer if the difference contains the origin, or nearly: at once if a normal is
     /// known with the origin on its supporting plane.
     fn finish_overlap(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
-        if self.best.height >= -noise::<N>() {
+        if self.best.height >= -rounding_error::<N>() {
             return self.final_separation(difference);
         }
         N::deepest(difference, &self.simplex)
@@ -301,7 +301,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     fn polished(&self, difference: &dyn Difference<N, D>) -> Option<Separation<N, D>> {
         let mut best = self.best;
         let mix = polish(difference, &mut best, self.simplex.vertices())?;
-        let is_apart = best.height > noise();
+        let is_apart = best.height > rounding_error();
         is_apart.then(|| placed(&best, &mix, N::HALF))
     }
 
@@ -346,5 +346,5 @@ fn rough_gap<N: Real>() -> N {
 
 /// Gap that is good enough: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
 fn gap<N: Real>() -> N {
-    max(noise(), N::lit(1.0 / 70_368_744_177_664.0))
+    max(rounding_error(), N::lit(1.0 / 70_368_744_177_664.0))
 }

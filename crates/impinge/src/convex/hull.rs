@@ -14,7 +14,7 @@
 
 use smallvec::SmallVec;
 
-use super::difference::{Vertex, noise};
+use super::difference::{Vertex, rounding_error};
 use crate::math::{Mapped, Real, Vector, cross, max, unit};
 
 /// A triangle, counter-clockwise seen from outside.
@@ -134,7 +134,7 @@ impl<N: Real> Hull<N> {
     fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> FaceIndices {
         let mut visible = FaceIndices::new();
         for (index, face) in self.faces.iter().enumerate() {
-            let beyond = face.outward.dot(&vertex.point) - face.offset > noise();
+            let beyond = face.outward.dot(&vertex.point) - face.offset > rounding_error();
             if index != from && (beyond || face.offset == N::INFINITY) {
                 visible.push(index);
             }
@@ -166,7 +166,7 @@ impl<N: Real> Hull<N> {
         let (e, f) = (b - a, c - a);
         let normal = cross(&e, &f);
         let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
-        let sound = normal.norm_squared() > noise::<N>() * noise() * longest;
+        let sound = normal.norm_squared() > rounding_error::<N>() * rounding_error() * longest;
         let direction = unit(&normal).filter(|_| sound);
         let (outward, offset) = direction.map_or((Vector::<N, 3>::zeros(), N::INFINITY), |found| {
             let (outward, _) = found;

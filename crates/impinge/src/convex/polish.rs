@@ -13,7 +13,7 @@
 use smallvec::SmallVec;
 
 use super::candidate::SupportCandidate;
-use super::difference::{Branch, Difference, Vertex, noise, tolerance};
+use super::difference::{Branch, Difference, Vertex, rounding_error, tolerance};
 use super::simplex::Simplicial;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, max, min, unit};
@@ -71,7 +71,7 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
         // The error after a step is about the square of the step, and weights are as accurate as
         // the step. In the end no point may be outside its core by however little.
         let ends = squared <= N::EPSILON;
-        let slack = if ends { noise() } else { noise::<N>().sqrt() };
+        let slack = if ends { rounding_error() } else { rounding_error::<N>().sqrt() };
         let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides, slack);
         if changed {
             current = *best;
@@ -248,7 +248,7 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
         let outward = if index == 1 { -current.normal } else { current.normal };
         let branches = &sides[index].branches;
         let most = branches.iter().fold(-N::MAX, |most, b| max(outward.dot(&b.on), most));
-        let is_beyond = outward.dot(on) > most + noise::<N>();
+        let is_beyond = outward.dot(on) > most + rounding_error::<N>();
         if is_beyond && sides[0].branches.len() + sides[1].branches.len() <= D {
             sides[index].branches.push(difference.branch(index == 1, on, &current.normal));
             sides[index].share_evenly();
@@ -342,7 +342,7 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; RO
             rows.swap(column, pivot);
         }
         let above = rows[column];
-        let usable = above[column].abs() > noise::<N>() * noise();
+        let usable = above[column].abs() > rounding_error::<N>() * rounding_error();
         if !usable {
             return None;
         }

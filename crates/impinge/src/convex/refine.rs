@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::candidate::SupportCandidate;
-use super::difference::{Difference, Vertex, noise};
+use super::difference::{Difference, Vertex, rounding_error};
 use super::simplex::Simplicial;
 use crate::math::{Vector, min, unit};
 
@@ -30,7 +30,7 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     let mut bundle = support_points.clone();
     for _ in 0..ROUNDS {
         let (normal, promise) = most_promising(&bundle, &best.normal);
-        let worth_it = promise > best.height + noise::<N>() * N::HALF;
+        let worth_it = promise > best.height + rounding_error::<N>() * N::HALF;
         if !worth_it {
             return;
         }

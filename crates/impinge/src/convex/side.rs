@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 use super::candidate::SupportCandidate;
 use super::climb::climb;
-use super::difference::{Difference, Vertex, noise, tolerance};
+use super::difference::{Difference, Vertex, rounding_error, tolerance};
 use super::polish::polish;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, cross, filled, unit};
@@ -48,7 +48,7 @@ pub(super) fn better<N: Real>(
 ) -> Option<Better<N>> {
     let mut found: Option<Better<N>> = None;
     for (axis, rise) in difference.round_sides().into_iter().flatten() {
-        let least = found.as_ref().map_or(height, |found| found.best.height) + noise();
+        let least = found.as_ref().map_or(height, |found| found.best.height) + rounding_error();
         let ring =
             NormalRing::near(axis, rise, normal).filter(|ring| ring.is_level(difference, height));
         let top = ring.and_then(|ring| ring.best(difference, least));

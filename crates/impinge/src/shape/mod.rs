@@ -21,9 +21,9 @@ mod mass;
 pub(crate) mod polytope;
 mod revision;
 mod scale;
+mod side_or_vertex;
 pub(crate) mod solids;
 mod support_map;
-mod supporting;
 pub(crate) mod surface;
 mod tilt;
 
@@ -52,6 +52,7 @@ pub use polytope::convex_polygon::ConvexPolygon;
 pub use polytope::{Polytope, PolytopeEdge, PolytopeFace};
 pub(crate) use revision::Revision;
 pub use scale::ScaleError;
+pub(crate) use side_or_vertex::SideOrVertex;
 pub use solids::ball::Ball;
 pub use solids::capsule::Capsule;
 pub use solids::cone::Cone;
@@ -70,7 +71,6 @@ pub use solids::triangle::Triangle;
 /// Limits below which a triangle leaves its supporting feature undecided.
 pub(crate) use solids::triangle_feature::{CLEAR as CLEARLY_LARGER, THIN_SQUARED};
 pub use support_map::{ConvexPolyhedron, CurvedSupport, SupportMap};
-pub(crate) use supporting::SupportingFeature;
 #[doc(hidden)]
 pub(crate) use surface::face_seams::FaceSeams;
 pub use surface::own_surface::SurfaceAccess;

@@ -260,7 +260,7 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
 mod tests {
     use super::*;
     use crate::bvh::Lanes;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::math::{Isometry3, Point, Vector};
 
     /// Segments by their ends, in the frame of their tree.
@@ -310,10 +310,10 @@ mod tests {
         Aabb::new(a.inf(b), a.sup(b))
     }
 
-    fn segments(noise: &mut Noise, count: usize) -> Segments {
+    fn segments(random: &mut Xorshift, count: usize) -> Segments {
         let each = |_| {
-            let start = Point::from(noise.vector::<f64>(20.0));
-            [start, start + noise.vector::<f64>(2.0)]
+            let start = Point::from(random.vector::<f64>(20.0));
+            [start, start + random.vector::<f64>(2.0)]
         };
         (0..count).map(each).collect()
     }
@@ -328,17 +328,17 @@ mod tests {
 
     #[test]
     fn no_near_pair_is_missed() {
-        let noise = &mut Noise(9);
+        let random = &mut Xorshift(9);
         for (count1, count2, reach) in
             [(0, 9, 1.0), (1, 1, 60.0), (5, 300, 2.0), (700, 12, 1.0), (400, 900, 0.5)]
         {
-            let all = [segments(noise, count1), segments(noise, count2)];
+            let all = [segments(random, count1), segments(random, count2)];
             let tree = |segments: &Segments| {
                 let boxes = segments.iter().map(|own| Bounds::enclosing(&around(own)));
                 Tree::of_still(Lanes::detect(), (0..).zip(boxes))
             };
             let trees = [tree(&all[0]), tree(&all[1])];
-            let turn = noise.vector::<f64>(3.0);
+            let turn = random.vector::<f64>(3.0);
             let pose = Pose::from(Isometry3::new(Vector::<f64, 3>::new(9.0, -4.0, 2.0), turn));
             let poses = [pose.inverse(), pose];
             let mut pairs = RotatedPairs {

@@ -361,7 +361,7 @@ mod tests {
     use super::*;
     use crate::bounding_volume::BoundingVolume;
     use crate::bvh::Lanes;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::math::{Point, Vector};
 
     /// The second tree is translated by `shift` along the first axis.
@@ -430,19 +430,19 @@ mod tests {
         }
     }
 
-    fn boxes(noise: &mut Noise, count: usize) -> Vec<Aabb<f64, 3>> {
+    fn boxes(random: &mut Xorshift, count: usize) -> Vec<Aabb<f64, 3>> {
         let each = |_| {
-            let corner = Point::from(noise.vector::<f64>(20.0));
-            Aabb::new(corner, corner + noise.vector::<f64>(1.0).abs())
+            let corner = Point::from(random.vector::<f64>(20.0));
+            Aabb::new(corner, corner + random.vector::<f64>(1.0).abs())
         };
         (0..count).map(each).collect()
     }
 
     #[test]
     fn no_near_pair_is_missed() {
-        let noise = &mut Noise(4);
+        let random = &mut Xorshift(4);
         for (count1, count2) in [(0, 9), (1, 1), (5, 300), (700, 12), (400, 900)] {
-            let all = [boxes(noise, count1), boxes(noise, count2)];
+            let all = [boxes(random, count1), boxes(random, count2)];
             let tree = |boxes: &[Aabb<f64, 3>]| {
                 Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().map(Bounds::enclosing)))
             };

@@ -52,14 +52,14 @@ impl<N: Real> Form<N, 3> for Segments3 {
         let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
         sizes[0].smaller(sizes[1]).store(&mut found.size);
-        let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
+        let rounding_error = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
         // From the surface back to the core, with the rounding that the builder for one pair has.
         let core1 = minus(&rounded[0], &times(&normal, radii[0]));
         let core2 = plus(&rounded[1], &times(&normal, radii[1]));
         // Nearly parallel segments may touch in two points: they fall back.
         let is_crossing = is_crossing(simd, [&ends1, &ends2], &normal, inputs.sine(simd));
-        let has_part1 = found.put_end_or_side(0, &core1, &ends1, noise);
-        let has_part2 = found.put_end_or_side(2, &core2, &ends2, noise);
+        let has_part1 = found.put_end_or_side(0, &core1, &ends1, rounding_error);
+        let has_part2 = found.put_end_or_side(2, &core2, &ends2, rounding_error);
         let signed = distance - radii[0] - radii[1];
         let is_apart = has_scale & signed.simd_gt(inputs.prediction::<S, V>(simd));
         let is_found =
@@ -197,11 +197,11 @@ fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     for end in [&ends1[0], &ends1[1], &ends2[0], &ends2[1]] {
         reach = norm(end).larger(reach);
     }
-    let noise = lit::<S, N, V>(simd, 8.0) * V::all(simd, N::EPSILON) * reach;
+    let rounding_error = lit::<S, N, V>(simd, 8.0) * V::all(simd, N::EPSILON) * reach;
     let (normal, distance, is_in_range) = unit(simd, &minus(&points[1], &points[0]));
     let high = dot(&normal, &ends1[1]).larger(dot(&normal, &ends1[0]));
     let low = dot(&normal, &ends2[1]).smaller(dot(&normal, &ends2[0]));
-    let is_best = (low - high + noise / lit::<S, N, V>(simd, 4.0)).simd_ge(distance);
+    let is_best = (low - high + rounding_error / lit::<S, N, V>(simd, 4.0)).simd_ge(distance);
     (normal, distance, is_best & is_in_range)
 }
 
@@ -215,8 +215,8 @@ fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 ) -> V::Mask {
     let (along1, along2) = (minus(&ends1[1], &ends1[0]), minus(&ends2[1], &ends2[0]));
     let (flat1, flat2) = (flat(&along1, normal), flat(&along2, normal));
-    let noise = lit::<S, N, V>(simd, 16.0) * V::all(simd, N::EPSILON);
-    let least = lit::<S, N, V>(simd, 2.0) * sine.larger(noise);
+    let rounding_error = lit::<S, N, V>(simd, 16.0) * V::all(simd, N::EPSILON);
+    let least = lit::<S, N, V>(simd, 2.0) * sine.larger(rounding_error);
     let turn = dot(normal, &cross(&along1, &along2));
     (turn * turn).simd_gt(least * least * flat1 * flat2)
 }
@@ -237,11 +237,11 @@ impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
         slot: usize,
         point: &[V; 3],
         [first, last]: &SegmentEnds<V>,
-        noise: V,
+        rounding_error: V,
     ) -> V::Mask {
         let along = minus(last, first);
         let (squared, reached) = (dot(&along, &along), dot(&minus(point, first), &along));
-        let slack = noise * squared.sqrt();
+        let slack = rounding_error * squared.sqrt();
         let (is_first, is_last) = (reached.simd_le(slack), (squared - reached).simd_le(slack));
         self.parts[slot] = bits(is_first);
         self.parts[slot + 1] = bits(is_last);

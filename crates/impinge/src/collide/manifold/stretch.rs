@@ -19,7 +19,7 @@
 use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
 use super::{Pair, RawManifold, add_witness, choose_in_frame};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
-use crate::shape::{FeatureId, Geometry, Kind, Segment, SupportMap, SupportingFeature};
+use crate::shape::{FeatureId, Geometry, Kind, Segment, SideOrVertex, SupportMap};
 
 /// Builds the manifold of two solids within the prediction, neither of them a ball or a half-space;
 /// returns `false` if a supporting feature is neither a side nor a corner.
@@ -87,21 +87,21 @@ impl<N: Real> Stretch<N> {
     ) -> Option<Self> {
         let outward = which.outward(frame);
         let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
-        let supporting = SupportingFeature::of(kind, &direction)?;
+        let supporting = SideOrVertex::of(kind, &direction)?;
         Some(Self::placed(which, &supporting, rounding(kind), pose, frame))
     }
 
     /// Feature of a segment that is the first solid.
     #[inline]
     pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &ContactFrame<N, 2>) -> Self {
-        Self::placed(Which::First, &SupportingFeature::of_segment(segment), N::ZERO, None, frame)
+        Self::placed(Which::First, &SideOrVertex::of_segment(segment), N::ZERO, None, frame)
     }
 
     /// Transforms and simplifies a feature.
     #[inline(always)]
     fn placed(
         which: Which,
-        supporting: &SupportingFeature<N>,
+        supporting: &SideOrVertex<N>,
         rounding: N,
         pose: Option<&Pose<N, 2>>,
         frame: &ContactFrame<N, 2>,

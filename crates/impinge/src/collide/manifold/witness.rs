@@ -68,12 +68,12 @@ fn features<N: Real, const D: usize>(
     if let Some(touched) = of_ball(pair, separation) {
         return [FeatureId::Face(0), touched];
     }
-    let (noise, normal) = (rounding(pair), separation.normal);
-    let first = by_position(pair.first, &separation.point1, &normal, noise);
+    let (tolerance, normal) = (rounding(pair), separation.normal);
+    let first = by_position(pair.first, &separation.point1, &normal, tolerance);
     // In the frame of the second solid.
     let second = || {
         let point = pair.pose12.inverse_point(&separation.point2);
-        by_position(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
+        by_position(pair.second, &point, &-pair.pose12.inverse_vector(&normal), tolerance)
     };
     [
         first.unwrap_or_else(|| supporting_part(pair, separation, false)),
@@ -88,21 +88,21 @@ fn by_position<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
     outward: &Vector<N, D>,
-    noise: N,
+    tolerance: N,
 ) -> Option<FeatureId> {
     match kind {
         Kind::Plane(_) => Some(FeatureId::Face(0)),
-        Kind::Cuboid(cuboid) => cuboid.part_at(point, noise),
-        Kind::Triangle(triangle) => triangle.part_at(point, outward, noise),
-        Kind::Polytope(solid) => Some(solid.part_at(point, outward, noise)),
-        Kind::Segment(segment) => part_of(segment, point, N::TWO * noise),
+        Kind::Cuboid(cuboid) => cuboid.part_at(point, tolerance),
+        Kind::Triangle(triangle) => triangle.part_at(point, outward, tolerance),
+        Kind::Polytope(solid) => Some(solid.part_at(point, outward, tolerance)),
+        Kind::Segment(segment) => part_of(segment, point, N::TWO * tolerance),
         Kind::Capsule(capsule) => {
             let core = point - outward * capsule.radius();
-            part_of(capsule.segment(), &core, N::TWO * noise)
+            part_of(capsule.segment(), &core, N::TWO * tolerance)
         }
         Kind::Rounded(solid) => {
             let core = point - outward * solid.radius();
-            by_position(solid.inner().0, &core, outward, noise)
+            by_position(solid.inner().0, &core, outward, tolerance)
         }
         _ => None,
     }
@@ -112,7 +112,7 @@ fn by_position<N: Real, const D: usize>(
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
-    noise: N,
+    tolerance: N,
     supporting_part: SupportingPartFn<N, D>,
     is_second: bool,
 ) -> FeatureId {
@@ -121,7 +121,7 @@ fn feature<N: Real, const D: usize>(
         Some(_) => return FeatureId::Face(0),
         None => {}
     }
-    let seam = on_seam(pair, separation, noise, is_second);
+    let seam = on_seam(pair, separation, tolerance, is_second);
     seam.unwrap_or_else(|| supporting_part(pair, separation, is_second))
 }
 
@@ -130,7 +130,7 @@ fn feature<N: Real, const D: usize>(
 fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
-    noise: N,
+    tolerance: N,
     is_second: bool,
 ) -> Option<FeatureId> {
     let (triangle, point, toward) = match (&pair.first, &pair.second) {
@@ -143,7 +143,7 @@ fn on_seam<N: Real, const D: usize>(
         }
         _ => return None,
     };
-    let part = triangle.part_at(&point, &toward, noise);
+    let part = triangle.part_at(&point, &toward, tolerance);
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 
@@ -169,11 +169,11 @@ pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     if let Kind::Ball(_) | Kind::Ellipsoid(_) = pair.second {
         return Some(FeatureId::Face(0));
     }
-    let (point, noise) = (pair.pose12.inverse_point(&found.point2), rounding(pair));
+    let (point, tolerance) = (pair.pose12.inverse_point(&found.point2), rounding(pair));
     match pair.second {
-        Kind::Cylinder(cylinder, _) => cylinder.part_at(&point, noise),
-        Kind::Cone(cone, _) => cone.part_at(&point, noise),
-        other => by_position(other, &point, &-pair.pose12.inverse_vector(&found.normal), noise),
+        Kind::Cylinder(cylinder, _) => cylinder.part_at(&point, tolerance),
+        Kind::Cone(cone, _) => cone.part_at(&point, tolerance),
+        other => by_position(other, &point, &-pair.pose12.inverse_vector(&found.normal), tolerance),
     }
 }
 

@@ -251,7 +251,7 @@ mod tests {
     type P3 = Point<f64, 3>;
 
     /// Pseudo-random numbers from -1 to 1.
-    fn noise(state: &mut u64) -> f64 {
+    fn pseudo_random(state: &mut u64) -> f64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;
         *state ^= *state << 17;
@@ -293,7 +293,7 @@ mod tests {
         for round in 0..400 {
             // Every other triangle is a sliver.
             let thin = if round % 2 == 0 { 1.0 } else { 1e-9 };
-            let mut corner = || P3::from([0, 1, 2].mapped(|_| 2.0 * noise(&mut state)));
+            let mut corner = || P3::from([0, 1, 2].mapped(|_| 2.0 * pseudo_random(&mut state)));
             let [a, b, mut c] = [corner(), corner(), corner()];
             c = a + (b - a) * 0.3 + (c - a) * thin;
             let truth = sampled(&[a, b, c], &origin);

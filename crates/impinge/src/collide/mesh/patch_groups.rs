@@ -274,17 +274,17 @@ fn cell_of<N: Real, const D: usize>(normal: &Vector<N, D>) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
 
     /// Pieces without points, with normals in all directions, some of them nearly equal.
     fn pieces<const D: usize>(count: usize, has_equal: bool) -> Vec<Piece<f64, D>> {
-        let mut noise = Noise(3);
+        let mut random = Xorshift(3);
         let mut pieces: Vec<Piece<f64, D>> = Vec::new();
         for at in 0..count {
             let is_near = has_equal && at % 4 == 3;
             let near = if is_near { pieces[at - 1].normal } else { Vector::<f64, D>::zeros() };
             let scale = if is_near { 0.4 * SAME } else { 1.0 };
-            let aside = Vector::<f64, D>::from_fn(|_, _| scale * noise.next());
+            let aside = Vector::<f64, D>::from_fn(|_, _| scale * random.next());
             let normal = (near + aside).normalize();
             pieces.push(Piece { normal, parts: [0; 2], points: 0..0 });
         }

@@ -261,7 +261,7 @@ mod tests {
     use super::*;
     use crate::collide::Pair;
     use crate::collide::separation::separation_in_space;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::math::{Mapped, Point, Pose, Vector};
     use crate::shape::{Geometry, Shape, Triangle};
 
@@ -277,12 +277,12 @@ mod tests {
 
     /// The bits must be true, and few pairs undecided.
     fn check<N: Real>(scale: f64, flat: f64) {
-        let (mut noise, mut known, mut all) = (Noise(7), 0, 0);
+        let (mut random, mut known, mut all) = (Xorshift(7), 0, 0);
         for round in 0..200 {
             let (mut pairs, mut placed) = (PartPairs::<N, 3>::new(N::ZERO), Vec::new());
             for lane in 0..LANES {
                 let mut corner = || {
-                    let at = noise.vector::<f64>(scale);
+                    let at = random.vector::<f64>(scale);
                     Point::from(Vector::<N, 3>::new(
                         N::lit(at.x),
                         N::lit(at.y),

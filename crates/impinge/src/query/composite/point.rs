@@ -73,8 +73,9 @@ impl<N: Real, const D: usize> Near<'_, N, D> {
         let square = way.norm_squared();
         // The rounding error of the products, 16 units of the sum of all squares, and a thousandth
         // of the distance: parts that are equally near up to rounding are still tested.
-        let noise = N::lit(16.0) * N::EPSILON * (square + squares[0] + squares[1] + squares[2]);
-        let lowest = min(min(heights[0], heights[1]), heights[2]) - noise;
+        let rounding_error =
+            N::lit(16.0) * N::EPSILON * (square + squares[0] + squares[1] + squares[2]);
+        let lowest = min(min(heights[0], heights[1]), heights[2]) - rounding_error;
         let limit = distance * distance * square * N::lit(1.0 + 1.0 / 512.0);
         lowest > N::ZERO && lowest * lowest > limit && limit > N::MIN_POSITIVE
     }
@@ -182,19 +183,19 @@ pub(crate) fn surface_point<N: Space<D>, const D: usize>(
 mod tests {
     use super::*;
     use crate::math::Pose;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::{Segment, Triangle};
 
     /// Parts reported as beyond a distance are, whatever their size and position; most that are,
     /// are reported.
     fn parts_beyond<N: Space<3>>() {
-        let noise = &mut Noise(7);
+        let random = &mut Xorshift(7);
         let (mut beyond, mut said) = (0, 0);
         for round in 0..3000 {
             let scale = [1.0, 1e-12, 1e9][round % 3];
-            let aside = noise.vector::<f64>(3.0);
+            let aside = random.vector::<f64>(3.0);
             let mut corner = || {
-                let at = noise.vector::<f64>([1.0, 0.1, 4.0][round / 3 % 3]) + aside;
+                let at = random.vector::<f64>([1.0, 0.1, 4.0][round / 3 % 3]) + aside;
                 Point::from(at.map(|x| N::lit(x * scale)))
             };
             let corners = [corner(), corner(), corner()];

@@ -353,9 +353,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
-            let noise = N::lit(8.0) * N::EPSILON * max_component(&relative);
+            let rounding_error = N::lit(8.0) * N::EPSILON * max_component(&relative);
             let speed = direction.map_or_else(|| length(&relative), |n| n.dot(&relative));
-            return if speed.abs() <= noise { N::ZERO } else { speed };
+            return if speed.abs() <= rounding_error { N::ZERO } else { speed };
         }
         let speed = |index: usize, side: N| {
             let body = self.bodies[index];
@@ -384,8 +384,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         let motion = self.bodies[index].constant()?;
         let toward = if index == 0 { self.normal } else { -self.normal };
         let slope = motion.spin.tr_mul(&toward);
-        let noise = N::lit(8.0) * N::EPSILON * self.bodies[index].turn_bound(self.time, self.time);
-        Some(if max_component(&slope) <= noise { Vector::<N, D>::zeros() } else { slope })
+        let rounding_error =
+            N::lit(8.0) * N::EPSILON * self.bodies[index].turn_bound(self.time, self.time);
+        Some(if max_component(&slope) <= rounding_error { Vector::<N, D>::zeros() } else { slope })
     }
 
     /// The speed at which a point of the first body and one of the second approach along the
@@ -395,9 +396,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let terms =
                 [motion1.linear - motion2.linear, motion1.spin * arms[0], motion2.spin * arms[1]];
-            let noise = terms.iter().fold(N::ZERO, |sum, term| sum + max_component(term));
+            let rounding_error = terms.iter().fold(N::ZERO, |sum, term| sum + max_component(term));
             let closing = self.normal.dot(&(terms[0] + terms[1] - terms[2]));
-            return (closing, N::lit(8.0) * N::EPSILON * noise);
+            return (closing, N::lit(8.0) * N::EPSILON * rounding_error);
         }
         self.closing_observed(points, &arms, size)
     }

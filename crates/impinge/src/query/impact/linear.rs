@@ -70,13 +70,14 @@ impl<N: Real, const D: usize> Path<N, D> {
     }
 
     /// The largest speed along a normal that counts as rounding error.
-    fn noise(&self) -> N {
+    fn rounding_error(&self) -> N {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
     /// Whether a contact at the start counts.
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
-        self.contact_at_start || is_hit_at_start(gap, self.closing(normal), tolerance, self.noise())
+        self.contact_at_start
+            || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())
     }
 }
 
@@ -105,9 +106,14 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
 /// that does not separate is, any other is not. An unbounded overlap always is.
 ///
 /// A gap within the tolerance and a closing speed within the noise count as zero.
-pub(super) fn is_hit_at_start<N: Real>(gap: N, closing: N, tolerance: N, noise: N) -> bool {
+pub(super) fn is_hit_at_start<N: Real>(
+    gap: N,
+    closing: N,
+    tolerance: N,
+    rounding_error: N,
+) -> bool {
     let deep = gap < -tolerance;
-    closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
+    closing > rounding_error || (deep && closing >= -rounding_error) || gap == -N::INFINITY
 }
 
 /// The start of the path of two solids.
@@ -178,7 +184,7 @@ fn by_steps<N: Space<D>, const D: usize>(
             return Some(Arrival::reached(along, found));
         }
         let later = along + gap / closing;
-        let in_time = closing > path.noise() && later <= path.end;
+        let in_time = closing > path.rounding_error() && later <= path.end;
         if !in_time {
             return None;
         }

@@ -336,11 +336,11 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 
     /// Whether a contact at the start counts, as for [`impact`](super::impact).
     fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
-        let (closing, noise) =
+        let (closing, rounding_error) =
             configuration.poses.moment.closing(&configuration.points, configuration.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         self.contact_at_start
-            || is_hit_at_start(configuration.gap, closing, configuration.tolerance, noise)
+            || is_hit_at_start(configuration.gap, closing, configuration.tolerance, rounding_error)
     }
 
     /// Converts the configuration to an impact in the world.

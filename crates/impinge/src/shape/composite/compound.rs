@@ -220,8 +220,8 @@ fn own_factors<N: Real, const D: usize>(
     magnitudes: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
     let rotated = rotation.transpose() * Matrix::<N, D>::from_diagonal(magnitudes) * rotation;
-    let noise = N::lit(16.0) * N::EPSILON * max_component(magnitudes);
-    let is_beside = |at: (usize, usize)| at.0 != at.1 && rotated[at].abs() > noise;
+    let tolerance = N::lit(16.0) * N::EPSILON * max_component(magnitudes);
+    let is_beside = |at: (usize, usize)| at.0 != at.1 && rotated[at].abs() > tolerance;
     let mut all = (0..D).flat_map(|row| (0..D).map(move |column| (row, column)));
     (!all.any(is_beside)).then(|| rotated.diagonal())
 }

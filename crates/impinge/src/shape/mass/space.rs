@@ -53,8 +53,8 @@ impl<N: Real> MassProperties<N, 3> {
         let inertia = inertia.map(N::as_f64);
         let symmetric = inertia * 0.5 + inertia.transpose() * 0.5;
         let (values, _) = crate::math::eigen::symmetric_eigen(&symmetric);
-        let noise = values.amax() * 64.0 * N::EPSILON.as_f64();
-        for &moment in values.iter().filter(|&&moment| moment < -noise) {
+        let tolerance = values.amax() * 64.0 * N::EPSILON.as_f64();
+        for &moment in values.iter().filter(|&&moment| moment < -tolerance) {
             amount("a principal moment of inertia", moment)?;
         }
         let mass = amount("the mass", mass.as_f64())?;

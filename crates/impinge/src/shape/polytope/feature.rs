@@ -4,7 +4,7 @@ use crate::math::{Point, Real, Vector, unit, unit_or};
 use crate::shape::polytope::count32;
 use crate::shape::tilt::Tilt;
 use crate::shape::{
-    ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, SupportMap, SupportingFeature,
+    ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, SideOrVertex, SupportMap,
 };
 
 /// The supporting feature for a direction: the index of a face, a side or a vertex.
@@ -36,44 +36,44 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// Returns the vertex, side or face, within the supporting feature for the unit vector
-    /// `direction`, that a point of the surface lies on, up to `noise`.
+    /// `direction`, that a point of the surface lies on, up to `tolerance`.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
         direction: &Vector<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> FeatureId {
         match self.part_toward(direction, Tilt::default_limit()) {
             HullPart::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
-            HullPart::Side(side) => {
-                self.end_at(&self.side(side).vertices, point, noise).unwrap_or(Self::side_id(side))
-            }
+            HullPart::Side(side) => self
+                .end_at(&self.side(side).vertices, point, tolerance)
+                .unwrap_or(Self::side_id(side)),
             HullPart::Face(index) => {
                 let face = &self.faces[index as usize];
-                let end = self.end_at(self.face_vertices(face), point, noise);
+                let end = self.end_at(self.face_vertices(face), point, tolerance);
                 let side = || {
                     let mut sides = self.face_sides(face).iter();
-                    sides.find(|&&side| self.is_on_side(side, point, noise)).copied()
+                    sides.find(|&&side| self.is_on_side(side, point, tolerance)).copied()
                 };
                 end.or_else(|| side().map(Self::side_id)).unwrap_or(FeatureId::Face(index))
             }
         }
     }
 
-    /// Returns the first of `vertices` within `2 noise` of a point.
-    fn end_at(&self, vertices: &[u32], point: &Point<N, D>, noise: N) -> Option<FeatureId> {
-        let near = N::lit(4.0) * noise * noise;
+    /// Returns the first of `vertices` within `2 tolerance` of a point.
+    fn end_at(&self, vertices: &[u32], point: &Point<N, D>, tolerance: N) -> Option<FeatureId> {
+        let near = N::lit(4.0) * tolerance * tolerance;
         let is_near =
             |&&vertex: &&u32| (point - self.vertices[vertex as usize]).norm_squared() <= near;
         vertices.iter().find(is_near).map(|&vertex| FeatureId::Vertex(vertex))
     }
 
-    /// Whether a point lies within `noise` of the line of a side.
-    fn is_on_side(&self, side: u32, point: &Point<N, D>, noise: N) -> bool {
+    /// Whether a point lies within `tolerance` of the line of a side.
+    fn is_on_side(&self, side: u32, point: &Point<N, D>, tolerance: N) -> bool {
         let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
         let (along, arm) = (b - a, point - a);
         let aside = arm - along * (along.dot(&arm) / along.norm_squared());
-        aside.norm_squared() <= noise * noise
+        aside.norm_squared() <= tolerance * tolerance
     }
 
     /// Returns the side at a vertex with the smallest slope along a direction, and the sine of that
@@ -179,8 +179,8 @@ impl<N: Real, const D: usize> Polytope<N, D> {
 }
 
 impl<N: Real> Polytope<N, 2> {
-    /// See [`SupportingFeature::of`].
-    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> SupportingFeature<N> {
+    /// See [`SideOrVertex::of`].
+    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> SideOrVertex<N> {
         if let ([vertices], [planes]) = (self.blocks(), self.planes())
             && self.faces.len() == self.vertices.len()
         {
@@ -188,10 +188,10 @@ impl<N: Real> Polytope<N, 2> {
         }
         let part = self.part_toward(direction, Tilt::default_limit());
         if let Some((id, ends)) = self.ends_of(part) {
-            return SupportingFeature::side(id, ends);
+            return SideOrVertex::side(id, ends);
         }
         let vertex = if let HullPart::Vertex(vertex) = part { vertex } else { 0 };
-        SupportingFeature::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
+        SideOrVertex::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 
     /// [`Self::supporting`] for up to eight vertices, from the rows of the vertices and of the sides'
@@ -201,7 +201,7 @@ impl<N: Real> Polytope<N, 2> {
         [xs, ys]: &[[N; 8]; 2],
         normals: &[[N; 8]; 2],
         direction: &Vector<N, 2>,
-    ) -> SupportingFeature<N> {
+    ) -> SideOrVertex<N> {
         let count = self.vertices.len().min(8);
         let at = |vertex: usize| Point::<N, 2>::new(xs[vertex], ys[vertex]);
         let height = |vertex: usize| xs[vertex] * direction.x + ys[vertex] * direction.y;
@@ -228,9 +228,9 @@ impl<N: Real> Polytope<N, 2> {
         let (tilt, with_id) =
             (Tilt::default_limit(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
         if tilt.admits_face(&normal, direction) || tilt.admits(slope * slope) {
-            SupportingFeature::side(FeatureId::Face(count32(side)), [with_id(side), with_id(to)])
+            SideOrVertex::side(FeatureId::Face(count32(side)), [with_id(side), with_id(to)])
         } else {
-            SupportingFeature::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
+            SideOrVertex::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
         }
     }
 }

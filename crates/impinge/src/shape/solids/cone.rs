@@ -91,17 +91,17 @@ impl<N: Real> Cone<N> {
 }
 
 impl<N: Real> Cone<N> {
-    /// The apex, base, rim or round side that a point of the surface lies on, up to `noise`; `None`
-    /// for a cone with a half height or radius of at most `4 noise`.
+    /// The apex, base, rim or round side that a point of the surface lies on, up to `tolerance`; `None`
+    /// for a cone with a half height or radius of at most `4 tolerance`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> Option<FeatureId> {
-        let (y, aside) = axial_on(point, [self.half_height, self.radius], noise)?;
-        Some(if y <= noise - self.half_height {
-            if aside >= self.radius - noise { FeatureId::Edge(0) } else { FeatureId::Face(0) }
-        } else if y >= self.half_height - N::TWO * noise && aside <= N::TWO * noise {
+        let (y, aside) = axial_on(point, [self.half_height, self.radius], tolerance)?;
+        Some(if y <= tolerance - self.half_height {
+            if aside >= self.radius - tolerance { FeatureId::Edge(0) } else { FeatureId::Face(0) }
+        } else if y >= self.half_height - N::TWO * tolerance && aside <= N::TWO * tolerance {
             FeatureId::Vertex(0)
         } else {
             FeatureId::Face(1)

@@ -7,7 +7,7 @@ use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
 use crate::shape::{
     ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
-    ShapeHandle, SupportMap, SupportingFeature, tilt::Tilt,
+    ShapeHandle, SideOrVertex, SupportMap, tilt::Tilt,
 };
 
 /// The points whose coordinate on each axis has a magnitude of at most the half extent.
@@ -85,16 +85,16 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
-    /// The vertex, edge or face that a point of the surface lies on, up to `noise`; `None` for a
-    /// point inside, and for a box with a half extent of at most `4 noise`.
-    pub(crate) fn part_at(&self, point: &Point<N, D>, noise: N) -> Option<FeatureId> {
+    /// The vertex, edge or face that a point of the surface lies on, up to `tolerance`; `None` for a
+    /// point inside, and for a box with a half extent of at most `4 tolerance`.
+    pub(crate) fn part_at(&self, point: &Point<N, D>, tolerance: N) -> Option<FeatureId> {
         let mut free = 0;
         for axis in 0..D {
             let half = self.half_extents[axis];
-            if half <= N::lit(4.0) * noise {
+            if half <= N::lit(4.0) * tolerance {
                 return None;
             }
-            free |= u32::from(point[axis].abs() < half - noise) << axis;
+            free |= u32::from(point[axis].abs() < half - tolerance) << axis;
         }
         let part = CuboidPart::<D> { free, corner: signs(&point.coords) };
         (free != CuboidPart::<D>::ALL).then(|| part.id())
@@ -136,9 +136,8 @@ impl<N: Real, const D: usize> FacingPart<N, D> {
         let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
         let axes =
             (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.part.free, axis));
-        let component = |axis: usize| vector[axis].abs();
-        let level =
-            axes.reduce(|best, axis| if component(axis) < component(best) { axis } else { best })?;
+        let tilt = |axis: usize| vector[axis].abs();
+        let level = axes.reduce(|best, axis| if tilt(axis) < tilt(best) { axis } else { best })?;
         Some(axis_vector(level))
     }
 }
@@ -426,21 +425,17 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 }
 
 impl<N: Real> Cuboid<N, 2> {
-    /// See [`SupportingFeature::of`]; `None` if the side has no length.
-    pub(in crate::shape) fn supporting(
-        &self,
-        direction: &Vector<N, 2>,
-    ) -> Option<SupportingFeature<N>> {
+    /// See [`SideOrVertex::of`]; `None` if the side has no length.
+    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> Option<SideOrVertex<N>> {
         let part = CuboidPart::<2>::facing(direction, Tilt::default_limit());
         let with_id = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
         let FeatureId::Face(index) = part.id() else {
             let (id, point) = with_id(part.corner);
-            return Some(SupportingFeature::vertex(id, point));
+            return Some(SideOrVertex::vertex(id, point));
         };
         let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
         let [from, to, ..] = CuboidPart::<2>::FACES[index as usize].0.corners;
-        (!is_flat)
-            .then(|| SupportingFeature::side(FeatureId::Face(index), [with_id(from), with_id(to)]))
+        (!is_flat).then(|| SideOrVertex::side(FeatureId::Face(index), [with_id(from), with_id(to)]))
     }
 }
 

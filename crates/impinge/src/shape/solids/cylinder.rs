@@ -79,17 +79,17 @@ impl<N: Real> Cylinder<N> {
 }
 
 impl<N: Real> Cylinder<N> {
-    /// The cap, rim or round side that a point of the surface lies on, up to `noise`; `None` for a
-    /// cylinder with a half height or radius of at most `4 noise`.
+    /// The cap, rim or round side that a point of the surface lies on, up to `tolerance`; `None` for a
+    /// cylinder with a half height or radius of at most `4 tolerance`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> Option<FeatureId> {
-        let (y, aside) = axial_on(point, [self.half_height, self.radius], noise)?;
+        let (y, aside) = axial_on(point, [self.half_height, self.radius], tolerance)?;
         let side = u32::from(y < N::ZERO);
-        let is_at_end = y.abs() >= self.half_height - noise;
-        Some(if is_at_end && aside >= self.radius - noise {
+        let is_at_end = y.abs() >= self.half_height - tolerance;
+        Some(if is_at_end && aside >= self.radius - tolerance {
             FeatureId::Edge(side)
         } else {
             FeatureId::Face(if is_at_end { side } else { 2 })

@@ -11,14 +11,14 @@ fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
 }
 
 /// The coordinates of [`axial`] for a point of the surface of a solid about the y axis; `None` if
-/// `half_height` or `radius` is at most `4 noise`, where a point would lie on several parts at
+/// `half_height` or `radius` is at most `4 tolerance`, where a point would lie on several parts at
 /// once.
 pub(in crate::shape) fn axial_on<N: Real, const D: usize>(
     point: &Point<N, D>,
     [half_height, radius]: [N; 2],
-    noise: N,
+    tolerance: N,
 ) -> Option<(N, N)> {
-    let least = N::lit(4.0) * noise;
+    let least = N::lit(4.0) * tolerance;
     (half_height > least && radius > least).then(|| axial(point))
 }
 

@@ -21,10 +21,10 @@ pub(in crate::shape) struct FlatOutline<N: Real> {
 impl<N: Real> FlatOutline<N> {
     pub(in crate::shape) fn of(corners: &[Point<N, 3>; 4]) -> Self {
         let positions = scaled(corners);
-        let noise = STRAIGHT * N::EPSILON.as_f64();
-        let normal = widest_normal(&positions).filter(|&(_, area)| area > noise);
+        let tolerance = STRAIGHT * N::EPSILON.as_f64();
+        let normal = widest_normal(&positions).filter(|&(_, area)| area > tolerance);
         let ring = match normal {
-            Some((normal, _)) => ring(&positions, &normal, noise),
+            Some((normal, _)) => ring(&positions, &normal, tolerance),
             None => ends(&positions),
         };
         let points = ring.iter().map(|&corner| corners[corner as usize]).collect();
@@ -114,10 +114,10 @@ fn widest_normal(positions: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64
 }
 
 /// The corners of the outline, in order around the normal: no corner lies outside of a side.
-fn ring(positions: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, noise: f64) -> Vec<u32> {
+fn ring(positions: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, tolerance: f64) -> Vec<u32> {
     let is_left = |a: usize, b: usize, c: usize| {
         let side = positions[b] - positions[a];
-        side.cross(&(positions[c] - positions[a])).dot(normal) >= -noise * side.norm()
+        side.cross(&(positions[c] - positions[a])).dot(normal) >= -tolerance * side.norm()
     };
     let side_from = |a: usize, taken: &[u32]| {
         let leads = |b: &usize| {

@@ -5,7 +5,7 @@ use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, 
 use crate::shape::solids::segment::length_of;
 use crate::shape::tilt::{FACING_SINE_SQUARED, Tilt};
 use crate::shape::{
-    ConvexPolyhedron, FaceRing, Feature, FeatureId, SupportMap, SupportingFeature, Triangle,
+    ConvexPolyhedron, FaceRing, Feature, FeatureId, SideOrVertex, SupportMap, Triangle,
 };
 
 /// The plane (in 2D: the whole space) that a triangle spans.
@@ -29,9 +29,9 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
         let (along, length) = unit(&side(longest))?;
         let to_opposite = corners[(longest + 2) % 3] - corners[longest];
         // Below this height the difference of coordinates may be pure rounding error.
-        let noise = N::lit(16.0) * N::EPSILON * length;
+        let tolerance = N::lit(16.0) * N::EPSILON * length;
         let rise = unit(&without(&to_opposite, &along));
-        let rise = rise.filter(|&(_, height)| height > noise);
+        let rise = rise.filter(|&(_, height)| height > tolerance);
         // A second projection makes it perpendicular to the last digit, however flat the triangle.
         let rise = rise.map(|(rise, _)| unit_or(&without(&rise, &along), rise));
         Some(Self { longest, along, rise })
@@ -119,26 +119,26 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         }
     }
 
-    /// The corner, side or face that a point of the surface lies on, up to `noise`, seen from where
+    /// The corner, side or face that a point of the surface lies on, up to `tolerance`, seen from where
     /// the unit vector `direction` points; `None` if the corners lie on a line, and in 2D for a
     /// point inside.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
         direction: &Vector<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> Option<FeatureId> {
         let corners = self.corners();
         let to = |index: usize| point - corners[index];
         if let Some(corner) =
-            (0..3).find(|&at| to(at).norm_squared() <= N::lit(4.0) * noise * noise)
+            (0..3).find(|&at| to(at).norm_squared() <= N::lit(4.0) * tolerance * tolerance)
         {
             return Some(vertex_id(corner));
         }
         let is_on = |&side: &usize| {
             let (along, arm) = (corners[(side + 1) % 3] - corners[side], to(side));
             let aside = arm - along * (along.dot(&arm) / along.norm_squared());
-            aside.norm_squared() <= noise * noise
+            aside.norm_squared() <= tolerance * tolerance
         };
         let mut touched = (0..3).filter(is_on);
         match (touched.next(), touched.next()) {
@@ -252,19 +252,16 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 }
 
 impl<N: Real> Triangle<N, 2> {
-    /// See [`SupportingFeature::of`]; `None` if the corners coincide.
-    pub(in crate::shape) fn supporting(
-        &self,
-        direction: &Vector<N, 2>,
-    ) -> Option<SupportingFeature<N>> {
+    /// See [`SideOrVertex::of`]; `None` if the corners coincide.
+    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> Option<SideOrVertex<N>> {
         let span = TriangleSpan::of(self.corners())?;
         let (side, slope) = self.flattest_side(&span, direction);
         if Tilt::default_limit().admits(slope * slope) {
             let ends = self.side_ends(side, direction);
-            return Some(SupportingFeature::side(side_id::<2>(side), ends));
+            return Some(SideOrVertex::side(side_id::<2>(side), ends));
         }
         let (id, point) = self.point(self.support_corner(direction));
-        Some(SupportingFeature::vertex(id, point))
+        Some(SideOrVertex::vertex(id, point))
     }
 }
 
@@ -457,14 +454,14 @@ fn is_second_face(id: FeatureId) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
 
     #[test]
     fn the_supporting_part_is_known_at_every_scale() {
-        let (mut noise, mut known) = (Noise(3), 0);
+        let (mut random, mut known) = (Xorshift(3), 0);
         for _ in 0..2000 {
-            let corners = [(); 3].map(|()| Point::from(noise.vector::<f32>(1.0)));
-            let direction = noise.vector::<f32>(1.0).normalize();
+            let corners = [(); 3].map(|()| Point::from(random.vector::<f32>(1.0)));
+            let direction = random.vector::<f32>(1.0).normalize();
             let supporting = |scale: f32| {
                 let [a, b, c] = corners.map(|corner| corner * scale);
                 Triangle::new(a, b, c).supporting_part(&direction)

@@ -174,7 +174,7 @@ fn is_well_shaped<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::composite::tri_mesh::{inward_of, normal_of};
     use crate::shape::surface::seam::{Seam, is_across};
 
@@ -195,13 +195,13 @@ mod tests {
     }
 
     fn bends_follow_the_rule<N: Real>() {
-        let (mut noise, mut known, mut admitted) = (Noise(1), 0, 0);
+        let (mut random, mut known, mut admitted) = (Xorshift(1), 0, 0);
         for round in 0..20_000 {
-            let (a, b) = (noise.vector::<f64>(1.0), noise.vector::<f64>(1.0));
-            let tip1 = noise.vector::<f64>(1.0);
+            let (a, b) = (random.vector::<f64>(1.0), random.vector::<f64>(1.0));
+            let tip1 = random.vector::<f64>(1.0);
             // Every fifth is exactly flat, and others nearly.
             let flat = [1.0, 0.1, 0.01, 0.003, 0.0][round % 5];
-            let tip2 = a + b - tip1 + noise.vector::<f64>(1.0) * flat;
+            let tip2 = a + b - tip1 + random.vector::<f64>(1.0) * flat;
             let point = |v: Vector<f64, 3>| Point::from(v.map(N::lit));
             let (first, second) =
                 ([point(a), point(b), point(tip1)], [point(b), point(a), point(tip2)]);
@@ -209,8 +209,9 @@ mod tests {
             let Some(bend) = Bend::new([&first, &second], fronts) else { continue };
             // Interpolates between the fronts or beyond, and adds a tilt; a quarter are on the
             // back.
-            let share = N::lit(0.7 * noise.next() + 0.5);
-            let aside = noise.vector::<f64>(1.0).map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
+            let share = N::lit(0.7 * random.next() + 0.5);
+            let aside =
+                random.vector::<f64>(1.0).map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
             let sign = if round % 4 == 0 { -N::ONE } else { N::ONE };
             let normal = (fronts[0] + (fronts[1] - fronts[0]) * share + aside) * sign;
             let normal = normal / normal.norm();

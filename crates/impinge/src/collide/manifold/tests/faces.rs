@@ -4,8 +4,8 @@ use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::{RawPoint, RawPoints};
-use crate::math::noise::Noise;
 use crate::math::simd::Level;
+use crate::math::xorshift::Xorshift;
 use crate::math::{Matrix, Point, Real, Vector, cross, min, orthonormal_basis};
 use crate::shape::{Cuboid, FeatureId, Shape};
 
@@ -164,19 +164,19 @@ fn check<N: Real>(
 }
 
 /// Frames for the triangles: that of the solid, and one turned and far away by as much as rounding allows.
-fn frames<N: Real>(noise: &mut Noise) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
-    let (normal, _) = (noise.vector::<N>(1.0).normalize(), 0);
+fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
+    let (normal, _) = (random.vector::<N>(1.0).normalize(), 0);
     let (u, v) = orthonormal_basis(&normal);
     let turn = Matrix::<N, 3>::from_columns(&[u, v, normal]);
-    [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, noise.vector(2.0))]
+    [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, random.vector(2.0))]
 }
 
 /// Triangles about the plane z = 0 along whose normals a solid on it shows its bottom; on a grid, whose lines the sides
 /// of boxes lie on, or anywhere.
-fn triangles<N: Real>(noise: &mut Noise, on_grid: bool) -> Vec<Corners<N>> {
+fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     let mut corner = |at: usize| {
-        let mut position = noise.vector::<N>(2.0);
-        position.z = N::lit(0.4 * noise.next());
+        let mut position = random.vector::<N>(2.0);
+        position.z = N::lit(0.4 * random.next());
         if on_grid {
             position = position.map(|x| N::lit((2.0 * x.as_f64()).round() / 2.0));
             position.z = N::lit(-0.25 * (at % 2) as f64);
@@ -196,14 +196,14 @@ fn triangles<N: Real>(noise: &mut Noise, on_grid: bool) -> Vec<Corners<N>> {
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),
-    noise: &mut Noise,
+    random: &mut Xorshift,
     on_grid: bool,
 ) -> [usize; 2] {
     let (mut counts, up) = ([0; 2], Vector::<N, 3>::z() * lift);
-    let placed = triangles(noise, on_grid).into_iter();
+    let placed = triangles(random, on_grid).into_iter();
     let placed = placed.map(|corners| (corners.map(|corner| corner - up), upward(&corners)));
     let scene = Scene::new(solid, placed.collect());
-    for (turn, origin) in frames(noise) {
+    for (turn, origin) in frames(random) {
         let found = scene.found(Level::new(), solid, (&turn, origin));
         for ((moved, asked), found) in scene.triangles.iter().zip(&scene.asked).zip(found) {
             counts[usize::from(found.is_some())] += 1;
@@ -217,7 +217,7 @@ fn check_all<N: Real>(
 }
 
 fn all_is_shared<N: Real>() {
-    let mut noise = Noise(11);
+    let mut random = Xorshift(11);
     let square: Outline = vec![[-1.0, -1.5], [1.0, -1.5], [1.0, 1.5], [-1.0, 1.5]];
     let (triangle, octagon) = (regular(3, [0.1, 0.0], 1.5, 0.3), regular(8, [0.0, 0.2], 1.2, 0.1));
     // A box has its middle at the origin.
@@ -231,7 +231,7 @@ fn all_is_shared<N: Real>() {
     let mut counts = [0; 2];
     for (outline, solid, lift) in solids {
         for round in 0..60 {
-            let [left, found] = check_all(outline, (solid, lift), &mut noise, round % 3 == 0);
+            let [left, found] = check_all(outline, (solid, lift), &mut random, round % 3 == 0);
             counts = [counts[0] + left, counts[1] + found];
         }
     }
@@ -245,19 +245,19 @@ fn all_that_a_face_and_a_triangle_share_is_spanned() {
 }
 
 fn lanes_do_not_matter<N: Real>() {
-    let (mut noise, mut points) = (Noise(5), 0);
+    let (mut random, mut points) = (Xorshift(5), 0);
     let solid = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::lit(0.7), N::HALF));
     for _ in 0..100 {
         let mut triangle = || {
             let corners = [0, 1, 2].map(|_| {
-                let position = noise.vector::<N>(1.5);
+                let position = random.vector::<N>(1.5);
                 Point::<N, 3>::new(position.x, position.y, position.z * N::lit(0.1) - N::HALF)
             });
-            let tilted = upward(&corners) + noise.vector::<N>(0.3);
+            let tilted = upward(&corners) + random.vector::<N>(0.3);
             (corners, tilted.normalize())
         };
         let scene = Scene::new(&solid, (0..13).map(|_| triangle()).collect());
-        for (turn, origin) in frames(&mut noise) {
+        for (turn, origin) in frames(&mut random) {
             let all: Vec<_> = Level::available()
                 .into_iter()
                 .map(|level| scene.found(level, &solid, (&turn, origin)))

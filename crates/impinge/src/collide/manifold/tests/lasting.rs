@@ -81,12 +81,12 @@ fn a_box_sliding_over_an_edge_keeps_its_ids_on_new_features() {
 fn stack_rests<N: Scene<D>, const D: usize>(shift: f64) {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
     let (mut raw, mut random) = (RawManifold::default(), Random(11));
-    let noise = 2.0 * N::EPSILON.as_f64();
+    let perturbation = 2.0 * N::EPSILON.as_f64();
     for step in 0..300 {
-        let mut position = random.vector::<N, D>(noise);
+        let mut position = random.vector::<N, D>(perturbation);
         position[0] += N::lit(shift);
         position[1] += N::lit(0.999);
-        let turn = [(); 3].map(|()| random.between(-noise, noise));
+        let turn = [(); 3].map(|()| random.between(-perturbation, perturbation));
         let pair = Pair {
             first: solid.geometry().0,
             second: solid.geometry().0,

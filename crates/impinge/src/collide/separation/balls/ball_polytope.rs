@@ -2,7 +2,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::balls::ball_segment;
-use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::projection::{Projection, center_in_second, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real, cross};
@@ -47,13 +47,13 @@ fn project_from_outside<N: Real>(
     highest: &PolytopeFace<N, 3>,
     flat: &Projection<N, 3>,
 ) -> Projection<N, 3> {
-    let noise = noise(hull.reach() + center.coords.norm());
+    let rounding_error = rounding_error(hull.reach() + center.coords.norm());
     let certain = |projected: &Projection<N, 3>| {
         projected.outward.dot(&(center - hull.core_support(&projected.outward)))
     };
     let projected = project_on_face(hull, highest, center);
     let is_over_face = projected.outward == highest.normal;
-    if is_over_face || certain(&projected) + noise / N::lit(4.0) >= projected.distance {
+    if is_over_face || certain(&projected) + rounding_error / N::lit(4.0) >= projected.distance {
         return projected;
     }
     let mut best: Option<Projection<N, 3>> = None;
@@ -65,7 +65,7 @@ fn project_from_outside<N: Real>(
     }
     let mut best = best.unwrap_or(*flat);
     // Close to a side the offset is mostly rounding, and the normal of a face may be better.
-    if certain(&best) + noise < flat.distance {
+    if certain(&best) + rounding_error < flat.distance {
         best.outward = flat.outward;
     }
     best

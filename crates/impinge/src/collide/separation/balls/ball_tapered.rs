@@ -2,7 +2,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::projection::{
-    Projection, center_in_second, first_axis, made_perpendicular, noise, perpendicular_to,
+    Projection, center_in_second, first_axis, made_perpendicular, perpendicular_to, rounding_error,
 };
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
@@ -63,7 +63,7 @@ fn around_end<N: Real, const D: usize>(
 ) -> (Projection<N, D>, FeatureId) {
     let (center, radius) = (capsule.end(end), capsule.radii()[end]);
     let (outward, away) = unit(&(point - center)).unwrap_or((*fallback, N::ZERO));
-    let is_certain = away > noise(center.coords.norm());
+    let is_certain = away > rounding_error(center.coords.norm());
     let outward = if is_certain { outward } else { *fallback };
     let feature = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
     let nearest = center + outward * radius;

@@ -3,7 +3,7 @@
 use super::ball_segment::Foot;
 use crate::collide::Pair;
 use crate::collide::separation::projection::{
-    Projection, center_in_second, made_perpendicular, noise,
+    Projection, center_in_second, made_perpendicular, rounding_error,
 };
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
@@ -37,7 +37,7 @@ pub(in crate::collide::separation) fn project<N: Real>(
     // Close to a side the offset is mostly rounding, and the normal of the triangle may be better.
     let normal = toward(&front, &(center - corners[0]));
     if height(&normal, corners, center)
-        > height(&projected.outward, corners, center) + noise(reach(corners, center))
+        > height(&projected.outward, corners, center) + rounding_error(reach(corners, center))
     {
         projected.outward = normal;
     }

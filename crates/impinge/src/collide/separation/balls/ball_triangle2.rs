@@ -2,7 +2,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::polygons::polygon_polygon;
-use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::projection::{Projection, center_in_second, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross2, max, max_component, perp, unit};
@@ -118,7 +118,7 @@ fn from_corner<N: Real>(
     let offset = center - point;
     let reach = max(max_component(&center.coords), max_component(&point.coords));
     match unit(&offset) {
-        Some((outward, distance)) if distance > noise(reach) => {
+        Some((outward, distance)) if distance > rounding_error(reach) => {
             Projection { distance, outward, point }
         }
         _ => Projection { distance: offset.norm(), outward: highest.outward(), point },
@@ -169,8 +169,8 @@ mod tests {
         let (mut inside, mut tried) = (0, 0);
         for n in 0..4000_u32 {
             let number = |k: u32| {
-                let noise = (f64::from(n * 8 + k) * 12.9898).sin() * 43758.5453;
-                4.0 * (noise - noise.floor()) - 2.0
+                let rounding_error = (f64::from(n * 8 + k) * 12.9898).sin() * 43758.5453;
+                4.0 * (rounding_error - rounding_error.floor()) - 2.0
             };
             let corners = [0, 2, 4].map(|k| p(number(k), number(k + 1)));
             let center = Vector::<f64, 2>::new(number(6), number(7));

@@ -44,7 +44,7 @@ pub(crate) struct BoxAxis<N: Real> {
 
 impl<N: Real> BoxPair<N> {
     /// Returns the rounding error of lengths of this pair.
-    pub(crate) fn noise(&self) -> N {
+    pub(crate) fn rounding_error(&self) -> N {
         let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
         N::lit(4.0) * N::EPSILON * size
     }
@@ -60,7 +60,7 @@ impl<N: Real> BoxPair<N> {
     pub(crate) fn best_axis(&self) -> BoxAxis<N> {
         let abs_rotation = self.pose12.rotation.abs();
         let (face, gap) = self.best_face(&abs_rotation);
-        match self.best_edges(&abs_rotation, max(gap + self.noise(), gap)) {
+        match self.best_edges(&abs_rotation, max(gap + self.rounding_error(), gap)) {
             Some((edges, gap)) => self.axis(edges, gap),
             None => self.axis(face, gap),
         }

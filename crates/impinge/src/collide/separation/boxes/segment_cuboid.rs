@@ -37,7 +37,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     };
     let most = (limit + radius) * segment.shrink;
     let half = cuboid.half_extents() * segment.shrink;
-    let most = most + N::lit(16.0) * noise() * (N::ONE + most.abs());
+    let most = most + N::lit(16.0) * rounding_error() * (N::ONE + most.abs());
     match (LocalBox { segment: &segment, half }).solve(most) {
         SegmentResult::Beyond => None,
         SegmentResult::Found(parting) => {
@@ -85,7 +85,7 @@ enum SegmentResult<N: Real> {
 }
 
 /// Returns the rounding error of arithmetic on numbers of size 2.
-fn noise<N: Real>() -> N {
+fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
@@ -132,7 +132,7 @@ impl<'a, N: Real> LocalSegment<'a, N> {
     ) -> Option<Parting<N>> {
         let distance = self.low(&outward) - level;
         let aside = on_segment - on_solid - outward * distance;
-        let is_proved = aside.norm_squared() <= noise::<N>() * noise();
+        let is_proved = aside.norm_squared() <= rounding_error::<N>() * rounding_error();
         is_proved.then_some(Parting { outward, on_segment, on_solid, distance })
     }
 
@@ -165,7 +165,7 @@ impl<N: Real> LocalBox<'_, N> {
         let found = if gap > N::ZERO {
             self.nearest()
         } else {
-            match self.best_edge(gap + N::TWO * noise()) {
+            match self.best_edge(gap + N::TWO * rounding_error()) {
                 None => self.at_face(axis, sign, gap),
                 Some((_, _, gap)) if gap > N::ZERO => self.nearest(),
                 Some((axis, outward, gap)) => self.at_edge(axis, &outward, gap),
@@ -201,7 +201,7 @@ impl<N: Real> LocalBox<'_, N> {
             let reach = x.abs() * self.half[one] + y.abs() * self.half[other];
             let sine = (x * x + y * y).sqrt();
             // Written so that NaN and segments parallel to the axis are skipped.
-            let is_certain = sine > noise() && (height.abs() - reach) > bound * sine;
+            let is_certain = sine > rounding_error() && (height.abs() - reach) > bound * sine;
             if is_certain {
                 let signed_sine = if height < N::ZERO { -sine } else { sine };
                 let mut outward = Vector::<N, 3>::zeros();
@@ -224,14 +224,14 @@ impl<N: Real> LocalBox<'_, N> {
     fn at_face(&self, axis: usize, sign: N, gap: N) -> Option<Parting<N>> {
         let [a, b] = &self.segment.ends;
         let climb = (b[axis] - a[axis]) * sign;
-        let on_segment = if climb.abs() <= noise() {
+        let on_segment = if climb.abs() <= rounding_error() {
             self.middle_over(axis)?
         } else if climb < N::ZERO {
             *b
         } else {
             *a
         };
-        let room = noise::<N>();
+        let room = rounding_error::<N>();
         let is_over = (0..3).all(|at| at == axis || on_segment[at].abs() <= self.half[at] + room);
         let mut on_solid = on_segment;
         on_solid[axis] = self.half[axis] * sign;
@@ -244,7 +244,7 @@ impl<N: Real> LocalBox<'_, N> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut first, mut last) = (N::ZERO, N::ONE);
         for axis in (0..3).filter(|&axis| axis != face) {
-            if along[axis].abs() <= noise() {
+            if along[axis].abs() <= rounding_error() {
                 continue;
             }
             let [one, other] = [-self.half[axis], self.half[axis]]
@@ -265,7 +265,8 @@ impl<N: Real> LocalBox<'_, N> {
         let (on_segment, on_solid) = nearest_of_segments(&core, &ends);
         let [on_segment, on_solid] = [on_segment.coords, on_solid.coords];
         let aside = on_segment - on_solid - outward * gap;
-        let is_across = aside.norm_squared() <= N::lit(16.0) * noise::<N>() * noise();
+        let is_across =
+            aside.norm_squared() <= N::lit(16.0) * rounding_error::<N>() * rounding_error();
         is_across.then_some(Parting { outward: *outward, on_segment, on_solid, distance: gap })
     }
 
@@ -276,7 +277,7 @@ impl<N: Real> LocalBox<'_, N> {
         let on_solid = on_segment.zip_map(&self.half, |x, half| min(max(x, -half), half));
         let away = on_segment - on_solid;
         let points = [on_segment, on_solid];
-        let is_off = |axis: &usize| away[*axis].abs() > noise();
+        let is_off = |axis: &usize| away[*axis].abs() > rounding_error();
         let (count, axis) =
             (0..3).filter(is_off).fold((0, 0), |(count, _), axis| (count + 1, axis));
         if count == 1 {
@@ -291,7 +292,7 @@ impl<N: Real> LocalBox<'_, N> {
         let across = if is_between { self.perpendicular(&away) } else { None };
         let outward = across.or_else(|| {
             let length = away.norm();
-            (length > noise()).then(|| away / length)
+            (length > rounding_error()).then(|| away / length)
         })?;
         self.segment.proved(outward, self.level(&outward), points)
     }
@@ -310,7 +311,7 @@ impl<N: Real> LocalBox<'_, N> {
         let along = &self.segment.along;
         let (x, y) = (-along[other], along[one]);
         let sine = (x * x + y * y).sqrt();
-        if sine <= N::lit(1.0 / 64.0) * along[axis].abs() || sine <= noise() {
+        if sine <= N::lit(1.0 / 64.0) * along[axis].abs() || sine <= rounding_error() {
             return None;
         }
         let signed_sine = if x * away[one] + y * away[other] < N::ZERO { -sine } else { sine };

@@ -41,7 +41,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             let segment = Segment::of_finite(a - question.origin, b - question.origin);
             let own = PolygonOutline::of_segment::<S, V>(simd, &segment, N::ZERO)?;
             let outlines = [&own, &solid.outline];
-            let found = of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
+            let found =
+                of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.rounding_error[lane])?;
             if found.distance <= question.limit {
                 links.found.push((block * LANES + lane, found));
             }
@@ -93,7 +94,7 @@ struct SegmentAxes<N> {
     /// Unit, from the segment to the polygon.
     normals: [Row<N>; 2],
     /// Rounding error of lengths of each pair.
-    noise: Row<N>,
+    rounding_error: Row<N>,
     /// Bit of each segment that is beyond the limit.
     beyond: u8,
 }
@@ -132,18 +133,18 @@ impl<N: Real> SegmentAxes<N> {
         let rounding = solid.outline.rounding;
         let sizes = [a[0].abs() + a[1].abs(), b[0].abs() + b[1].abs()];
         let size = sizes[0].larger(sizes[1]).larger(V::all(simd, solid.size));
-        let noise = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
-        let room = noise + V::all(simd, N::EPSILON * rounding);
+        let rounding_error = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
+        let room = rounding_error + V::all(simd, N::EPSILON * rounding);
         let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * room;
         // The gap is a lower bound: a gap beyond the limit by more than rounding rejects the
         // segment.
         let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach);
         let (beyond, zeros) = (bits(beyond), [N::ZERO; LANES]);
-        let mut axes = Self { gaps: zeros, normals: [zeros; 2], noise: zeros, beyond };
+        let mut axes = Self { gaps: zeros, normals: [zeros; 2], rounding_error: zeros, beyond };
         best.gap.store(&mut axes.gaps);
         best.normal[0].store(&mut axes.normals[0]);
         best.normal[1].store(&mut axes.normals[1]);
-        noise.store(&mut axes.noise);
+        rounding_error.store(&mut axes.rounding_error);
         axes
     }
 

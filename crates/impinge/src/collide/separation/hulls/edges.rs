@@ -14,7 +14,7 @@
 use super::face::ReferenceFace;
 use super::polyhedral::Polyhedral;
 use super::vertices::Vertices;
-use super::{LANES, noise};
+use super::{LANES, rounding_error};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::convex::Separation;
 use crate::math::lanes::{self, LanePose, dot, highest_lane, load, spread};
@@ -121,7 +121,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         simd: S,
         reach: N,
     ) -> [CandidateEdges; 2] {
-        let slack = N::lit(4.0) * noise();
+        let slack = N::lit(4.0) * rounding_error();
         let (least, most) = (self.other.heights.low - reach - slack, self.offset() + reach + slack);
         let own = self.own.heights.up_to::<S, V>(simd, -least);
         let other = self.other.heights.up_to::<S, V>(simd, most);
@@ -179,7 +179,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     ) -> Option<EdgeQuery<N>> {
         let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
         let (mut best, mut largest): (Option<EdgeQuery<N>>, N) =
-            (None, self.separation() + N::TWO * noise());
+            (None, self.separation() + N::TWO * rounding_error());
         for eight in candidates2.indices().chunks(LANES) {
             let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
             let normals2 = self.normals_beside_block::<S, V>(simd, &edges2);
@@ -290,7 +290,8 @@ pub(super) fn normal_between<N: Real>(
 ) -> Option<Vector<N, 3>> {
     let away = to - from;
     let is_across = |across: &Vector<N, 3>| {
-        (away - across * across.dot(&away)).norm_squared() <= noise::<N>() * noise()
+        (away - across * across.dot(&away)).norm_squared()
+            <= rounding_error::<N>() * rounding_error()
     };
     match unit(across).map(|(across, _)| across).filter(is_across) {
         Some(across) if across.dot(&away) < N::ZERO => Some(-across),
@@ -307,7 +308,7 @@ pub(super) fn proved<N: Real>(
     [on_own, on_other]: [Vector<N, 3>; 2],
 ) -> Option<Separation<N, 3>> {
     let off = on_other - on_own - normal * distance;
-    let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
+    let is_proved = off.norm_squared() <= N::lit(4.0) * rounding_error::<N>() * rounding_error();
     let (point1, point2) = (Point::from(on_own), Point::from(on_other));
     is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
 }

@@ -2,8 +2,8 @@
 
 use core::ops::ControlFlow;
 
-use super::noise;
 use super::polyhedral::Polyhedral;
+use super::rounding_error;
 use super::vertices::{Heights, Vertices, height_above};
 use crate::collide::separation::segments::nearest::nearest_on_segment;
 use crate::convex::Separation;
@@ -144,8 +144,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
         let in_other = self.pose.rotation.tr_mul(&(point - self.pose.translation));
         let (own, other) = (self.own.solid.planes, self.other.solid.planes);
-        height_above::<S, N, V>(simd, own, self.shrink, point) <= noise()
-            && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
+        height_above::<S, N, V>(simd, own, self.shrink, point) <= rounding_error()
+            && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= rounding_error()
     }
 
     /// Signed height of the other solid above the plane of the face.
@@ -184,7 +184,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     /// Returns the lowest vertices of the other solid, up to rounding, as bits.
     #[inline(always)]
     fn lowest_vertices<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
-        self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
+        self.other.heights.up_to::<S, V>(simd, self.other.heights.low + rounding_error())
     }
 
     /// Returns the answer where the lowest vertex lies beside the face, but no edge is better than
@@ -192,7 +192,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     /// rounding has a part over the face.
     #[inline(always)]
     fn nearly_over<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 3>> {
-        let most = self.other.heights.low + N::lit(3.0) * noise();
+        let most = self.other.heights.low + N::lit(3.0) * rounding_error();
         let low = self.other.heights.up_to::<S, V>(simd, most);
         let is_low = |vertex: u32| low >> vertex & 1 == 1;
         for edge in self.other.solid.edges {
@@ -238,7 +238,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         for (ends, inward) in self.sides() {
             let inside = inward.dot(&(point - ends[0]));
             let is_beside = inside < N::ZERO
-                && inside * inside > noise::<N>() * noise() * inward.norm_squared();
+                && inside * inside
+                    > rounding_error::<N>() * rounding_error() * inward.norm_squared();
             if is_beside {
                 let nearest = nearest_on_segment(&ends.mapped(Point::from), &Point::from(*point)).0;
                 let squared = (point - nearest.coords).norm_squared();

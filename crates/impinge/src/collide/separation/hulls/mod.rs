@@ -104,7 +104,7 @@ enum SatResult<N: Real> {
 }
 
 /// Returns the rounding error of lengths, in units of the pair: 8 epsilon.
-pub(super) fn noise<N: Real>() -> N {
+pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
@@ -112,7 +112,7 @@ pub(super) fn noise<N: Real>() -> N {
 /// rounding, in units of the pair.
 pub(super) fn out_of_reach<N: Real>(units: &Units<N>, limit: N) -> N {
     let limit = limit * units.shrink;
-    limit + N::lit(16.0) * noise::<N>() * (N::ONE + limit.abs())
+    limit + N::lit(16.0) * rounding_error::<N>() * (N::ONE + limit.abs())
 }
 
 /// Runs the test with the vectors of an instruction set; the result does not depend on it.
@@ -153,7 +153,7 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         return SatResult::Beyond;
     }
     // The other solid is placed in the frame of the solid with the reference face.
-    let is_second = face2.separation > face1.separation + noise();
+    let is_second = face2.separation > face1.separation + rounding_error();
     let (index, solids, pose) = if is_second {
         (face2.index, [(second, &own2), (first, &placed1)], in_second)
     } else {

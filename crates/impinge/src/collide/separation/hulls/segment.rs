@@ -23,7 +23,9 @@ use super::edges::{
     squared_distances,
 };
 use super::vertices::Vertices;
-use super::{LANES, LocalFeatures, Polyhedral, SatResult, in_first_frame, noise, out_of_reach};
+use super::{
+    LANES, LocalFeatures, Polyhedral, SatResult, in_first_frame, out_of_reach, rounding_error,
+};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units};
 use crate::math::lanes::{self, dot, highest_lane, load, spread, with_lanes};
@@ -185,7 +187,7 @@ impl<N: Real> SegmentQuery<'_, N> {
         let normal = self.solid.normal(faces.index);
         let (first, last) = self.span(vertices, faces.index, &normal)?;
         let climb = self.along.dot(&normal);
-        let point = if climb.abs() <= noise() {
+        let point = if climb.abs() <= rounding_error() {
             self.at((first + last) * N::HALF)
         } else if climb > N::ZERO && first <= N::ZERO {
             self.ends[0]
@@ -208,7 +210,7 @@ impl<N: Real> SegmentQuery<'_, N> {
         for &vertex in ring {
             let to = vertices.at(vertex as usize);
             let side = to - from;
-            if ring.len() < 3 || side.norm_squared() <= noise::<N>() * noise() {
+            if ring.len() < 3 || side.norm_squared() <= rounding_error::<N>() * rounding_error() {
                 return None;
             }
             let inward = cross(normal, &side);
@@ -244,8 +246,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         );
         let (along, end): ([V; 3], [V; 3]) =
             (spread(simd, &self.along), spread(simd, &self.ends[0]));
-        let tiny = V::all(simd, noise::<N>() * noise());
-        let (mut best, mut largest) = (None, faces.separation + N::TWO * noise());
+        let tiny = V::all(simd, rounding_error::<N>() * rounding_error());
+        let (mut best, mut largest) = (None, faces.separation + N::TWO * rounding_error());
         for eight in candidates.indices().chunks(LANES) {
             let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
             let outward = block.indices.mapped(|index| self.outward(usize::from(index), climbed));

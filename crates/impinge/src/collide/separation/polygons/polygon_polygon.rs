@@ -102,18 +102,19 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let other = other.placed::<S, V>(simd, &pair.pose12);
     let outlines = [&own, &other];
     let rounding = own.rounding + other.rounding;
-    let noise = N::lit(4.0) * N::EPSILON * max(own.size::<S, V>(simd), other.size::<S, V>(simd));
+    let rounding_error =
+        N::lit(4.0) * N::EPSILON * max(own.size::<S, V>(simd), other.size::<S, V>(simd));
     // Closures are not inlined into vector code.
     let sides = match known {
         Some(known) => known,
         None => best_side::<S, N, V>(simd, &own, &other),
     };
     // The gap is a lower bound: beyond the limit by more than rounding it rejects the pair.
-    let reach = limit + N::lit(16.0) * (noise + N::EPSILON * rounding);
+    let reach = limit + N::lit(16.0) * (rounding_error + N::EPSILON * rounding);
     if sides.gap - rounding > reach {
         return OutlineResult::Beyond;
     }
-    let facing = Facing::of::<S, V>(simd, outlines, &sides, noise);
+    let facing = Facing::of::<S, V>(simd, outlines, &sides, rounding_error);
     let found = match facing.clear_case() {
         Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
         None => {
@@ -122,7 +123,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             if best.gap - rounding > reach {
                 return OutlineResult::Beyond;
             }
-            of_axis::<S, N, V>(simd, outlines, &best, noise)
+            of_axis::<S, N, V>(simd, outlines, &best, rounding_error)
         }
     };
     found.map_or(OutlineResult::Undecided, OutlineResult::Found)
@@ -135,9 +136,9 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
     simd: S,
     outlines: [&PolygonOutline<N>; 2],
     best: &Axis<N>,
-    noise: N,
+    rounding_error: N,
 ) -> Option<Separation<N, 2>> {
-    let facing = Facing::of::<S, V>(simd, outlines, best, noise);
+    let facing = Facing::of::<S, V>(simd, outlines, best, rounding_error);
     let cores = facing.separation::<S, V>(simd)?;
     Some(cores.rounded(outlines[0].rounding, outlines[1].rounding))
 }

@@ -18,7 +18,7 @@ use smallvec::SmallVec;
 use crate::collide::Pair;
 use crate::collide::separation::flat_core::FlatCore;
 use crate::collide::separation::general;
-use crate::collide::separation::hulls::noise;
+use crate::collide::separation::hulls::rounding_error;
 use crate::collide::separation::ridges::Round;
 use crate::collide::separation::wrong_kinds;
 use crate::convex::{self, Peak, Peaks, Separation};
@@ -101,7 +101,7 @@ impl<N: Real> AxialOutline<N> {
             _ => return None,
         };
         let [a, b] = [segment.a(), segment.b()].mapped(|end| end.coords * (shrink * N::HALF));
-        let (along, half) = unit(&(b - a)).filter(|(_, half)| *half > noise())?;
+        let (along, half) = unit(&(b - a)).filter(|(_, half)| *half > rounding_error())?;
         let corners = [half, -half].mapped(|at| Vector::<N, 2>::new(N::ZERO, at));
         let middle = pose.rotation * (a + b) + position;
         Some(Self { middle, axis: pose.rotation * along, corners })
@@ -180,7 +180,7 @@ impl<N: Real> Coaxial<N> {
     /// Returns the unit vector from the first axis towards the second middle; any perpendicular if
     /// they coincide.
     fn aside(&self) -> Vector<N, 3> {
-        let beside = unit(&self.offset).filter(|(_, offset)| *offset > noise());
+        let beside = unit(&self.offset).filter(|(_, offset)| *offset > rounding_error());
         beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
     }
 
@@ -207,7 +207,7 @@ impl<N: Real> Coaxial<N> {
         let ways: SmallVec<[AxialExit<N>; 6]> = own.chain(others).collect();
         let shorter = |a: AxialExit<N>, b: AxialExit<N>| if b.depth < a.depth { b } else { a };
         let best = ways.iter().copied().reduce(shorter)?;
-        let is_exact = self.apart <= noise();
+        let is_exact = self.apart <= rounding_error();
         let slack = self.apart * N::lit(4.0);
         let is_rival = |other: &AxialExit<N>| {
             let is_other_ring = (other.normal - best.normal).norm() > N::lit(SAME_RING);

@@ -10,7 +10,7 @@
 
 use super::coaxial;
 use crate::collide::Pair;
-use crate::collide::separation::hulls::{in_first_frame, noise, out_of_reach};
+use crate::collide::separation::hulls::{in_first_frame, out_of_reach, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
@@ -188,28 +188,28 @@ impl<N: Real> CylinderView<N> {
         let point = self.lowest_above_cap(&normal, sine);
         let room = self.own.radius - radial(&point).norm();
         let is_above = if height > N::ZERO {
-            room >= -noise::<N>()
+            room >= -rounding_error::<N>()
         } else {
-            min(room, self.own.half) >= -height - noise()
+            min(room, self.own.half) >= -height - rounding_error()
         };
         let found = RevolvedFound { distance: height, normal, on_other: point };
         Tried { height, found: is_above.then_some(found) }
     }
 
-    /// Returns the lowest point of the other solid along the normal of a cap. Up to `noise` several
+    /// Returns the lowest point of the other solid along the normal of a cap. Up to `rounding_error` several
     /// are lowest: then the middle of those above the cap. `sine` is that of the angle between the
     /// axes.
     fn lowest_above_cap(&self, normal: &Vector<N, 3>, sine: N) -> Vector<N, 3> {
         let cosine = normal.dot(&self.axis);
         let end = if cosine < N::ZERO { self.axis } else { -self.axis } * self.other.half;
-        if sine * self.other.radius <= noise() {
+        if sine * self.other.radius <= rounding_error() {
             return self.over_disk(&(self.center + end));
         }
         // Direction down along the other cap: the normal minus its axial part, without a
         // difference.
         let aside = radial(&self.axis) * (cosine / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
-        if cosine.abs() * self.other.half <= noise() {
+        if cosine.abs() * self.other.half <= rounding_error() {
             let middle = self.center + down;
             let along = radial(&self.axis);
             let nearest = -radial(&middle).dot(&along) / along.norm_squared();
@@ -250,13 +250,13 @@ impl<N: Real> CylinderView<N> {
         let at_own = (self.center.y - cosine * along) / squared;
         let at_other = (cosine * self.center.y - along) / squared;
         let (room1, room2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
-        let is_between = room1 >= -noise::<N>() && room2 >= -noise::<N>();
+        let is_between = room1 >= -rounding_error::<N>() && room2 >= -rounding_error::<N>();
         // The proof: a ball around a point between the axes, or one in each solid with radii that
         // add up.
         let entry = away - self.other.radius;
         let least = max(self.own.radius - room1, max(entry, N::ZERO));
         let most = min(entry + room2, min(away, self.own.radius));
-        let is_proved = height > N::ZERO || least <= most + noise();
+        let is_proved = height > N::ZERO || least <= most + rounding_error();
         let on_other = self.center + self.axis * at_other - normal * self.other.radius;
         let found = RevolvedFound { distance: height, normal, on_other };
         Some(Tried { height, found: (is_between && is_proved).then_some(found) })
@@ -270,9 +270,9 @@ impl<N: Real> CylinderView<N> {
         let room = self.own.half - point.y.abs();
         let height = radial(&point).dot(&normal) - self.own.radius;
         let is_beside = if height > N::ZERO {
-            room >= -noise::<N>()
+            room >= -rounding_error::<N>()
         } else {
-            min(room, self.own.radius) >= -height - noise()
+            min(room, self.own.radius) >= -height - rounding_error()
         };
         let found = RevolvedFound { distance: height, normal: lifted(&normal), on_other: point };
         Some(Tried { height, found: is_beside.then_some(found) })
@@ -286,11 +286,11 @@ impl<N: Real> CylinderView<N> {
             let (point, bend) = self.lowest_beside(&normal)?;
             let across = Vector::<N, 2>::new(-normal.y, normal.x);
             let (slope, height) = (radial(&point).dot(&across), radial(&point).dot(&normal));
-            let is_peak = height > noise();
+            let is_peak = height > rounding_error();
             if !is_peak {
                 return None;
             }
-            if slope.abs() <= N::HALF * noise() {
+            if slope.abs() <= N::HALF * rounding_error() {
                 return Some((normal, point));
             }
             normal = unit(&(normal + across * (slope / (bend + height))))?.0;
@@ -313,7 +313,7 @@ impl<N: Real> CylinderView<N> {
         let down = aside * (axial * radius / cosine) - out * (cosine * radius);
         let ratio = axial * turn / cosine;
         let bend = radius * (N::ONE - turn * turn - ratio * ratio) / cosine;
-        if axial.abs() * self.other.half <= noise() {
+        if axial.abs() * self.other.half <= rounding_error() {
             return self.beside_parallel(&down).map(|point| (point, bend));
         }
         let end = if axial < N::ZERO { self.axis } else { -self.axis } * self.other.half;
@@ -324,7 +324,7 @@ impl<N: Real> CylinderView<N> {
     /// parallel axes.
     fn beside_parallel(&self, down: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let reach = self.other.half * self.axis.y.abs();
-        let is_parallel = radial(&self.axis).norm() * self.other.half <= noise();
+        let is_parallel = radial(&self.axis).norm() * self.other.half <= rounding_error();
         let (low, high) =
             (max(self.center.y - reach, -self.own.half), min(self.center.y + reach, self.own.half));
         let at = ((low + high) * N::HALF - self.center.y) / self.axis.y;
@@ -341,11 +341,11 @@ impl<N: Real> CylinderView<N> {
             let away = other.point - own.point;
             let height = away.dot(&normal);
             let slope = away - normal * height;
-            let is_apart = height > noise();
+            let is_apart = height > rounding_error();
             if !is_apart {
                 return None;
             }
-            if slope.norm_squared() <= noise::<N>() * noise() {
+            if slope.norm_squared() <= rounding_error::<N>() * rounding_error() {
                 let found = RevolvedFound { distance: height, normal, on_other: other.point };
                 return Some(Tried { height, found: Some(found) });
             }

@@ -34,7 +34,7 @@ use self::cylinder_cylinder::{RevolvedFound, RevolvedResult};
 use self::profile::{Profile, ProfilePart, ProfileView};
 use super::flat_core::FlatCore;
 use super::general;
-use super::hulls::{noise, out_of_reach};
+use super::hulls::{out_of_reach, rounding_error};
 use super::ridges::{self, Round};
 use super::wrong_kinds;
 use crate::collide::Pair;
@@ -51,7 +51,7 @@ const RESOLVED: f64 = 1.0 / 64.0;
 /// Returns the tolerance of the search, in units of the pair: moves and differences in height up to
 /// this count as none.
 fn still<N: Real>() -> N {
-    noise::<N>() * N::HALF
+    rounding_error::<N>() * N::HALF
 }
 
 /// Returns the separation of a flat-sided solid, segment, capsule, cylinder or cone from a cylinder
@@ -200,18 +200,18 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         directed: &DirectedPoint<N>,
     ) -> Option<(NearestHull<N>, DirectedPoint<N>)> {
         let across = cross(&(b - a), &(c - a));
-        let (unit_across, area) = unit(&across).filter(|(_, area)| *area > noise())?;
+        let (unit_across, area) = unit(&across).filter(|(_, area)| *area > rounding_error())?;
         let outward =
             if unit_across.dot(&directed.outward) < N::ZERO { -unit_across } else { unit_across };
         let mut nearest = self.profile.round.support(&outward);
         let level = outward.dot(&nearest);
         // On a cap or a line the support point is not unique; take the one known to be near.
-        if outward.dot(&directed.nearest) >= level - noise() {
+        if outward.dot(&directed.nearest) >= level - rounding_error() {
             nearest = directed.nearest;
         }
         let height = outward.dot(&a) - level;
         let point = nearest + outward * height;
-        let room = -noise::<N>() * area;
+        let room = -rounding_error::<N>() * area;
         let over = |from: &Vector<N, 3>, to: &Vector<N, 3>| {
             cross(&(to - from), &(point - from)).dot(&unit_across)
         };
@@ -240,7 +240,7 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     /// Returns whether the flat solid contains the ball around a point, up to rounding.
     fn holds(&self, center: &Vector<N, 3>, radius: N) -> bool {
         let center = self.pose12.rotation * center + self.shift;
-        let room = noise::<N>() - radius;
+        let room = rounding_error::<N>() - radius;
         match self.flat {
             FlatCore::Cuboid(cuboid) => {
                 let half = cuboid.half_extents() * self.shrink;
@@ -308,7 +308,7 @@ impl<N: Real> DirectedPoint<N> {
     /// planes.
     fn proved(&self, height: N) -> Option<RevolvedFound<N>> {
         let aside = self.point - self.nearest - self.outward * height;
-        let is_across = aside.norm_squared() <= noise::<N>() * noise();
+        let is_across = aside.norm_squared() <= rounding_error::<N>() * rounding_error();
         let found = RevolvedFound { distance: height, normal: self.outward, on_other: self.point };
         is_across.then_some(found)
     }

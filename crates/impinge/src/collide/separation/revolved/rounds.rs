@@ -6,7 +6,7 @@
 //! balls around one point, one in each solid, are the proof: their radii add up to the depth.
 
 use super::profile::Profile;
-use super::{DirectedPoint, RevolvedFound, RevolvedResult, in_second_frame, noise, still};
+use super::{DirectedPoint, RevolvedFound, RevolvedResult, in_second_frame, rounding_error, still};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
@@ -94,7 +94,7 @@ impl<N: Real> RoundView<N> {
     /// noise.
     fn beside(&self, v: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let beside = v - self.axis * self.axis.dot(v);
-        unit(&beside).filter(|(_, length)| *length > noise()).map(|(beside, _)| beside)
+        unit(&beside).filter(|(_, length)| *length > rounding_error()).map(|(beside, _)| beside)
     }
 
     /// Returns the nearest place of the rim around `middle`, starting from the direction `out`.
@@ -167,6 +167,6 @@ impl<N: Real> RoundView<N> {
         let center = found.on_other - found.normal * (found.distance * N::HALF);
         let own = self.own.project(center).distance;
         let other = self.other.project(self.rotation.tr_mul(&(center - self.center))).distance;
-        own + other <= found.distance + noise()
+        own + other <= found.distance + rounding_error()
     }
 }

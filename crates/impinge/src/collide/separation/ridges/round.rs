@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use crate::collide::separation::hulls::noise;
+use crate::collide::separation::hulls::rounding_error;
 use crate::collide::separation::revolved::cylinder_cylinder::radial;
 use crate::math::{Real, Vector, unit};
 use crate::shape::Kind;
@@ -37,7 +37,7 @@ impl<N: Real> Round<N> {
             _ => return None,
         };
         let round = Self { half: half * shrink, radius: radius * shrink, is_cone };
-        (round.half > noise() && round.radius > noise()).then_some(round)
+        (round.half > rounding_error() && round.radius > rounding_error()).then_some(round)
     }
 
     /// Signs of the caps along the axis.

@@ -18,7 +18,7 @@
 //! Lane `i` is triangle `i` of the [`PartPacket`], whose triangles [`super`] has collected from
 //! tiles.
 
-use super::{TriangleQuery, noise};
+use super::{TriangleQuery, rounding_error};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
 use crate::math::lanes::{
@@ -91,7 +91,7 @@ impl AxisFeature {
 
 /// Returns the length that counts as rounding in a pair with the unit `scale`.
 pub(super) fn slack<N: Real>(scale: N) -> N {
-    N::lit(16.0) * noise::<N>() * scale
+    N::lit(16.0) * rounding_error::<N>() * scale
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
@@ -125,7 +125,7 @@ impl<N: Real> TriangleQuery<'_, N> {
             normal: either(is_above, &negated(front), front),
             feature: V::all(simd, N::lit(TRIANGLE)),
         };
-        let is_less = of_solid.gap.simd_gt(own.gap + V::all(simd, noise()));
+        let is_less = of_solid.gap.simd_gt(own.gap + V::all(simd, rounding_error()));
         let face = own.or(is_less, &of_solid);
         let beyond = beyond | (packet.is_beyond(face.gap) & is_wide);
         let asked = is_wide & !beyond;
@@ -135,7 +135,7 @@ impl<N: Real> TriangleQuery<'_, N> {
         let best = packet.query_edges(&climbs, &directions, asked, face);
         // For a short edge, its two faces alone may claim a gap that other vertices do not leave.
         let [_, gap] = packet.gaps_along(&best.normal);
-        let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * noise()));
+        let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * rounding_error()));
         packet.stored(&best, beyond | (packet.is_beyond(best.gap) & known), known)
     }
 }
@@ -318,7 +318,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         let (simd, zero, one) = (self.simd, V::all(self.simd, N::ZERO), V::all(self.simd, N::ONE));
         let mut feature = V::all(simd, N::lit(EDGES)) - one;
         let sine = N::lit(PARALLEL) * N::EPSILON;
-        let (mut best, mut bound) = (face, face.gap + V::all(simd, noise()));
+        let (mut best, mut bound) = (face, face.gap + V::all(simd, rounding_error()));
         for edge in self.solid.edges {
             let [first, second] = edge.faces.mapped(|face| &climbs[face as usize]);
             let [from, to] = edge.vertices.mapped(|end| self.solid.vertex(end as usize));

@@ -44,7 +44,7 @@ const CLEAR: f64 = 64.0;
 const LONG: f64 = 8192.0;
 
 /// Returns the rounding error of arithmetic on numbers of size 2.
-fn noise<N: Real>() -> N {
+fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
@@ -194,7 +194,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
         let is_inside =
             share1 > room && share1 < det - room && share2 > room && share2 < det - room;
         let longest = max(own, max(third.norm_squared(), (third - way).norm_squared()));
-        let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * noise::<N>());
+        let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * rounding_error::<N>());
         // Written so that NaN is not plain.
         let is_certain = is_inside
             && det > N::lit(MIN_SINE) * own * other
@@ -211,7 +211,7 @@ impl<N: Real> PlacedTriangle<'_, N> {
         let lower =
             |best: usize, next: usize| if heights[next] < heights[best] { next } else { best };
         let lowest = lower(lower(0, 1), 2);
-        let clear = heights[lowest] + N::lit(CLEAR) * noise::<N>();
+        let clear = heights[lowest] + N::lit(CLEAR) * rounding_error::<N>();
         let is_alone = (0..3).all(|other: usize| other == lowest || heights[other] > clear);
         let (ring, at) = (self.solid.ring(face), self.corners[lowest]);
         let is_over = |(from, to): (&u32, &u32)| {

@@ -412,8 +412,8 @@ mod tests {
 
     #[test]
     fn two_normals_in_turn_are_as_each_alone() {
-        let noise = |at: u32| f64::from((at * at * 31 + at * 7) % 97) / 97.0 - 0.5;
-        let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
+        let pseudo_random = |at: u32| f64::from((at * at * 31 + at * 7) % 97) / 97.0 - 0.5;
+        let heights = (0..36).map(|at| 0.8 * pseudo_random(at)).collect();
         let field = HeightField::<f64, 3>::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
         let mut counts = [0; 3];
         for (field, part) in [field.clone(), field.one_sided()]
@@ -422,7 +422,11 @@ mod tests {
         {
             let front = field.front_of(&field.corners(part));
             for at in 0..60_u32 {
-                let aside = Vector::<f64, 3>::new(noise(at), noise(at + 60), noise(at + 120));
+                let aside = Vector::<f64, 3>::new(
+                    pseudo_random(at),
+                    pseudo_random(at + 60),
+                    pseudo_random(at + 120),
+                );
                 let far = (front + aside).normalize();
                 let near = (front + aside * 0.03).normalize();
                 let feature = [FeatureId::Edge(at / 3 % 3), FeatureId::Vertex(at % 3)];

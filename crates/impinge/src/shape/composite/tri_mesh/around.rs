@@ -183,7 +183,7 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     // The height over the longest side is the smallest and decides whether there is an area.
     let longest = max(length, max(from_a, from_b));
     let least = height * (length / longest);
-    let has_area = least > noise(corners, longest);
+    let has_area = least > rounding_error(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
 }
 
@@ -217,7 +217,7 @@ impl<N: Real, const D: usize> SideLine<N, D> {
         let from = corners[side];
         let way = corners[(side + 1) % 3] - from;
         let (along, length) = unit(&way).unwrap_or((Vector::<N, D>::zeros(), N::ZERO));
-        Self { from, along, length, room: noise(corners, length) }
+        Self { from, along, length, room: rounding_error(corners, length) }
     }
 
     /// The interval of a segment along the line, from the beginning of the side.
@@ -241,7 +241,7 @@ fn crossed_before<S>(crossed: &[(u32, usize, S)], triangle: u32, side: usize) ->
 
 /// The height over its longest side up to which a triangle has no area: the rounding error of the
 /// difference of coordinates, and of the coordinates themselves.
-pub(super) fn noise<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
+pub(super) fn rounding_error<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
     let mut farthest = N::ZERO;
     for corner in corners {
         farthest = max(farthest, max_component(&corner.coords));

@@ -1,7 +1,7 @@
 //! The seam rule of meshes in 3D: the normals at a face, an edge or a vertex.
 
 use super::TriMesh;
-use super::around::noise;
+use super::around::rounding_error;
 use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::bend::{Bend, BendShape};
@@ -20,7 +20,7 @@ pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector
     let scale = lengths[longest].power_of_two_below();
     let found = unit(&cross(&(sides[0] / scale), &(sides[1] / scale)));
     let height = |area: N| area * scale / (lengths[longest] / scale);
-    let found = found.filter(|&(_, area)| height(area) > noise(corners, lengths[longest]));
+    let found = found.filter(|&(_, area)| height(area) > rounding_error(corners, lengths[longest]));
     found.map_or_else(Vector::<N, 3>::zeros, |(normal, _)| normal)
 }
 
@@ -213,15 +213,15 @@ impl<N: Real> TriMesh<N, 3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::Surface;
     use crate::shape::surface::own_surface::OwnSurface;
 
     /// A rough sheet of triangles.
-    fn sheet(noise: &mut Noise) -> TriMesh<f64, 3> {
+    fn sheet(random: &mut Xorshift) -> TriMesh<f64, 3> {
         let position = |at: u32| {
             let [x, z] = [at % 6, at / 6].map(f64::from);
-            Point::<f64, 3>::new(x, 0.4 * noise.next(), z)
+            Point::<f64, 3>::new(x, 0.4 * random.next(), z)
         };
         let vertices = (0..36).map(position).collect();
         let cells = (0..30).filter(|at| at % 6 < 5);
@@ -231,13 +231,13 @@ mod tests {
 
     #[test]
     fn two_normals_in_turn_are_as_each_alone() {
-        let (mut noise, mut counts) = (Noise(5), [0; 3]);
-        let (rough, other) = (sheet(&mut noise), sheet(&mut noise).one_sided());
-        let kept = sheet(&mut noise).one_sided().with_internal_edges_kept();
+        let (mut random, mut counts) = (Xorshift(5), [0; 3]);
+        let (rough, other) = (sheet(&mut random), sheet(&mut random).one_sided());
+        let kept = sheet(&mut random).one_sided().with_internal_edges_kept();
         for mesh in [rough, other, kept] {
             for (part, at) in (0..50_u32).flat_map(|part| (0..90_u32).map(move |at| (part, at))) {
                 let front = mesh.normal(part).expect("an area");
-                let aside: Vector<f64, 3> = noise.vector(0.6);
+                let aside: Vector<f64, 3> = random.vector(0.6);
                 let share = [0.0, 1.0, 1.0][at as usize % 3];
                 let far = (front + aside * share).normalize();
                 let near = (front + aside * 0.03).normalize();

@@ -17,7 +17,7 @@ pub(super) struct BestSide<V, M> {
     /// Signed distance along the normal.
     pub(super) gap: V,
     /// Rounding error of lengths of the pair.
-    pub(super) noise: V,
+    pub(super) rounding_error: V,
     /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
 }
@@ -35,7 +35,7 @@ struct AxisSide<V, M> {
 impl<V> Boxes<V, 2> {
     /// Rounding error of lengths of each pair.
     #[inline(always)]
-    fn noise<S: Simd, N: Real>(&self, simd: S) -> V
+    fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
         V: Wide<S, Scalar = N>,
     {
@@ -67,8 +67,8 @@ impl<V> Boxes<V, 2> {
             },
         );
         let gap = is_second.select(second.gap, first.gap);
-        let (noise, is_finite) = (self.noise(simd), is_finite(simd, self));
-        BestSide { is_second, is_y, normal, gap, noise, is_finite }
+        let (rounding_error, is_finite) = (self.rounding_error(simd), is_finite(simd, self));
+        BestSide { is_second, is_y, normal, gap, rounding_error, is_finite }
     }
 
     /// Returns the best side of each box; of equal gaps the one that comes first in the box's

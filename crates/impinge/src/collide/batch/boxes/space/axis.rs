@@ -18,7 +18,7 @@ pub(super) struct BestAxis<V, M> {
     /// Signed distance along the normal.
     pub(super) gap: V,
     /// Rounding error of lengths of the pair.
-    pub(super) noise: V,
+    pub(super) rounding_error: V,
     /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
 }
@@ -54,7 +54,7 @@ fn abs_rotation<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
 impl<V> Boxes<V, 3> {
     /// Rounding error of lengths of each pair.
     #[inline(always)]
-    fn noise<S: Simd, N: Real>(&self, simd: S) -> V
+    fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
         V: Wide<S, Scalar = N>,
     {
@@ -72,8 +72,9 @@ impl<V> Boxes<V, 3> {
     {
         let abs_rotation = abs_rotation(&self.rotation);
         let (face, is_second, gap) = self.best_face(simd, &abs_rotation);
-        let noise = self.noise(simd);
-        let (edges, bound) = self.best_edges(simd, &abs_rotation, (gap + noise).larger(gap));
+        let rounding_error = self.rounding_error(simd);
+        let (edges, bound) =
+            self.best_edges(simd, &abs_rotation, (gap + rounding_error).larger(gap));
         // The axes are negative if no pair of edges is better.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
@@ -81,7 +82,7 @@ impl<V> Boxes<V, 3> {
         let normal = self.direction(simd, ends, (is_second, is_edges));
         let is_finite = is_finite(simd, self);
         let gap = is_edges.select(bound, gap);
-        BestAxis { face, is_second, is_edges, normal, gap, noise, is_finite }
+        BestAxis { face, is_second, is_edges, normal, gap, rounding_error, is_finite }
     }
 
     /// Returns the face with the largest gap: its axis, whether it is the second box's, and the

@@ -5,14 +5,14 @@ use crate::shape::{Feature, FeatureId, Geometry, Kind, Segment, SupportMap};
 
 /// The result of [`SupportMap::core_feature`] in 2D, without a heap or a polygon's storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SupportingFeature<N: Real> {
+pub(crate) struct SideOrVertex<N: Real> {
     pub(crate) id: FeatureId,
     /// Twice the same for a vertex.
     pub(crate) ends: [(FeatureId, Point<N, 2>); 2],
     pub(crate) is_side: bool,
 }
 
-impl<N: Real> SupportingFeature<N> {
+impl<N: Real> SideOrVertex<N> {
     #[inline]
     pub(super) fn vertex(id: FeatureId, point: Point<N, 2>) -> Self {
         Self { id, ends: [(id, point); 2], is_side: false }
@@ -87,10 +87,9 @@ mod tests {
                 let (sine, cosine) = Real::sine_cosine(f64::from(step) * 0.1);
                 let direction = Vector::<f64, 2>::new(cosine, sine);
                 let kind = solid.geometry().0;
-                let found = SupportingFeature::of(kind, &direction).expect("a solid of the plane");
+                let found = SideOrVertex::of(kind, &direction).expect("a solid of the plane");
                 let map = Geometry(kind).as_support_map().expect("convex");
-                let expected =
-                    SupportingFeature::of_map(map, &direction).expect("a side or a vertex");
+                let expected = SideOrVertex::of_map(map, &direction).expect("a side or a vertex");
                 assert_eq!(found, expected, "{solid:?} along {direction}");
                 sides += usize::from(found.is_side);
                 vertices += usize::from(!found.is_side);
