@@ -41,8 +41,8 @@ impl<const D: usize> Block<D> {
         let mut squares = [0.0; LANES];
         for ((lo, hi), point) in self.lo.iter().zip(&self.hi).zip(point) {
             for ((square, lo), hi) in squares.iter_mut().zip(lo).zip(hi) {
-                let way = lo * 0.5 + hi * 0.5 - point;
-                *square += way * way;
+                let offset = lo * 0.5 + hi * 0.5 - point;
+                *square += offset * offset;
             }
         }
         let (mut nearest, mut least) = (None, f32::INFINITY);

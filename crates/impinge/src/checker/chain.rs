@@ -83,8 +83,8 @@ impl<N: Real, const D: usize> Node<N, D> {
         let origin = if self.parent == 0 { self.origin - shift } else { self.origin };
         let rotation = match &self.rotation {
             Swing::Turn(parts) => Swing::Turn(parts.map(|part| part.map(N::as_f32))),
-            Swing::Slide(rotation, way) => {
-                Swing::Slide(rotation.map(N::as_f32), way.map(N::as_f32))
+            Swing::Slide(rotation, axis) => {
+                Swing::Slide(rotation.map(N::as_f32), axis.map(N::as_f32))
             }
         };
         Node { parent: self.parent, origin: origin.map(N::as_f32), rotation }
@@ -119,7 +119,7 @@ impl<N: Real, const D: usize> Node<N, D> {
             |row| {
                 let origin = V::all(simd, self.origin[row]);
                 match &self.rotation {
-                    Swing::Slide(_, way) => origin + V::all(simd, way[row]) * number,
+                    Swing::Slide(_, axis) => origin + V::all(simd, axis[row]) * number,
                     Swing::Turn(_) => origin,
                 }
             },

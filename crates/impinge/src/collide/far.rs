@@ -83,10 +83,10 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
             return false;
         }
         let nearest = if is_still { N::ZERO } else { -along / speed_squared };
-        let way = self.between + velocity * max(min(nearest, end), N::ZERO);
+        let offset = self.between + velocity * max(min(nearest, end), N::ZERO);
         // The vector has an error of some epsilon of the distance that it began with.
         let rounding = max_component(&self.between) * N::lit(4096.0) * N::EPSILON;
-        exceeds(way.norm_squared(), reach(self.extents(), limit) + rounding)
+        exceeds(offset.norm_squared(), reach(self.extents(), limit) + rounding)
     }
 }
 

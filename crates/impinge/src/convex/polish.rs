@@ -215,7 +215,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
     }
 
     /// Vectors from the first point to each of the others.
-    fn ways(&self) -> impl Iterator<Item = Vector<N, D>> {
+    fn directions(&self) -> impl Iterator<Item = Vector<N, D>> {
         self.branches[1..].iter().map(|branch| branch.on - self.branches[0].on)
     }
 
@@ -301,14 +301,14 @@ fn step<N: Simplicial<D>, const D: usize>(
     first.add_bend(&mut rows);
     second.add_bend(&mut rows);
     let across = |v: Vector<N, D>| v - normal * normal.dot(&v);
-    let ways = first.ways().map(|way| -way).chain(second.ways());
+    let directions = first.directions().map(|direction| -direction).chain(second.directions());
     let mut count = D;
-    for way in ways {
-        let flat = across(way);
+    for direction in directions {
+        let flat = across(direction);
         for i in 0..D {
             (rows[i][count], rows[count][i]) = (flat[i], flat[i]);
         }
-        rows[count][RIGHT] = -way.dot(normal);
+        rows[count][RIGHT] = -direction.dot(normal);
         count += 1;
     }
     let apart = across(second.branches[0].on - first.branches[0].on);

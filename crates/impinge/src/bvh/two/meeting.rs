@@ -95,9 +95,9 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
     }
     debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
     let turns = [0, 1].mapped(|which| Turn::of(question.pose(which)));
-    let way = max_component(&question.pose(0).translation).as_f32()
+    let distances = max_component(&question.pose(0).translation).as_f32()
         + max_component(&question.pose(1).translation).as_f32();
-    let size = trees[0].size() + trees[1].size() + way;
+    let size = trees[0].size() + trees[1].size() + distances;
     let room = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
     let gap = f32::NEG_INFINITY;
     let whole = OpenPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
@@ -321,8 +321,9 @@ mod tests {
     /// The least distance of samples along two segments.
     fn distance(one: &[Point<f64, 3>; 2], other: &[Point<f64, 3>; 2]) -> f64 {
         let point_at = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
-        let ways = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
-        ways.map(|(at1, at2)| (point_at(one, at1) - point_at(other, at2)).norm())
+        let pairs = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
+        pairs
+            .map(|(at1, at2)| (point_at(one, at1) - point_at(other, at2)).norm())
             .fold(f64::INFINITY, f64::min)
     }
 
@@ -350,7 +351,7 @@ mod tests {
                 is_for_nearest: false,
                 own: None,
             };
-            let ways = [false, true].map(|is_for_nearest| {
+            let results = [false, true].map(|is_for_nearest| {
                 pairs.is_for_nearest = is_for_nearest;
                 visit_meetings(trees.each_ref(), &mut pairs);
                 let mut found = core::mem::take(&mut pairs.found);
@@ -358,12 +359,13 @@ mod tests {
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
                 found
             });
-            let [found, nearest] = &ways;
+            let [found, nearest] = &results;
             assert!(nearest.len() * 2 < found.len() || found.len() < 100, "{}", nearest.len());
             for (id1, one) in (0..).zip(&all[0]) {
                 for (id2, other) in (0..).zip(&all[1]) {
                     let distance = distance(one, &other.map(|end| pose.point(&end)));
-                    let is_found = ways.iter().all(|way| way.binary_search(&[id1, id2]).is_ok());
+                    let is_found =
+                        results.iter().all(|result| result.binary_search(&[id1, id2]).is_ok());
                     assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
                 }
             }

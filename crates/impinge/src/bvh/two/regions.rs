@@ -190,17 +190,17 @@ impl<const D: usize> Extent<D> {
     #[inline(always)]
     fn gaps<S: Simd>(&self, simd: S, [lo, hi]: &[[S::F32x8; D]; 2]) -> S::F32x8 {
         let (half, zero) = (S::F32x8::all(simd, 0.5), S::F32x8::all(simd, 0.0));
-        let (mut way, mut squared, mut low) = ([zero; D], zero, zero);
+        let (mut offset, mut squared, mut low) = ([zero; D], zero, zero);
         for axis in 0..D {
             let middle = (lo[axis] + hi[axis]) * half;
-            way[axis] = middle - S::F32x8::all(simd, self.middle[axis]);
-            squared = way[axis] * way[axis] + squared;
-            low = low + way[axis] * middle - way[axis].abs() * ((hi[axis] - lo[axis]) * half);
+            offset[axis] = middle - S::F32x8::all(simd, self.middle[axis]);
+            squared = offset[axis] * offset[axis] + squared;
+            low = low + offset[axis] * middle - offset[axis].abs() * ((hi[axis] - lo[axis]) * half);
         }
         let along = |vector: &[f32; D]| {
             let mut height = zero;
             for axis in 0..D {
-                height = way[axis] * S::F32x8::all(simd, vector[axis]) + height;
+                height = offset[axis] * S::F32x8::all(simd, vector[axis]) + height;
             }
             height
         };

@@ -72,8 +72,9 @@ pub(super) fn around<N: Real, const D: usize>(balls: &[CoverBall<N, D>]) -> Cove
         let away = farthest.center - center;
         let length = away.norm();
         // Towards the farthest point of that ball.
-        let way = if length > N::ZERO { away * (reach(&center, farthest) / length) } else { away };
-        center += way / N::lit(small(step + 1));
+        let shift =
+            if length > N::ZERO { away * (reach(&center, farthest) / length) } else { away };
+        center += shift / N::lit(small(step + 1));
         let found = radius(&center);
         if found < best.radius {
             best = CoverBall { center, radius: found };

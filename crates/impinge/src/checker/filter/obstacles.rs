@@ -1,7 +1,7 @@
 //! The obstacles that the bodies of a robot may touch.
 
 use super::core::RoundedCore;
-use super::robot::{BallGroup, RobotFilter, shift_of, way_to};
+use super::robot::{BallGroup, RobotFilter, path_to, shift_of};
 use super::{MAX_LENGTH, margin};
 use crate::checker::body::Obstacle;
 use crate::checker::frames::FrameTree;
@@ -68,7 +68,7 @@ impl<const D: usize> Surroundings<D> {
         group: usize,
     ) -> Vec<InReach> {
         let group = &robot.groups[group];
-        let way = way_to(tree, group.node, (&group.center, group.radius));
+        let path = path_to(tree, group.node, (&group.center, group.radius));
         let mut all = Vec::new();
         for (index, obstacle) in obstacles.iter().enumerate() {
             let number = u32::try_from(index).expect("32 bits can number the obstacles");
@@ -80,7 +80,7 @@ impl<const D: usize> Surroundings<D> {
             let margin = margin + group.margin;
             let radius = group.radius + outline.radius + margin;
             let gap =
-                distance_from(&way.anchor, obstacle).as_f64() - way.length - f64::from(margin);
+                distance_from(&path.anchor, obstacle).as_f64() - path.length - f64::from(margin);
             let gap = N::lit(gap).as_f32_below();
             // NaN, from unbounded obstacles, counts as near everything.
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };

@@ -62,7 +62,7 @@ struct Covered<N: Real, const D: usize> {
 }
 
 /// The region that a group can reach.
-pub(super) struct Way<N: Real, const D: usize> {
+pub(super) struct NodePath<N: Real, const D: usize> {
     /// The position of the first joint that rotates, or the center if none does, with all slides at
     /// zero.
     pub(super) anchor: Vector<N, D>,
@@ -82,7 +82,7 @@ struct Builder<'a, N: Real, const D: usize> {
     shift: Vector<N, D>,
     filter: RobotFilter<D>,
     /// The reach of each group: all of it is within the length of the anchor.
-    ways: Vec<Way<N, D>>,
+    paths: Vec<NodePath<N, D>>,
     /// The group and the balls, as bits, of each body, in the user's order.
     memberships: Vec<(usize, u8)>,
 }
@@ -123,11 +123,11 @@ pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vecto
 }
 
 /// The chain of joints to a ball on a node; the center is relative to [`shift_of`] on the world.
-pub(super) fn way_to<N: Real, const D: usize>(
+pub(super) fn path_to<N: Real, const D: usize>(
     tree: &FrameTree<N, D>,
     node: usize,
     (center, radius): (&[f32; D], f32),
-) -> Way<N, D> {
+) -> NodePath<N, D> {
     let mut center = Vector::<N, D>::from_fn(|axis, _| N::lit(f64::from(center[axis])));
     if node == 0 {
         center += shift_of(tree);
@@ -157,7 +157,7 @@ pub(super) fn way_to<N: Real, const D: usize>(
         (center_at_zero, f64::from(radius))
     };
     let first = chain.last().map_or(center, |node| node.origin);
-    Way { anchor, length, first, from_first, joints: chain.len() }
+    NodePath { anchor, length, first, from_first, joints: chain.len() }
 }
 
 impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
@@ -169,7 +169,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             crossings: Vec::new(),
             slide_margin: margin::<N>(tree.nodes.len(), 1.0, 1.0),
         };
-        Self { tree, shift, filter, ways: Vec::new(), memberships: vec![(0, 0); bodies] }
+        Self { tree, shift, filter, paths: Vec::new(), memberships: vec![(0, 0); bodies] }
     }
 
     /// Groups the bodies of one node: one group, or those of the two halves along the longest axis.
@@ -207,12 +207,12 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             self.memberships[body.number] = (self.filter.groups.len(), bits);
         }
         (group.center, group.radius) = in_f32(&around(&all));
-        let way = way_to(self.tree, node, (&group.center, group.radius));
-        let near = way.from_first + (way.first - self.shift).norm().as_f64();
+        let path = path_to(self.tree, node, (&group.center, group.radius));
+        let near = path.from_first + (path.first - self.shift).norm().as_f64();
         let far = near + self.shift.norm().as_f64();
-        group.margin = margin::<N>(way.joints, near, far);
+        group.margin = margin::<N>(path.joints, near, far);
         self.filter.groups.push(group);
-        self.ways.push(way);
+        self.paths.push(path);
     }
 
     /// Collects the pairs of bodies by their groups.
@@ -242,7 +242,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
 
     /// A lower bound of the distance between the regions that two groups can reach.
     fn gap_between(&self, groups: [usize; 2]) -> f32 {
-        let [one, other] = groups.mapped(|group| &self.ways[group]);
+        let [one, other] = groups.mapped(|group| &self.paths[group]);
         let apart = (one.anchor - other.anchor).norm().as_f64();
         N::lit(apart - one.length - other.length).as_f32_below()
     }
@@ -253,8 +253,8 @@ fn gap_on_node<const D: usize>([one, other]: [&BallGroup<D>; 2], wanted: &[u8; L
     let mut least = f32::INFINITY;
     for (ball1, others) in wanted.iter().enumerate() {
         for ball2 in (0..LANES).filter(|ball| others >> ball & 1 == 1) {
-            let way = one.center_of(ball1) - other.center_of(ball2);
-            least = least.min(way.norm() - one.radii[ball1] - other.radii[ball2]);
+            let offset = one.center_of(ball1) - other.center_of(ball2);
+            least = least.min(offset.norm() - one.radii[ball1] - other.radii[ball2]);
         }
     }
     least

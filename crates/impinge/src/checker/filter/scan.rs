@@ -250,8 +250,8 @@ impl<const D: usize> Scan<'_, D> {
 
 #[inline(always)]
 fn squared_between<S: Simd, V: Wide<S>, const D: usize>(one: &[V; D], other: &[V; D]) -> V {
-    let way = minus(other, one);
-    dot(&way, &way)
+    let offset = minus(other, one);
+    dot(&offset, &offset)
 }
 
 #[inline(always)]

@@ -50,15 +50,15 @@ pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
     features.iter().all(|id| matches!(id, FeatureId::Edge(_)))
 }
 
-/// Returns whether a point with these features that moved by `way` on the first solid is the same;
+/// Returns whether a point with these features that moved by `moved` on the first solid is the same;
 /// `size` is that of the pair.
 #[inline(always)]
 pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     features: [FeatureId; 2],
-    way: &Vector<N, D>,
+    moved: &Vector<N, D>,
     size: impl FnOnce() -> N,
 ) -> bool {
-    !are_edges(features) || max_component(way) <= N::lit(REACH) * size()
+    !are_edges(features) || max_component(moved) <= N::lit(REACH) * size()
 }
 
 /// Reciprocal of the largest length by which a contact of a pair of this size moves in a step.

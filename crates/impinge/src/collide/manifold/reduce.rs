@@ -279,13 +279,13 @@ impl<N: Real> CoordinateRows<N> {
     /// right.
     #[inline]
     fn sides(&self, start: &Projected<N>, end: &Projected<N>) -> [N; 2] {
-        let way = end.at - start.at;
-        let base = cross2(&way, &start.at);
+        let edge = end.at - start.at;
+        let base = cross2(&edge, &start.at);
         let [mut lefts, mut rights] = [[N::ZERO; LANES]; 2];
         let rows = self.x.iter().zip(&self.y).zip(&self.weights);
         for ((x, y), weights) in rows.take(self.len) {
             for lane in 0..LANES {
-                let area = (way.x * y[lane] - way.y * x[lane] - base) * weights[lane];
+                let area = (edge.x * y[lane] - edge.y * x[lane] - base) * weights[lane];
                 lefts[lane] = max(lefts[lane], area);
                 rights[lane] = min(rights[lane], area);
             }
@@ -402,10 +402,10 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
 /// Returns whether a point lies between two others. An end of points in a row may have the same
 /// inner point on both sides, which both chains contain; `length` is zero then, and the end stays.
 fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: N) -> bool {
-    let (way, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
-    let (length, along) = (way.norm(), way.dot(&arm));
+    let (edge, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
+    let (length, along) = (edge.norm(), edge.dot(&arm));
     let room = tolerance * length;
-    let is_in_row = cross2(&way, &arm).abs() <= room && length > N::ZERO;
+    let is_in_row = cross2(&edge, &arm).abs() <= room && length > N::ZERO;
     is_in_row && along >= -room && along <= length * length + room
 }
 

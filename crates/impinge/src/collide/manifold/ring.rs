@@ -344,10 +344,10 @@ impl<'a, N: Real> SupportRing<'a, N> {
     /// Reduces a segment that projects to a point to its end nearest to the other solid. A segment
     /// without length has no ends and keeps its id.
     fn end_on(&mut self, outward: &Vector<N, 3>, tolerance: N) {
-        let (id, way) = (self.id, self.point(1) - self.point(0));
+        let (id, edge) = (self.id, self.point(1) - self.point(0));
         self.keep_farthest(outward);
         // Written so that NaN has no ends.
-        let has_ends = way.norm() > N::TWO * tolerance;
+        let has_ends = edge.norm() > N::TWO * tolerance;
         self.id = if has_ends { self.id } else { id };
     }
 

@@ -164,8 +164,8 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
 /// Rotates the corners so that the first is the one after a point on the rim.
 fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
     let count = out.vertices.len();
-    let way = |at: usize| (out.vertices[at] - point).norm();
-    let around = |at: usize| way(at) + way((at + 1) % count);
+    let distance = |at: usize| (out.vertices[at] - point).norm();
+    let around = |at: usize| distance(at) + distance((at + 1) % count);
     let nearer = |best: usize, at: usize| if around(at) < around(best) { at } else { best };
     let before = (1..count).fold(0, nearer);
     out.vertices.rotate_left((before + 1) % count);

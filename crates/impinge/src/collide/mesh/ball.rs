@@ -118,8 +118,8 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
         // Everything outside the box is beyond reach.
         let reach = self.ball.radius() + self.request.prediction;
         let clearance = min(reach, candidates.from_middle);
-        let way = Travelled { old: contacts.reference, clearance };
-        self.from = advanced(self.between, &way, self.center);
+        let travelled = Travelled { old: contacts.reference, clearance };
+        self.from = advanced(self.between, &travelled, self.center);
         let around = &contacts.around;
         each_lane(
             &candidates,

@@ -161,19 +161,19 @@ fn follow<N: Space<3>>(
     (done, points)
 }
 
-fn compare<N: Space<3>>(seed: u64, solid_of: impl Fn(&mut Random) -> Solid<N>, has_own_way: bool) {
+fn compare<N: Space<3>>(seed: u64, solid_of: impl Fn(&mut Random) -> Solid<N>, has_own_path: bool) {
     let random = &mut Random(seed);
     let (mut done, mut points) = (0, 0);
     for round in 0..ROUNDS {
         let (of_one, found) = follow::<N>(solid_of(random), random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(!has_own_way || done * 2 > ROUNDS * STEPS, "{done} updates by the quick way");
+    assert!(!has_own_path || done * 2 > ROUNDS * STEPS, "{done} updates by the quick way");
     assert!(points > ROUNDS * STEPS / 2, "{points} points");
 }
 
 #[test]
-fn balls_have_the_contacts_of_the_general_way() {
+fn balls_have_the_contacts_of_the_generic_path() {
     compare::<f32>(11, ball_of, true);
     compare::<f64>(12, ball_of, true);
 }

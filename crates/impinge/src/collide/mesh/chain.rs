@@ -215,8 +215,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         let mut near = Links::new(depth_in(&aabb, &self.center));
         links(&question, &mut near)?;
         let slack = relative_slack::<N>() * (near.from_middle + self.size + limit);
-        let way = Travelled { old: contacts.reference, clearance: near.from_middle - slack };
-        self.from = advanced(self.between, &way, self.center);
+        let travelled = Travelled { old: contacts.reference, clearance: near.from_middle - slack };
+        self.from = advanced(self.between, &travelled, self.center);
         let kept = KeptLinks { tiles: around.tiles(), parts: around.parts(), within: aabb };
         for (index, found) in &near.found {
             if let Some(link) = self.link(&kept, *index, found) {

@@ -177,7 +177,7 @@ fn compare<N: Space<2>>(seed: u64) {
 }
 
 #[test]
-fn chains_have_the_contacts_of_the_general_way() {
+fn chains_have_the_contacts_of_the_generic_path() {
     compare::<f32>(11);
     compare::<f64>(12);
 }

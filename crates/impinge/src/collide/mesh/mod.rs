@@ -188,8 +188,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         let center = middle_of_first(between);
         // A body knows by itself on which side its inside is.
         let old = self.reference.filter(|_| !between.has_bodies());
-        let way = Travelled { old, clearance: nearby.clearance };
-        let reference = center.map(|center| advanced(between, &way, center));
+        let travelled = Travelled { old, clearance: nearby.clearance };
+        let reference = center.map(|center| advanced(between, &travelled, center));
         let around = &self.around;
         let query = Query { between, is_self, around, reference: &reference, request: &of_parts };
         let mut arena = Arena::default();
@@ -262,22 +262,22 @@ struct Travelled<N: Real, const D: usize> {
 /// from where it was leads through the surface and is no longer than the shape is.
 fn advanced<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    way: &Travelled<N, D>,
+    travelled: &Travelled<N, D>,
     center: Point<N, D>,
 ) -> Point<N, D> {
-    let Travelled { old, clearance } = *way;
+    let Travelled { old, clearance } = *travelled;
     let [_, composite] = between.composites();
     let composite = composite.filter(|composite| composite.surface().is_some());
     let map = Geometry(between.pair.first).as_support_map();
     let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
-    let way = center - old;
-    let length = way.norm();
+    let shift = center - old;
+    let length = shift.norm();
     // Half of what is known to be free leaves room for rounding.
     let is_free = length < clearance * N::HALF;
-    if is_free || way == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
+    if is_free || shift == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
         return center;
     }
-    let is_hit = entries::is_crossed(composite, &Ray::new(old, way), N::ONE);
+    let is_hit = entries::is_crossed(composite, &Ray::new(old, shift), N::ONE);
     if is_hit { old } else { center }
 }
 
@@ -353,8 +353,8 @@ fn of_parts<N: Space<D>, const D: usize>(
 ) -> ManifoldRequest<N> {
     let ManifoldRequest { prediction, sine, .. } = *request;
     let map = Geometry(between.pair.first).as_support_map().filter(|_| sine > N::ZERO);
-    let way = map.map_or(N::ZERO, |map| sine * (N::TWO * size(map)));
-    ManifoldRequest { prediction: prediction + way, sine: N::ZERO, max_points: PART_POINTS }
+    let margin = map.map_or(N::ZERO, |map| sine * (N::TWO * size(map)));
+    ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
 }
 
 /// No point of a solid is farther from its origin.
@@ -375,7 +375,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     }
     let between = Between::of_ordered(&ordered);
     let in_world = |found| placed(&found, ordered.first, ordered.swapped);
-    if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_way(&between)
+    if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_path(&between)
     {
         // Points that differ by rounding alone are all there, whatever the limit.
         let rounding = rounding(&between);
@@ -406,7 +406,7 @@ fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, lim
 }
 
 /// Contacts mostly have a kernel of their own: of balls and surfaces, and of chains.
-fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
+fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
     if parts.has_bodies() {
         return false;
@@ -419,7 +419,7 @@ fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool
 /// near as the nearest are looked at, unless that is one that cannot be touched.
 ///
 /// A contact that differs from the distance by rounding alone has that: it exists where the shapes touch, and is
-/// no overlap where they are apart. One of [`has_own_way`] of shapes that are apart is as it is found without the
+/// no overlap where they are apart. One of [`has_own_path`] of shapes that are apart is as it is found without the
 /// distance.
 fn deepest<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -434,7 +434,7 @@ fn deepest<N: Space<D>, const D: usize>(
     let farther = found.distance - near;
     let is_off = farther > N::ZERO || distance > N::ZERO;
     let touches = distance <= N::ZERO && farther > N::ZERO;
-    if is_off && farther.abs() <= rounding && (touches || !has_own_way(between)) {
+    if is_off && farther.abs() <= rounding && (touches || !has_own_path(between)) {
         found.distance = near;
         found.point2 = found.point1 + found.normal * near;
     }

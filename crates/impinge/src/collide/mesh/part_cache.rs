@@ -237,9 +237,9 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
             let center = map.center();
             Vector::<N, D>::from_fn(|axis, _| {
                 let reach = |sign| {
-                    let mut way = Vector::<N, D>::zeros();
-                    way[axis] = sign;
-                    (map.core_support(&way) - center)[axis].abs()
+                    let mut direction = Vector::<N, D>::zeros();
+                    direction[axis] = sign;
+                    (map.core_support(&direction) - center)[axis].abs()
                 };
                 max(reach(N::ONE), reach(-N::ONE))
             })

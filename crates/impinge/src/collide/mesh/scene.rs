@@ -416,22 +416,22 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
 
     /// Whether the two parts are separated, within `tolerance`, once the second shape moves by one
     /// of some vectors in the frame of the first.
-    pub(super) fn is_parted_by_one(&self, ways: &[Vector<N, D>], tolerance: N) -> bool {
+    pub(super) fn is_parted_by_one(&self, translations: &[Vector<N, D>], tolerance: N) -> bool {
         let Some([one, other]) = self.corners() else {
-            return ways.iter().any(|way| self.is_parted(way, tolerance));
+            return translations.iter().any(|translation| self.is_parted(translation, tolerance));
         };
         let mut pairs = PartPairs::new(N::ZERO);
-        ways.chunks(LANES).any(|ways| {
-            for (lane, way) in ways.iter().enumerate() {
+        translations.chunks(LANES).any(|translations| {
+            for (lane, translation) in translations.iter().enumerate() {
                 pairs.ones.put(lane, &one.mapped(Point::from));
-                pairs.others.put(lane, &other.mapped(|corner| Point::from(corner + way)));
+                pairs.others.put(lane, &other.mapped(|corner| Point::from(corner + translation)));
             }
-            pairs.count = ways.len();
+            pairs.count = translations.len();
             let PairVerdicts { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
             // Few pairs are so close to the limit that the lanes leave them undecided.
             let is_open = |lane: usize| (beyond | within) >> lane & 1 == 0;
-            let mut open = ways.iter().enumerate().filter(|(lane, _)| is_open(*lane));
-            beyond != 0 || open.any(|(_, way)| self.is_parted(way, tolerance))
+            let mut open = translations.iter().enumerate().filter(|(lane, _)| is_open(*lane));
+            beyond != 0 || open.any(|(_, translation)| self.is_parted(translation, tolerance))
         })
     }
 
@@ -444,10 +444,10 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     }
 
     /// Whether the two parts are separated, within `tolerance`, once the second shape moves by
-    /// `way`, in the frame of the first.
-    fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
+    /// `translation`, in the frame of the first.
+    fn is_parted(&self, translation: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
-        pair.pose12.translation += self.inward(way);
+        pair.pose12.translation += self.inward(translation);
         <N::Algorithms>::separation(&pair, -tolerance).is_none()
     }
 

@@ -2,7 +2,7 @@
 
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartStatus};
-use super::{CompositeContacts, PART_POINTS, Query, gather, has_own_way, middle_of_first};
+use super::{CompositeContacts, PART_POINTS, Query, gather, has_own_path, middle_of_first};
 use crate::collide::parts::between::Between;
 use crate::collide::{ManifoldRequest, RawPoint};
 use crate::convex::Separation;
@@ -28,7 +28,7 @@ pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     visit: &mut Visit<'_, N, D>,
 ) {
     let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
-    if has_own_way(between) {
+    if has_own_path(between) {
         let mut contacts =
             CompositeContacts { around: PartCache::for_once(), ..Default::default() };
         if <N::Algorithms>::update_quickly(&mut contacts, between, &request) {

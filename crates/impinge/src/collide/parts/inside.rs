@@ -234,8 +234,9 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
             0 => (point, outward),
             _ => (between.pose21.point(&point), between.pose21.vector(&outward)),
         };
-        let way = max(found.separation.distance, N::ZERO) * N::lit(BEYOND) + rounding([&point; 2]);
-        let beyond = point + outward * way;
+        let distance =
+            max(found.separation.distance, N::ZERO) * N::lit(BEYOND) + rounding([&point; 2]);
+        let beyond = point + outward * distance;
         let mut is_held = false;
         composite.each_body(&mut |body| {
             is_held |= body.parts() == self.boundary && body.holds(&beyond);
@@ -262,8 +263,9 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     fn separation(&self, between: &Between<'_, N, D>) -> Option<PartSeparation<N, D>> {
         let Exit { point, outward, parts } = self.exit()?;
         let pose12 = &between.pair.pose12;
-        let to_inner_frame =
-            |way: Vector<N, D>| if self.inner == 0 { way } else { pose12.inverse_vector(&way) };
+        let to_inner_frame = |vector: Vector<N, D>| {
+            if self.inner == 0 { vector } else { pose12.inverse_vector(&vector) }
+        };
         let origin = if self.inner == 0 { point } else { pose12.inverse_point(&point) };
         let (kind, _) = between.in_frame_of_other(self.inner);
         let inward = to_inner_frame(-outward);

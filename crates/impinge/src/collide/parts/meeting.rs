@@ -57,14 +57,14 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
     let [Some(parts1), Some(parts2)] = between.composites() else { return false };
     let trees = [parts1, parts2].mapped(|parts| parts.search().as_tree()?.packed_whole());
     let [Some(tree1), Some(tree2)] = trees else { return false };
-    let ways =
+    let distances =
         [&between.pair.pose12, &between.pose21].mapped(|pose| max_component(&pose.translation));
     // Translations beyond `f32` make the boxes infinite.
-    if ways.iter().any(|way| !way.as_f32().is_finite()) {
+    if distances.iter().any(|distance| !distance.as_f32().is_finite()) {
         return false;
     }
     let sizes = [parts1, parts2].mapped(|parts| extent(&parts.search().bounds()));
-    let size = sizes[0] + sizes[1] + max(ways[0], ways[1]);
+    let size = sizes[0] + sizes[1] + max(distances[0], distances[1]);
     let mut meeting = PartMeetings {
         between,
         parts: [parts1, parts2],
@@ -74,7 +74,7 @@ pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
         wanted,
         own: None,
         kept: [[0; 2]; LANES],
-        pairs: PartPairs::new(max(ways[0], ways[1])),
+        pairs: PartPairs::new(max(distances[0], distances[1])),
         visitor,
     };
     visit_meetings([tree1, tree2], &mut meeting);
@@ -118,9 +118,9 @@ impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
         let Some(reach) = self.reach.filter(|_| self.wanted == Meetings::Nearest) else {
             return false;
         };
-        let way = (other[0] + other[1] + other[2]) - (one[0] + one[1] + one[2]);
-        let [gap1, gap2] = [range(one, &way)[1], range(other, &way)[0]];
-        gap2 - gap1 > (reach + self.slack) * way.norm()
+        let axis = (other[0] + other[1] + other[2]) - (one[0] + one[1] + one[2]);
+        let [gap1, gap2] = [range(one, &axis)[1], range(other, &axis)[0]];
+        gap2 - gap1 > (reach + self.slack) * axis.norm()
     }
 
     /// Passes a pair to the visitor, which returns the new reach.

@@ -179,8 +179,8 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 
     fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>> {
-        let way = self.between.pair.pose12.point(&points[1]) - points[0];
-        self.toward(0, &unit(&way)?.0)
+        let offset = self.between.pair.pose12.point(&points[1]) - points[0];
+        self.toward(0, &unit(&offset)?.0)
     }
 
     /// Infinite for parts without corners.

@@ -70,7 +70,7 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         let own = max_component(&part.pose.translation);
         let offset = max(own, max_component(&pose.translation));
         slabs.origin = corners[0];
-        let ends = corners.mapped(|at| sweep.map_or(at, |sweep| at + sweep.way(&at)));
+        let ends = corners.mapped(|at| sweep.map_or(at, |sweep| at + sweep.displacement(&at)));
         let all = corners.iter().chain(&ends);
         slabs.size = all.fold(offset, |size, at| max(max_component(at), size));
         let spread = sweep.map_or(N::ZERO, |sweep| sweep.spread);

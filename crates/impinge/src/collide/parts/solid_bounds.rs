@@ -86,7 +86,8 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     fn outward_at(&self, point: &Point<N, D>) -> Vector<N, D> {
         match <N::Algorithms>::project_on_solid(self.solid, &self.pose.inverse_point(point)) {
             Some(projected) => self.pose.vector(&projected.outward),
-            None => unit(&(point - self.center)).map_or_else(Vector::<N, D>::zeros, |(way, _)| way),
+            None => unit(&(point - self.center))
+                .map_or_else(Vector::<N, D>::zeros, |(direction, _)| direction),
         }
     }
 

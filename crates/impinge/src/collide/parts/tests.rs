@@ -197,9 +197,10 @@ fn in_plane<N: Space<2>>() -> Solids<N, 2> {
 }
 
 fn random_rotation<N: Real>(random: &mut Random) -> Pose<N, 2> {
-    let way = unit(&random.vector::<N>().xy()).map_or_else(Vector::<N, 2>::x, |(way, _)| way);
+    let direction =
+        unit(&random.vector::<N>().xy()).map_or_else(Vector::<N, 2>::x, |(direction, _)| direction);
     let mut pose = Pose::<N, 2>::identity();
-    pose.rotation = Matrix::<N, 2>::new(way.x, -way.y, way.y, way.x);
+    pose.rotation = Matrix::<N, 2>::new(direction.x, -direction.y, direction.y, direction.x);
     pose
 }
 

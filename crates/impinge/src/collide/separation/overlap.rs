@@ -50,11 +50,11 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
     if is_distance_only(pair, limit) && are_faceted(pair) {
         return apart::distance(pair, limit);
     }
-    let way = way_in_space(pair);
-    if way == DistanceMethod::Revolved && is_distance_only(pair, limit) && are_bare(pair) {
+    let method = method_3d(pair);
+    if method == DistanceMethod::Revolved && is_distance_only(pair, limit) && are_bare(pair) {
         return revolved::distance(pair, limit);
     }
-    distance(pair, limit, way)
+    distance(pair, limit, method)
 }
 
 /// Returns the signed distance of two solids in 2D, with the rule of [`distance_in_space`].
@@ -65,7 +65,7 @@ pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: 
     if limit >= N::ZERO && inner_balls_meet(pair) {
         return Some(N::ZERO);
     }
-    distance(pair, limit, way_in_plane(pair))
+    distance(pair, limit, method_2d(pair))
 }
 
 /// Returns the signed distance where its formula is a part of the formula for the separation.
@@ -162,13 +162,13 @@ fn beside_ball<N: Real, const D: usize>(
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
-    way: DistanceMethod,
+    method: DistanceMethod,
 ) -> Option<N> {
     if is_distance_only(pair, limit) {
-        if way == DistanceMethod::Search && are_bare(pair) {
+        if method == DistanceMethod::Search && are_bare(pair) {
             return general::distance(pair, limit);
         }
-        if way != DistanceMethod::Formula && certainly_overlap(pair, way) {
+        if method != DistanceMethod::Formula && certainly_overlap(pair, method) {
             return Some(N::ZERO);
         }
     }
@@ -197,9 +197,9 @@ fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 /// Costs a few support points of each solid, which are wasted if they are apart.
 fn certainly_overlap<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
-    way: DistanceMethod,
+    method: DistanceMethod,
 ) -> bool {
-    let least = if way == DistanceMethod::Axes { N::lit(DEEP) } else { N::ZERO };
+    let least = if method == DistanceMethod::Axes { N::lit(DEEP) } else { N::ZERO };
     if let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
         return convex::overlap(&map1, &map2, &pair.pose12, least);
     }
@@ -216,7 +216,7 @@ fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
 }
 
 /// Returns the method for two kinds in order, as in the table of 3D.
-fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
+fn method_3d<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     use Kind::{
         Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
     };
@@ -243,7 +243,7 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
 }
 
 /// Returns the method for two kinds in order, as in the table of 2D.
-fn way_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
+fn method_2d<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
     use Kind::{Ball, Composite, Plane};
     let (first, second) = (inner(pair.first), inner(pair.second));
     match (first, second) {
@@ -273,7 +273,7 @@ mod tests {
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],
-        way: fn(&Pair<'_, N, D>) -> DistanceMethod,
+        method: fn(&Pair<'_, N, D>) -> DistanceMethod,
     ) -> (usize, usize) {
         let (mut found, mut overlapping) = (0, 0);
         for (first, second) in solids.iter().flat_map(|a| solids.iter().map(move |b| (a, b))) {
@@ -281,10 +281,10 @@ mod tests {
                 let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
                 let depth = separation(&pair, N::INFINITY).expect("finite").distance;
                 let is_deep = depth < N::ZERO;
-                let is_searched = way(&pair) != DistanceMethod::Formula;
+                let is_searched = method(&pair) != DistanceMethod::Formula;
                 let is_found = is_searched && certainly_overlap(&pair, DistanceMethod::Features);
                 assert!(is_deep || !is_found, "they are apart at {pose12:?}");
-                let known = distance(&pair, N::INFINITY, way(&pair)).expect("finite");
+                let known = distance(&pair, N::INFINITY, method(&pair)).expect("finite");
                 if depth > N::ZERO {
                     assert_eq!(known, depth, "the same where they are apart at {pose12:?}");
                 } else {
@@ -338,7 +338,7 @@ mod tests {
                 [straight, Pose { rotation, ..straight }]
             })
             .collect();
-        let (found, overlapping) = found(&solids, &poses, way_in_space);
+        let (found, overlapping) = found(&solids, &poses, method_3d);
         assert!(found * 2 > overlapping, "{found} of {overlapping} in 3D");
     }
 
@@ -359,7 +359,7 @@ mod tests {
             .flat_map(|(x, y)| steps(Vector::<N, 2>::new(N::lit(x), N::lit(y)), size))
             .map(Pose::from_translation)
             .collect();
-        let (found, overlapping) = found(&solids, &poses, way_in_plane);
+        let (found, overlapping) = found(&solids, &poses, method_2d);
         assert!(found * 2 > overlapping, "{found} of {overlapping} in 2D");
     }
 

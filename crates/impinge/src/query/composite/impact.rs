@@ -91,11 +91,11 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.begin_inside();
         match self.between.composites() {
             [None, None] => self.hold([0, 0], N::ZERO),
-            [Some(parts1), None] => self.each_on_way(1, 0, parts1),
+            [Some(parts1), None] => self.each_on_path(1, 0, parts1),
             [None, Some(parts2)] if self.between.is_half_space_first() => {
                 self.of_half_space(parts2);
             }
-            [None, Some(parts2)] => self.each_on_way(0, 0, parts2),
+            [None, Some(parts2)] => self.each_on_path(0, 0, parts2),
             [Some(parts1), Some(parts2)] => self.of_many(parts1, parts2),
         }
     }
@@ -106,7 +106,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let aabb = self.grown(&self.between.whole_in_other(1 - which));
         let (velocity, end) = (self.velocity(1 - which), self.end());
         fewer.search().cast(&aabb, &velocity, end, &mut |part, _| {
-            self.each_on_way(which, part, more);
+            self.each_on_path(which, part, more);
             self.end()
         });
     }
@@ -118,13 +118,13 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let Some(nearest) = nearest else { return };
         self.hold(nearest.parts, N::ZERO);
         if self.first.is_some_and(|first| first.arrival.along <= N::ZERO) {
-            self.each_on_way(0, 0, others);
+            self.each_on_path(0, 0, others);
         }
     }
 
     /// Tests one part of one shape against the parts of the other whose boxes it hits, in the order
     /// of their earliest possible times, as far as the search's times exclude others.
-    fn each_on_way(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
+    fn each_on_path(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let aabb = self.grown(&self.between.aabb_in_other(which, part));
         let (velocity, end) = (self.velocity(which), self.end());
         let mover = if which == 0 {

@@ -67,10 +67,10 @@ impl<N: Real, const D: usize> Near<'_, N, D> {
             PartSolid::Shape(_) => return false,
         };
         let [a, b, c] = &corners;
-        let way = a + b + c;
+        let sum = a + b + c;
         let (heights, squares) =
-            (corners.mapped(|corner| way.dot(&corner)), corners.mapped(|v| v.norm_squared()));
-        let square = way.norm_squared();
+            (corners.mapped(|corner| sum.dot(&corner)), corners.mapped(|v| v.norm_squared()));
+        let square = sum.norm_squared();
         // The rounding error of the products, 16 units of the sum of all squares, and a thousandth
         // of the distance: parts that are equally near up to rounding are still tested.
         let rounding_error =

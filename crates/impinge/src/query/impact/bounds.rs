@@ -131,7 +131,7 @@ pub(super) struct Rate<N> {
 
 impl<N: Real> Rate<N> {
     /// The distance moved in a time, at most.
-    pub(super) fn way(&self, time: N) -> N {
+    pub(super) fn travel(&self, time: N) -> N {
         product(max(self.speed, N::ZERO), time) + product(product(self.bend, time), time)
     }
 
@@ -226,10 +226,10 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// body, which rotates by `S`: a linear function of its position. Its derivative, `u'' - 2 S u'
     /// + S² u`, bends the path.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
-        let way = rate.way(span);
+        let travel = rate.travel(span);
         let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);
         let [Some(own), Some(frame)] = [body.constant(), other.constant()] else {
-            return PartSweep::anywhere(way);
+            return PartSweep::anywhere(travel);
         };
         let [center, pivot] = [self.centers[which], self.centers[1 - which]];
         let [turn, turning] = [body, other].mapped(|body| body.turn_bound(self.time, self.time));
@@ -246,13 +246,13 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         let size = max(max_component(&position), max_component(&center))
             + far
             + max(body.size(), other.size());
-        let spread = bend + N::lit(64.0) * N::EPSILON * (size + way);
-        if spread < way {
+        let spread = bend + N::lit(64.0) * N::EPSILON * (size + travel);
+        if spread < travel {
             let shift = pose.inverse_vector(&shift) * span;
             let turn = pose.rotation.tr_mul(&(spin * pose.rotation)) * span;
             return PartSweep { turn, shift, spread };
         }
-        PartSweep::anywhere(way)
+        PartSweep::anywhere(travel)
     }
 
     /// Whether the parts of the bodies can be advanced separately: one is a composite, and both

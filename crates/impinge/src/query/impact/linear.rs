@@ -223,8 +223,8 @@ fn meeting_of_balls<N: Space<D>, const D: usize>(
     let leg = ((reach * reach - across.norm_squared()) / squared).sqrt();
     let along = (foot - leg) * scale;
     // Written so that NaN, from balls that pass each other, is left to the steps too.
-    let is_way = along > N::ZERO && along <= path.end;
-    if !is_way {
+    let is_in_time = along > N::ZERO && along <= path.end;
+    if !is_in_time {
         return None;
     }
     let found = separation(&path.moved(start, along), N::INFINITY)?;

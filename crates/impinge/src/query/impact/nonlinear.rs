@@ -434,8 +434,8 @@ impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
         let (moment, end) = (&poses.moment, self.search.end);
         let placed = poses.between.parts(parts);
         let parts = moment.parts(&placed, &poses.pose1);
-        let way = min(moment.rate_of(&parts, end).way(left), self.rate.way(left));
-        let found = separation(&placed.pair(), self.spent + way)?;
+        let travel = min(moment.rate_of(&parts, end).travel(left), self.rate.travel(left));
+        let found = separation(&placed.pair(), self.spent + travel)?;
         let gap = found.distance - self.spent;
         Some((gap, moment.safe_time_of(&parts, &found.normal, gap, end)))
     }

@@ -106,8 +106,8 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
                 return Some(self.crossing(t + step, normal));
             }
             t += distance / approach;
-            let on_the_way = approach > N::ZERO && t <= self.room;
-            if !on_the_way {
+            let is_within = approach > N::ZERO && t <= self.room;
+            if !is_within {
                 return None;
             }
         }

@@ -305,10 +305,14 @@ impl<N: Real> Triangle<N, 3> {
         let sides = [b - a, c - b, a - c];
         let size = max(max_component(&sides[0]), max_component(&sides[1]));
         // Scaled so that fourth powers neither overflow nor underflow.
-        let ways = sides.map(|side| side / size.power_of_two_below());
-        let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
+        let scaled_sides = sides.map(|side| side / size.power_of_two_below());
+        let squared = [
+            scaled_sides[0].norm_squared(),
+            scaled_sides[1].norm_squared(),
+            scaled_sides[2].norm_squared(),
+        ];
         let longest = max(max(squared[0], squared[1]), squared[2]);
-        let across = cross(&ways[0], &ways[1]);
+        let across = cross(&scaled_sides[0], &scaled_sides[1]);
         let (area, rise) = (across.norm_squared(), across.dot(direction));
         // NaN counts as thin.
         let is_wide = area > N::lit(THIN_SQUARED) * longest * longest;
@@ -324,7 +328,7 @@ impl<N: Real> Triangle<N, 3> {
         if !is_less(rise * rise, upright) {
             return None;
         }
-        let climbs = ways.map(|way| way.dot(direction));
+        let climbs = scaled_sides.map(|side| side.dot(direction));
         // The highest corner, from the climbs of the sides.
         let heights = [N::ZERO, climbs[0], climbs[0] + climbs[1]];
         let higher = |best: usize, at: usize| if heights[at] > heights[best] { at } else { best };
@@ -343,10 +347,10 @@ impl<N: Real> Triangle<N, 3> {
     /// Fills a blank ring with the face on the side of a direction. The triangle must not be thin.
     pub(crate) fn fill_ring(&self, direction: &Vector<N, 3>, face: &mut FaceRing<N>) {
         let [a, b, c] = self.corners();
-        let ways = [b - a, c - a];
+        let edges = [b - a, c - a];
         // Scaled so that products neither overflow nor underflow.
-        let size = max(max_component(&ways[0]), max_component(&ways[1])).power_of_two_below();
-        let across = cross(&(ways[0] / size), &(ways[1] / size));
+        let size = max(max_component(&edges[0]), max_component(&edges[1])).power_of_two_below();
+        let across = cross(&(edges[0] / size), &(edges[1] / size));
         let is_below = across.dot(direction) < N::ZERO;
         let normal = unit_or(&across, *direction);
         face.normal = if is_below { -normal } else { normal };

@@ -189,7 +189,7 @@ mod tests {
         let mut seam = Seam::of_faces(fronts[0], normal).along(&edge);
         for (corners, front) in corners.iter().zip(fronts) {
             let inward = inward_of(corners).expect("an area");
-            seam.add_face(|way| inward.dot(way), front);
+            seam.add_face(|direction| inward.dot(direction), front);
         }
         is_across(&edge, normal) && seam.admits(is_one_sided)
     }

@@ -58,7 +58,7 @@ const CLEAR: f64 = 8.0;
 
 /// The sides that leave a corner, compared with a normal there. They decide most cases without the
 /// faces: the normal is rejected if a side rises along it, and admitted if all sink.
-pub(in crate::shape) struct CornerWays<'a, N: Real, const D: usize> {
+pub(in crate::shape) struct CornerEdges<'a, N: Real, const D: usize> {
     normal: &'a Vector<N, D>,
     /// A side rises clearly along the normal.
     has_rising: bool,
@@ -66,16 +66,16 @@ pub(in crate::shape) struct CornerWays<'a, N: Real, const D: usize> {
     has_level: bool,
 }
 
-impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
+impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
     pub(in crate::shape) const fn new(normal: &'a Vector<N, D>) -> Self {
         Self { normal, has_rising: false, has_level: false }
     }
 
     /// Adds a side of any length, as a vector away from the corner.
     #[inline]
-    pub(in crate::shape) fn add(&mut self, way: &Vector<N, D>) {
-        let (rise, room) = (way.dot(self.normal), N::lit(CLEAR) * slack());
-        let is_clear = rise * rise > room * room * way.norm_squared();
+    pub(in crate::shape) fn add(&mut self, edge: &Vector<N, D>) {
+        let (rise, room) = (edge.dot(self.normal), N::lit(CLEAR) * slack());
+        let is_clear = rise * rise > room * room * edge.norm_squared();
         self.has_rising |= is_clear && rise > N::ZERO;
         self.has_level |= !is_clear;
     }
@@ -225,7 +225,7 @@ mod tests {
     fn admits(normal: &Vector<f64, 3>, faces: &[(Vector<f64, 3>, Vector<f64, 3>)]) -> bool {
         let mut seam = Seam::of_faces(faces[0].1, normal).along(&Vector::<f64, 3>::z());
         for (inward, front) in faces {
-            seam.add_face(|way| inward.dot(way), front);
+            seam.add_face(|direction| inward.dot(direction), front);
         }
         seam.admits(true)
     }
@@ -236,8 +236,8 @@ mod tests {
         for faces in [[left].as_slice(), &[left; 2], &[left; 3]] {
             assert!(admits(&outward, faces) && !admits(&inward, faces), "{} faces", faces.len());
         }
-        let other_way = [left, (left.0, -left.1)];
-        assert!(admits(&outward, &other_way), "one of the two has its front up");
+        let other_order = [left, (left.0, -left.1)];
+        assert!(admits(&outward, &other_order), "one of the two has its front up");
         let almost_level = [left, (v(-1.0, -0.004), v(-0.004, 1.0))];
         assert!(admits(&outward, &almost_level), "on one side");
     }

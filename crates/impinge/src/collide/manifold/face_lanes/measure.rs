@@ -270,9 +270,9 @@ impl<V> ProjectedTriangles<V> {
         let turn = rise.simd_lt(V::all(simd, N::ZERO)).select(-one, one);
         let (mut inward, mut lengths) = (sides, squared);
         for (own, length) in inward.iter_mut().zip(&mut lengths) {
-            let way = cross(normal, own);
-            *length = norm(&way);
-            *own = times(&way, turn / *length);
+            let perpendicular = cross(normal, own);
+            *length = norm(&perpendicular);
+            *own = times(&perpendicular, turn / *length);
         }
         Self { corners: *corners, normal: *normal, sides, squared, across, rise, inward, lengths }
     }

@@ -74,9 +74,9 @@ impl<N: Real> FoundPoints<'_, N> {
         // What coincides is found from both.
         let near = N::lit(4.0) * self.tolerance;
         let is_same = |old: &RawPoint<N, 3>| {
-            let way = old.point1 - point1;
+            let moved = old.point1 - point1;
             [old.feature1, old.feature2] == [feature1, feature2]
-                && (way - normal * normal.dot(&way)).norm() <= near
+                && (moved - normal * normal.dot(&moved)).norm() <= near
         };
         if self.points[self.first..].iter().any(is_same) {
             return;
@@ -196,13 +196,13 @@ impl<N: Real> LaneClip<'_, N> {
         let mut part = None;
         for side in sides {
             let [(from, from_id, side_id), (to, to_id, _)] = ends(side);
-            let (way, arm) = (flat(to - from), flat(at - from));
-            let share = arm.dot(&way);
+            let (edge, arm) = (flat(to - from), flat(at - from));
+            let share = arm.dot(&edge);
             if arm.norm() <= room {
                 part = Some(from_id);
             } else if flat(at - to).norm() <= room {
                 part = Some(to_id);
-            } else if share >= N::ZERO && share <= way.norm_squared() {
+            } else if share >= N::ZERO && share <= edge.norm_squared() {
                 part = Some(side_id);
             }
         }

@@ -47,8 +47,8 @@ impl<N: Real> DirectedEdge<N> {
 
     /// Returns whether the point lies above the side itself, not only above its line.
     fn is_below(&self, center: &Point<N, 2>) -> bool {
-        let way = self.along.dot(&(center - self.from));
-        self.height > N::ZERO && way > N::ZERO && way < self.length
+        let coordinate = self.along.dot(&(center - self.from));
+        self.height > N::ZERO && coordinate > N::ZERO && coordinate < self.length
     }
 
     /// Projects the point onto the line of the side.

@@ -70,9 +70,9 @@ impl<N: Real> PolygonExtents<N> {
     #[inline(always)]
     fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
         let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
-        let (ways, is_tip) = outline.tips::<S, V>(simd, 0);
+        let (directions, is_tip) = outline.tips::<S, V>(simd, 0);
         for axis in 0..2 {
-            ways[axis].store(&mut tips[axis]);
+            directions[axis].store(&mut tips[axis]);
         }
         let mut reaches = [N::ZERO; LANES];
         for (vertex, reach) in reaches.iter_mut().enumerate().take(outline.count) {
@@ -80,7 +80,7 @@ impl<N: Real> PolygonExtents<N> {
         }
         let are_tips = is_tip.to_bitmask();
         if are_tips != 0 {
-            outline.reach(simd, &ways).store(&mut tip_reaches);
+            outline.reach(simd, &directions).store(&mut tip_reaches);
         }
         let size = outline.size::<S, V>(simd);
         Self { outline, size, reaches, tips, tip_reaches, are_tips }

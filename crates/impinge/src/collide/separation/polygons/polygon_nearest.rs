@@ -227,9 +227,9 @@ pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S
     let end2 = either(is_end, &to2, &from2);
     let on2 = nearest_on_segment(simd, &[from2, to2], &end1).point;
     let on1 = nearest_on_segment(simd, &[from1, to1], &end2).point;
-    let (way1, way2) = (minus(&on2, &end1), minus(&on1, &end2));
-    let (low1, lane1) = highest(simd, -dot(&way1, &way1));
-    let (low2, lane2) = highest(simd, -dot(&way2, &way2));
+    let (offset1, offset2) = (minus(&on2, &end1), minus(&on1, &end2));
+    let (low1, lane1) = highest(simd, -dot(&offset1, &offset1));
+    let (low2, lane2) = highest(simd, -dot(&offset2, &offset2));
     let (low1, low2) = (-low1, -low2);
     let is_finite = low1 < N::INFINITY && low2 < N::INFINITY;
     if !is_finite {

@@ -354,8 +354,8 @@ pub(in crate::collide::separation) mod tests {
                     let what = || format!("{found:?} not {expected:?}: {kinds:?} {pose12:?}");
                     let close = N::lit(64.0) * N::EPSILON;
                     assert!((found.distance - expected.distance).abs() <= close, "{}", what());
-                    let way = found.point2 - found.point1 - found.normal * found.distance;
-                    assert!(way.norm() <= close, "the normal leads there: {}", what());
+                    let offset = found.point2 - found.point1 - found.normal * found.distance;
+                    assert!(offset.norm() <= close, "the normal leads there: {}", what());
                     decided += 1;
                     overlapping += usize::from(found.distance < N::ZERO);
                 }

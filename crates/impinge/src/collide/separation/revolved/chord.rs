@@ -86,7 +86,8 @@ impl<N: Real> Profile<N> {
         let mut share = search.start();
         for _ in 0..STEPS {
             let projected = self.project(search.at(share));
-            let (slope, way) = (projected.slope(&search.along), projected.way_down(&search.along));
+            let (slope, descent) =
+                (projected.slope(&search.along), projected.descent(&search.along));
             let is_end =
                 share <= N::ZERO && slope >= N::ZERO || share >= N::ONE && slope <= N::ZERO;
             if is_end {
@@ -96,7 +97,7 @@ impl<N: Real> Profile<N> {
                 ));
             }
             let is_level = slope.abs() <= still::<N>() * search.length;
-            if is_level || way.is_some_and(|way| way.abs() * search.length <= still()) {
+            if is_level || descent.is_some_and(|descent| descent.abs() * search.length <= still()) {
                 return Some((
                     NearestHull::Chord(ends),
                     DirectedPoint::across(self, &projected, &(search.along / search.length))?,
@@ -104,14 +105,14 @@ impl<N: Real> Profile<N> {
             }
             search.note(share, slope);
             let ahead = if slope > N::ZERO { -N::ONE } else { N::ONE };
-            let next = search.admitted(share + way.unwrap_or(ahead));
+            let next = search.admitted(share + descent.unwrap_or(ahead));
             share = match next {
                 Some(next) => next,
                 // Inside, the distance has a kink here.
                 None if projected.distance < N::ZERO => return None,
                 None => {
-                    let to_rim = projected.way_to_rim(self, &search.along);
-                    let next = to_rim.and_then(|way| search.admitted(share + way));
+                    let to_rim = projected.step_to_rim(self, &search.along);
+                    let next = to_rim.and_then(|step| search.admitted(share + step));
                     next.or_else(|| search.halved())?
                 }
             };

@@ -204,16 +204,16 @@ impl<N: Real> Coaxial<N> {
         let across = |n: Vector<N, 2>| Vector::<N, 2>::new(n.x, -n.y);
         let others = self.second.normals();
         let others = others.map(|n| self.direction(across(n), &self.second, &aside));
-        let ways: SmallVec<[AxialExit<N>; 6]> = own.chain(others).collect();
+        let exits: SmallVec<[AxialExit<N>; 6]> = own.chain(others).collect();
         let shorter = |a: AxialExit<N>, b: AxialExit<N>| if b.depth < a.depth { b } else { a };
-        let best = ways.iter().copied().reduce(shorter)?;
+        let best = exits.iter().copied().reduce(shorter)?;
         let is_exact = self.apart <= rounding_error();
         let slack = self.apart * N::lit(4.0);
         let is_rival = |other: &AxialExit<N>| {
             let is_other_ring = (other.normal - best.normal).norm() > N::lit(SAME_RING);
             other.normal.x > N::ZERO && is_other_ring && other.depth < best.depth + slack
         };
-        if !is_exact && ways.iter().any(is_rival) {
+        if !is_exact && exits.iter().any(is_rival) {
             return None;
         }
         let is_ring = best.normal.x > N::ZERO && !is_exact;

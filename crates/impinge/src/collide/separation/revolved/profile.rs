@@ -144,7 +144,7 @@ impl<N: Real> ProfileView<N> {
 
     /// Returns the Newton step along `along` to the point nearest to the rim, whatever part is
     /// nearest: for points between the two lines of the outline that meet at the rim.
-    pub(super) fn way_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
+    pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };
         let offset = Vector::<N, 2>::new(self.aside - radius, self.point.y - end);
@@ -156,7 +156,7 @@ impl<N: Real> ProfileView<N> {
     /// Returns how far the point has to move until the slope is zero, if its nearest part stays the
     /// same; `None` on a line where the slope does not change. Exact except at a rim, where it is a
     /// step of Newton's method for the squared distance.
-    pub(super) fn way_down(&self, along: &Vector<N, 3>) -> Option<N> {
+    pub(super) fn descent(&self, along: &Vector<N, 3>) -> Option<N> {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let (across, up) = (out * out + turn * turn, along.y);
         match self.part {

@@ -252,15 +252,16 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     #[inline(always)]
     fn directions(&self, turn: &Matrix<N, 3>) -> Directions<V, V::Mask> {
         let (simd, [a, b, c], shrink) = (self.simd, &self.given, self.shrink);
-        let ways =
+        let edges =
             [times(&minus(b, a), shrink), times(&minus(c, b), shrink), times(&minus(a, c), shrink)];
-        let squared = [dot(&ways[0], &ways[0]), dot(&ways[1], &ways[1]), dot(&ways[2], &ways[2])];
+        let squared =
+            [dot(&edges[0], &edges[0]), dot(&edges[1], &edges[1]), dot(&edges[2], &edges[2])];
         let longest = squared[0].larger(squared[1]).larger(squared[2]);
-        let across = cross(&ways[0], &ways[1]);
+        let across = cross(&edges[0], &edges[1]);
         let area = dot(&across, &across).sqrt();
         let is_wide = area.simd_gt(V::all(simd, N::lit(THIN)) * longest)
             & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
-        let mut sides = ways;
+        let mut sides = edges;
         for (side, squared) in sides.iter_mut().zip(squared) {
             *side = rotated_back(simd, turn, &over(side, squared.sqrt()));
         }

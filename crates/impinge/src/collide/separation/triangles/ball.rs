@@ -262,8 +262,8 @@ impl<V> TrianglePacket<V> {
     where
         V: Wide<S, Scalar = N>,
     {
-        let ([a, b, c], way, length) = (&self.corners, &self.nearest, self.squared.sqrt());
-        let low = dot(way, a).smaller(dot(way, b)).smaller(dot(way, c));
+        let ([a, b, c], nearest, length) = (&self.corners, &self.nearest, self.squared.sqrt());
+        let low = dot(nearest, a).smaller(dot(nearest, b)).smaller(dot(nearest, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
         // False for NaN and for values that have lost digits by underflow.

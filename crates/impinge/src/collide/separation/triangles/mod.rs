@@ -182,24 +182,24 @@ impl<N: Real> PlacedTriangle<'_, N> {
     fn crossing(&self, edge: usize, side: usize) -> Option<FeatureId> {
         let [from, to] = self.solid.edges[edge].vertices.mapped(|end| self.vertex(end));
         let start = &self.corners[side];
-        let way = self.corners[(side + 1) % 3] - start;
+        let edge = self.corners[(side + 1) % 3] - start;
         let third = self.corners[(side + 2) % 3] - start;
         let (along, arm) = (to - from, start - from);
         // Parameters of the nearest points of two lines, times the determinant.
-        let (own, other, both) = (way.norm_squared(), along.norm_squared(), way.dot(&along));
-        let (on_way, on_along) = (way.dot(&arm), along.dot(&arm));
+        let (own, other, both) = (edge.norm_squared(), along.norm_squared(), edge.dot(&along));
+        let (on_edge, on_along) = (edge.dot(&arm), along.dot(&arm));
         let det = own * other - both * both;
-        let (share1, share2) = (both * on_along - on_way * other, own * on_along - both * on_way);
+        let (share1, share2) = (both * on_along - on_edge * other, own * on_along - both * on_edge);
         let room = det * N::lit(INSIDE);
         let is_inside =
             share1 > room && share1 < det - room && share2 > room && share2 < det - room;
-        let longest = max(own, max(third.norm_squared(), (third - way).norm_squared()));
+        let longest = max(own, max(third.norm_squared(), (third - edge).norm_squared()));
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * rounding_error::<N>());
         // Written so that NaN is not plain.
         let is_certain = is_inside
             && det > N::lit(MIN_SINE) * own * other
             && own > long * long
-            && cross(&way, &third).norm_squared() > tall * tall;
+            && cross(&edge, &third).norm_squared() > tall * tall;
         is_certain.then(|| FeatureId::Edge([0, 1, 2][side]))
     }
 

@@ -215,8 +215,8 @@ struct SideLine<N: Real, const D: usize> {
 impl<N: Real, const D: usize> SideLine<N, D> {
     fn of(corners: &[Point<N, D>; 3], side: usize) -> Self {
         let from = corners[side];
-        let way = corners[(side + 1) % 3] - from;
-        let (along, length) = unit(&way).unwrap_or((Vector::<N, D>::zeros(), N::ZERO));
+        let edge = corners[(side + 1) % 3] - from;
+        let (along, length) = unit(&edge).unwrap_or((Vector::<N, D>::zeros(), N::ZERO));
         Self { from, along, length, room: rounding_error(corners, length) }
     }
 

@@ -5,7 +5,7 @@ use super::around::rounding_error;
 use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::bend::{Bend, BendShape};
-use crate::shape::surface::seam::{CornerWays, Seam, is_across, slack};
+use crate::shape::surface::seam::{CornerEdges, Seam, is_across, slack};
 use crate::shape::{FaceSeams, FeatureId};
 
 /// The unit normal on the side from which the corners run counter-clockwise; zero without area.
@@ -128,7 +128,7 @@ impl<N: Real> TriMesh<N, 3> {
         let edge = corners[(side + 1) % 3] - corners[side];
         let mut seam = Seam::of_faces(self.normals[part as usize], normal).along(&edge);
         let mut add = |triangle: u32, inward: Vector<N, 3>| {
-            seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
+            seam.add_face(|direction| inward.dot(direction), &self.normals[triangle as usize]);
         };
         if let Some(inward) = self.inward(part, side) {
             add(part, inward);
@@ -160,7 +160,7 @@ impl<N: Real> TriMesh<N, 3> {
     ) -> bool {
         let (joint, own) = (self.joint_at(part, corner), &self.normals[part as usize]);
         let around = self.topology.joints.parts(joint);
-        match self.ways_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
+        match self.edges_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
             Some(false) => return false,
             // Triangles without area may have others beyond them.
             Some(true) if around.iter().all(|&triangle| self.has_certain_area(triangle)) => {
@@ -171,34 +171,34 @@ impl<N: Real> TriMesh<N, 3> {
         let mut seam = Seam::of_faces(*own, normal);
         for &triangle in around {
             let front = &self.normals[triangle as usize];
-            seam.add_face(|way| self.rise_from(triangle, joint, way), front);
+            seam.add_face(|direction| self.rise_from(triangle, joint, direction), front);
         }
         self.each_beyond_joint(joint, |triangle, inward| {
-            seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
+            seam.add_face(|direction| inward.dot(direction), &self.normals[triangle as usize]);
         });
         seam.admits(self.is_one_sided)
     }
 
     /// Collects the sides that leave a corner, those of `part` first, until they reject the normal.
-    fn ways_around<'n>(
+    fn edges_around<'n>(
         &self,
         part: u32,
         corner: usize,
         normal: &'n Vector<N, 3>,
-    ) -> CornerWays<'n, N, 3> {
-        let (joint, mut ways) = (self.joint_at(part, corner), CornerWays::new(normal));
+    ) -> CornerEdges<'n, N, 3> {
+        let (joint, mut edges) = (self.joint_at(part, corner), CornerEdges::new(normal));
         let mut look = |triangle: u32, at: usize| {
             let corners = self.corners(triangle);
             for turn in [1, 2] {
-                ways.add(&(corners[(at + turn) % 3] - corners[at]));
+                edges.add(&(corners[(at + turn) % 3] - corners[at]));
             }
-            ways.is_refused()
+            edges.is_refused()
         };
         if !look(part, corner) {
             let mut around = self.topology.joints.parts(joint).iter();
             around.any(|&other| other != part && look(other, self.corner_at(other, joint)));
         }
-        ways
+        edges
     }
 
     /// See [`OwnSurface::face_seams`](crate::shape::surface::own_surface::OwnSurface::face_seams).
