@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_that_grow_keep_their_room() {
+    fn lists_that_grow_keep_their_capacity() {
         let (mut recent, mut list) = (Recent::default(), vec![0_u8; 50_000]);
         list.reserve_exact(50_000);
         looks(&mut recent, PERIOD, 0, 49_000)[0].fit(&mut list);

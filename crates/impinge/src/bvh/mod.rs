@@ -78,7 +78,7 @@ pub(crate) use slabs::Slabs;
 pub(crate) use stream::{RAYS, RayVisitor, Walk};
 pub(crate) use tree::{NONE, Tree};
 pub(crate) use triangles::{ShearedLine, TriangleAt, Triangles};
-pub(crate) use two::{Toward, TreeMeeting, TreePair, visit_meetings, visit_pairs};
+pub(crate) use two::{TouchQuery, Toward, TreePair, visit_pairs, visit_touching};
 
 /// Number of objects below which nothing runs in parallel: waking a thread costs more than it
 /// saves.

@@ -70,7 +70,7 @@ impl<const D: usize> Tree<D> {
     /// An object that would enlarge its block much moves to another one.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.slot(id);
-        if slot.is_some_and(|slot| self.has_room_for(slot / LANES, bounds)) {
+        if slot.is_some_and(|slot| self.hardly_grows_by(slot / LANES, bounds)) {
             self.set_still(id, bounds);
         } else {
             if slot.is_some() {

@@ -4,7 +4,7 @@ use crate::math::order::sort_few;
 use core::ops::Range;
 
 use super::chain::{LANES, LaneRow};
-use super::exact::{Exact, Glance};
+use super::exact::{Exact, QuickDistance};
 use super::filter::{CollisionSearch, NearPair, Other, ScanScratch, SearchMode, scan_at};
 use super::odds::PairOdds;
 use super::{Checker, NO_PAIR, NearestColumns};
@@ -155,13 +155,13 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
             if hits >> lane & 1 == 1 {
                 continue;
             }
-            let is_hit = match self.exact.glance(pair, lane, clearance) {
-                Glance::Known(distance) => distance.is_some(),
-                Glance::Unknown if self.odds.are_poor(pair) => {
+            let is_hit = match self.exact.quick_distance(pair, lane, clearance) {
+                QuickDistance::Known(distance) => distance.is_some(),
+                QuickDistance::Unknown if self.odds.are_poor(pair) => {
                     put_off.push((lane, pair));
                     false
                 }
-                Glance::Unknown => self.search_parts(pair, lane, clearance),
+                QuickDistance::Unknown => self.search_parts(pair, lane, clearance),
             };
             hits |= u8::from(is_hit) << lane;
         }

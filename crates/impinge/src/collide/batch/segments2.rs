@@ -231,15 +231,15 @@ impl<V, M> LaneSide<V, M> {
         V: Wide<S, Scalar = N>,
     {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
-        let room = self.below_witness(core, line);
+        let depth = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
         // Up to this squared distance across the normal, the ball around the nearest end is higher.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
-        let round = room - self.top.0 + (radius * radius - away_squared).sqrt();
+        let round = depth - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
         let lift = is_round.select(round, radius / self.cosine);
-        let lift = lift.smaller(room).larger(zero);
+        let lift = lift.smaller(depth).larger(zero);
         radius.simd_le(zero).select(zero, lift)
     }
 

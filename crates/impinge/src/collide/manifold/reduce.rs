@@ -404,9 +404,9 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
 fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: N) -> bool {
     let (edge, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
     let (length, along) = (edge.norm(), edge.dot(&arm));
-    let room = tolerance * length;
-    let is_in_row = cross2(&edge, &arm).abs() <= room && length > N::ZERO;
-    is_in_row && along >= -room && along <= length * length + room
+    let slack = tolerance * length;
+    let is_in_row = cross2(&edge, &arm).abs() <= slack && length > N::ZERO;
+    is_in_row && along >= -slack && along <= length * length + slack
 }
 
 /// Reduces a hull to at most `count` corners: old ones, a deepest one if there is one, and

@@ -210,9 +210,9 @@ impl<'a, N: Real> SupportRing<'a, N> {
         if self.radius <= N::ZERO {
             return N::ZERO;
         }
-        let (room, (top, at)) = (self.which.below_witness(core, frame), &self.top);
+        let (depth, (top, at)) = (self.which.below_witness(core, frame), &self.top);
         let away_squared = (frame.flat(core) - at).norm_squared();
-        lifted(self.radius, self.cosine, room, *top, away_squared)
+        lifted(self.radius, self.cosine, depth, *top, away_squared)
     }
 
     /// Transforms and projects the corners, simplifies a feature without extent, and computes the

@@ -210,9 +210,9 @@ impl<N: Real> Stretch<N> {
         if self.rounding <= N::ZERO {
             return N::ZERO;
         }
-        let room = self.which.below_witness(core, frame);
+        let depth = self.which.below_witness(core, frame);
         let (radius, away) = (self.rounding, frame.flat(core) - self.top.1);
-        lifted(radius, self.cosine, room, self.top.0, away.norm_squared())
+        lifted(radius, self.cosine, depth, self.top.0, away.norm_squared())
     }
 }
 

@@ -37,25 +37,34 @@ pub(crate) fn face_contacts<N: Real>(
     contacts: &mut PartContacts<N, 3>,
     arena: &mut Arena<N, 3>,
 ) -> bool {
-    let Some(meeting) = FaceMeeting::new(query, scene, nearby) else { return false };
+    let Some(configuration) = FaceConfiguration::new(query, scene, nearby) else { return false };
     arena.are_fronts = true;
-    let (tiles, near, origin) = (meeting.around.tiles(), nearby.near.as_slice(), meeting.origin);
+    let (tiles, near, origin) =
+        (configuration.around.tiles(), nearby.near.as_slice(), configuration.origin);
     let parts = TiledTriangles { tiles, near, origin };
-    let pose12 = Pose { rotation: meeting.turn, translation: Vector::<N, 3>::zeros() };
+    let pose12 = Pose { rotation: configuration.turn, translation: Vector::<N, 3>::zeros() };
     let limit = query.request.prediction;
     let (slot, pending, clip) = (None, PendingClips::default(), FaceClip::blank());
-    let mut found =
-        FaceContacts { meeting: &meeting, contacts, arena, slot, pending, clip, missing: 0 };
-    let is_served = gaps3(&parts, meeting.solid, &pose12, prediction, limit, &mut |index, gap| {
-        found.add(meeting.cache_indices[index], gap);
-    });
+    let mut found = FaceContacts {
+        configuration: &configuration,
+        contacts,
+        arena,
+        slot,
+        pending,
+        clip,
+        missing: 0,
+    };
+    let is_served =
+        gaps3(&parts, configuration.solid, &pose12, prediction, limit, &mut |index, gap| {
+            found.add(configuration.cache_indices[index], gap);
+        });
     found.clip();
     found.drop_missing();
     is_served
 }
 
 /// A solid among the triangles of a surface.
-struct FaceMeeting<'a, N: Real> {
+struct FaceConfiguration<'a, N: Real> {
     query: &'a Query<'a, N, 3>,
     scene: &'a Scene<'a, N, 3>,
     surface: SurfaceAccess<'a, N, 3>,
@@ -97,7 +106,7 @@ enum SurfaceAnswer<N: Real> {
     Unclear,
 }
 
-impl<'a, N: Real> FaceMeeting<'a, N> {
+impl<'a, N: Real> FaceConfiguration<'a, N> {
     /// `None` of other solids and composites, and of bodies, whose insides count as well.
     fn new(
         query: &'a Query<'a, N, 3>,
@@ -214,7 +223,7 @@ impl<N: Real> Default for PendingClips<N> {
 
 /// The contacts as they are found.
 struct FaceContacts<'s, 'a, N: Real> {
-    meeting: &'s FaceMeeting<'a, N>,
+    configuration: &'s FaceConfiguration<'a, N>,
     contacts: &'s mut PartContacts<N, 3>,
     arena: &'s mut Arena<N, 3>,
     slot: Option<PlacedPair<'a, N, 3>>,
@@ -238,20 +247,20 @@ impl<N: Real> FaceContacts<'_, '_, N> {
 
     /// Adds the contact of a triangle with a plain gap, if there is one; `None` where the general way finds it.
     fn add_certain(&mut self, cache_index: usize, gap: &TriangleGap<N>) -> Option<()> {
-        let triangle = self.meeting.triangle(cache_index)?;
-        let contact = match self.meeting.answer(&triangle, gap) {
+        let triangle = self.configuration.triangle(cache_index)?;
+        let contact = match self.configuration.answer(&triangle, gap) {
             SurfaceAnswer::Nothing => return Some(()),
             SurfaceAnswer::Contact(contact) => contact,
             SurfaceAnswer::Unclear => return None,
         };
         if contact.status != PartStatus::Left {
-            let asked = self.meeting.asked(&contact, gap.distance, triangle.tolerance)?;
+            let asked = self.configuration.asked(&contact, gap.distance, triangle.tolerance)?;
             self.pending.triangles.put(self.pending.asked.len(), &triangle.corners);
             self.pending.asked.push(asked);
             self.pending.contacts.push((self.contacts.len(), cache_index));
         }
         self.note_face(cache_index, contact.face.as_ref());
-        let (to_first, parts) = (&self.meeting.query.between.pair.pose12, [0, triangle.part]);
+        let (to_first, parts) = (&self.configuration.query.between.pair.pose12, [0, triangle.part]);
         let normal = -to_first.vector(&contact.normal);
         self.contacts.push(PartContact {
             distance: gap.distance,
@@ -267,23 +276,23 @@ impl<N: Real> FaceContacts<'_, '_, N> {
 
     /// Notes whether a face that is touched is a front.
     fn note_face(&mut self, cache_index: usize, face: Option<&Vector<N, 3>>) {
-        let seams = self.meeting.around.seams(cache_index);
+        let seams = self.configuration.around.seams(cache_index);
         let is_front = |face| seams.is_some_and(|seams: &FaceSeams<N>| seams.is_front(face));
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
 
     /// Finds the points of the triangles that are due.
     fn clip(&mut self) {
-        let (PendingClips { triangles, asked, contacts }, meeting) =
-            (core::mem::take(&mut self.pending), self.meeting);
+        let (PendingClips { triangles, asked, contacts }, configuration) =
+            (core::mem::take(&mut self.pending), self.configuration);
         if asked.is_empty() {
             return;
         }
         let solid = FaceSolid {
-            solid: meeting.solid,
-            turn: &meeting.turn,
-            origin: meeting.origin,
-            prediction: meeting.query.request.prediction,
+            solid: configuration.solid,
+            turn: &configuration.turn,
+            origin: configuration.origin,
+            prediction: configuration.query.request.prediction,
         };
         let (mut start, mut left) = (self.arena.points.len(), 0_u8);
         let all = &mut *self.contacts;
@@ -316,7 +325,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
 
     /// The contact of a triangle as of any two parts.
     fn in_general(&mut self, cache_index: usize) -> Option<PartContact<N, 3>> {
-        let FaceMeeting { query, scene, around, .. } = *self.meeting;
+        let FaceConfiguration { query, scene, around, .. } = *self.configuration;
         let parts = [0, around.parts()[cache_index]];
         let placed = scene.pair_in(&mut self.slot, parts);
         let found = part_contact::compute(scene, placed, parts, query, None, self.arena)?;

@@ -9,7 +9,7 @@ use crate::bounding_volume::{Aabb, BoundingVolume};
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::{aabb_of, enclosing, loosened};
-use crate::collide::parts::{MeetingVisitor, Meetings, each_meeting};
+use crate::collide::parts::{Touching, TouchingVisitor, each_touching};
 use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, min};
 use crate::shape::{CompositeShape, Part};
@@ -133,7 +133,7 @@ struct NearPairs<'a, N> {
     found: &'a mut PartPairs,
 }
 
-impl<N: Real, const D: usize> MeetingVisitor<N, D> for NearPairs<'_, N> {
+impl<N: Real, const D: usize> TouchingVisitor<N, D> for NearPairs<'_, N> {
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         self.found.push(parts);
         Some(self.reach)
@@ -153,7 +153,7 @@ fn of_two<N: Space<D>, const D: usize>(
         return;
     }
     let mut near = NearPairs { reach, found };
-    if each_meeting(between, reach, Meetings::Each, &mut near) {
+    if each_touching(between, reach, Touching::Each, &mut near) {
         return;
     }
     let NearPairs { found, .. } = near;

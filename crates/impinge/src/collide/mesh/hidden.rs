@@ -151,8 +151,8 @@ fn side_of<N: Real, const D: usize>(
         level = max(level, plane.normal.dot(&own));
         size = max(size, arm.norm_squared() + own.norm_squared());
     }
-    let room = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
-    match (low - level < -room, high - level > room) {
+    let tolerance = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
+    match (low - level < -tolerance, high - level > tolerance) {
         (true, false) => PlaneSide::Back,
         (false, true) => PlaneSide::Front,
         _ => PlaneSide::Across,

@@ -18,7 +18,7 @@ use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportM
 
 /// The margin around a box in which parts are cached for later updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum CacheRoom {
+enum CacheMargin {
     /// Until it holds more parts than one packet, or another given number.
     #[default]
     Large,
@@ -28,7 +28,7 @@ enum CacheRoom {
     None,
 }
 
-impl CacheRoom {
+impl CacheMargin {
     /// The margin relative to the largest half extent of the box.
     fn share(self) -> f64 {
         match self {
@@ -71,13 +71,13 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
     /// The margin of the next search; it never grows.
-    room: CacheRoom,
+    margin: CacheMargin,
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
     /// A cache for a single update, without a margin.
     pub(super) fn for_once() -> Self {
-        Self { room: CacheRoom::None, ..Self::default() }
+        Self { margin: CacheMargin::None, ..Self::default() }
     }
 }
 
@@ -125,13 +125,13 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
     /// margin holds more than `most` parts, the small one is used from then on.
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let with_room = |room: CacheRoom| aabb.loosened(half * N::lit(room.share()));
-        let mut within = with_room(self.room);
+        let with_margin = |margin: CacheMargin| aabb.loosened(half * N::lit(margin.share()));
+        let mut within = with_margin(self.margin);
         let before = if self.seams.is_empty() { SmallVec::new() } else { self.parts.clone() };
         self.search(composite, &within);
-        if self.room == CacheRoom::Large && self.parts.len() > most {
-            self.room = CacheRoom::Small;
-            within = with_room(self.room);
+        if self.margin == CacheMargin::Large && self.parts.len() > most {
+            self.margin = CacheMargin::Small;
+            within = with_margin(self.margin);
             self.search(composite, &within);
         }
         self.tiles.clear();

@@ -116,12 +116,12 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
         None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
         Some(_) => placed.centers()?,
     };
-    let meeting = PartMeeting { placed, parts, centers, reference };
+    let configuration = PartConfiguration { placed, parts, centers, reference };
     let found = match known {
         Some(known) => *known,
         None => <N::Algorithms>::separation(&placed.pair(), request.prediction)?,
     };
-    of_surfaces(scene, &meeting, &found, request, arena)
+    of_surfaces(scene, &configuration, &found, request, arena)
 }
 
 /// Solids side by side: their contacts are those of the whole.
@@ -142,7 +142,7 @@ pub(super) fn contact_of_solids<N: Space<D>, const D: usize>(
 }
 
 /// Two parts, of which one at least belongs to a surface.
-struct PartMeeting<'a, N: Real, const D: usize> {
+struct PartConfiguration<'a, N: Real, const D: usize> {
     placed: &'a PlacedPair<'a, N, D>,
     parts: [u32; 2],
     /// Of the part of the first shape and of that of the second, as seen by both shapes.
@@ -151,7 +151,7 @@ struct PartMeeting<'a, N: Real, const D: usize> {
     reference: &'a Reference<N, D>,
 }
 
-impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     /// What the two surfaces say of how near the two parts are. `over` is the feature of the second part that
     /// a ball is over, if that is known.
     fn filtered_normals(
@@ -191,7 +191,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     /// A normal, from the first shape to the second in the frame of the first, pushes what touches a body into it: as
     /// the face of a surface does that lies in a wall of the body, and has the inside on its back as well.
     fn leads_into_body(&self, scene: &Scene<'_, N, D>, normal: &Vector<N, D>) -> bool {
@@ -215,25 +215,25 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
 /// The contact of two parts, of which one at least belongs to a surface.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    meeting: &PartMeeting<'_, N, D>,
+    configuration: &PartConfiguration<'_, N, D>,
     gap: &Separation<N, D>,
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
-    let (placed, parts, distance) = (meeting.placed, meeting.parts, gap.distance);
+    let (placed, parts, distance) = (configuration.placed, configuration.parts, gap.distance);
     if !distance.is_finite_number() {
         return None;
     }
     let (pair, tolerance) = (placed.pair(), placed.tolerance());
     let over = over(&pair, tolerance);
-    let filtered = meeting.filtered_normals(scene, gap, tolerance, over);
+    let filtered = configuration.filtered_normals(scene, gap, tolerance, over);
     let normal = placed.outward(&gap.normal);
     let raw = arena.blank();
     let mut status = match combined_normal(placed, &filtered, &normal) {
         CombinedNormal::Nothing => return None,
         CombinedNormal::Refused => PartStatus::Left,
         CombinedNormal::Found(normal) | CombinedNormal::Forced(normal, _)
-            if meeting.leads_into_body(scene, &normal) =>
+            if configuration.leads_into_body(scene, &normal) =>
         {
             PartStatus::Left
         }

@@ -174,10 +174,10 @@ fn are_level<N: Real, const D: usize>(
     let [point1, point2] =
         [lead1, lead2].mapped(|lead| -> &RawPoint<N, D> { &merging.points[lead.deepest] });
     let arm = point2.point1 - point1.point1;
-    let room = N::lit(SAME) * arm.norm() + N::TWO * merging.tolerance;
+    let tolerance = N::lit(SAME) * arm.norm() + N::TWO * merging.tolerance;
     let rise1 = piece(lead1).normal.dot(&arm);
     let rise2 = rise1 + point2.distance - point1.distance;
-    min(rise1.abs(), rise2.abs()) <= room
+    min(rise1.abs(), rise2.abs()) <= tolerance
 }
 
 fn square_of_same<N: Real>() -> N {

@@ -138,10 +138,10 @@ fn is_explained<N: Space<D>, const D: usize>(
     let rest = |escape: &Escape<N, D>| {
         contact.distance + contact.normal.dot(&escape.normal) * escape.depth
     };
-    let (mut asked, room): (SmallVec<[&Escape<N, D>; 16]>, N) =
+    let (mut asked, limit): (SmallVec<[&Escape<N, D>; 16]>, N) =
         (SmallVec::new(), -contact.tolerance);
     for escape in escapes.0.iter().filter(is_asked) {
-        if rest(escape) > room {
+        if rest(escape) > limit {
             return true;
         }
         asked.push(escape);

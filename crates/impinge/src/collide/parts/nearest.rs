@@ -3,8 +3,8 @@
 use super::between::Between;
 use super::bounds::loosened;
 use super::inside::with_inside;
-use super::meeting::{MeetingVisitor, Meetings, each_meeting};
 use super::separation::{PairVisitor, PartSeparation, visit_near_pairs};
+use super::touching::{Touching, TouchingVisitor, each_touching};
 use crate::collide::separation::separation as of_convex;
 use crate::math::{Real, Space, Vector, max, min};
 
@@ -55,7 +55,7 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     fn finds_touching(&mut self) -> bool {
         let (between, reach) = (self.between, min(self.limit, N::ZERO));
         let mut touching = TouchingPart { nearest: self, reach };
-        let is_searched = each_meeting(between, reach, Meetings::Any, &mut touching);
+        let is_searched = each_touching(between, reach, Touching::Any, &mut touching);
         is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
     }
 
@@ -64,7 +64,7 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     fn finds_apart(&mut self) -> bool {
         let (between, reach) = (self.between, self.limit());
         reach > N::ZERO
-            && each_meeting(between, reach, Meetings::Nearest, self)
+            && each_touching(between, reach, Touching::Nearest, self)
             && self.limit() > N::ZERO
     }
 }
@@ -75,14 +75,14 @@ struct TouchingPart<'a, 'q, N: Real, const D: usize> {
     reach: N,
 }
 
-impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for TouchingPart<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for TouchingPart<'_, '_, N, D> {
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self.nearest, parts);
         (self.nearest.bound() >= N::ZERO).then_some(self.reach)
     }
 }
 
-impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for NearestPart<'_, N, D> {
+impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for NearestPart<'_, N, D> {
     /// Ends the search at contact: overlaps need the search by depth.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);

@@ -44,7 +44,7 @@ fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     found: Separation<N, D>,
 ) -> Separation<N, D> {
-    let room = rounding(pair);
+    let tolerance = rounding(pair);
     let facing = |kind: &Kind<'_, N, D>, is_second: bool| {
         let in_first_frame = |corner: &Point<N, D>| {
             if is_second { pair.pose12.point(corner) } else { *corner }
@@ -58,7 +58,7 @@ fn at_corner<N: Real, const D: usize>(
         let mut corners = SmallVec::<[Point<N, D>; 8]>::new();
         each_corner(kind, &mut |corner| {
             let corner = in_first_frame(corner);
-            if height(&corner) >= highest - room {
+            if height(&corner) >= highest - tolerance {
                 corners.push(corner);
             }
         });

@@ -56,8 +56,8 @@ fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: 
     let on = [found.point1, pair.pose12.inverse_point(&found.point2)];
     for (map, point) in maps.iter().zip(on) {
         for along in directions::<N>() {
-            let room = along.dot(&(map.core_support(&along) - point)).as_f64();
-            assert!(room >= -slack, "{what}: a point is outside by {room}");
+            let inside_by = along.dot(&(map.core_support(&along) - point)).as_f64();
+            assert!(inside_by >= -slack, "{what}: a point is outside by {inside_by}");
         }
     }
 }

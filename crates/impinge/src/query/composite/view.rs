@@ -170,8 +170,8 @@ fn is_face_normal<N: Space<D>, const D: usize>(
     let face = composite.surface().and_then(|surface| surface.snapped(part, outward));
     let is_in_space = <N::Algorithms>::tangents(outward)[1] != Vector::<N, D>::zeros();
     let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_in_space;
-    let room = N::lit(ROUNDING) * N::EPSILON;
-    face.is_some_and(|face| !is_line && (face - outward).norm() <= room)
+    let tolerance = N::lit(ROUNDING) * N::EPSILON;
+    face.is_some_and(|face| !is_line && (face - outward).norm() <= tolerance)
 }
 
 /// The part of a composite with this number; `None` for a shape that is its own part.

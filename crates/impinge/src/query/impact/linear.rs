@@ -162,7 +162,7 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
         return Beginning::InContact { arrival, counts };
     }
     if gap > tolerance
-        && let Some(arrival) = meeting_of_balls(start, path, tolerance)
+        && let Some(arrival) = arrival_of_balls(start, path, tolerance)
     {
         return Beginning::Apart(Some(arrival));
     }
@@ -208,7 +208,7 @@ fn by_steps<N: Space<D>, const D: usize>(
 /// The foot is the point of the second centre's path nearest to the first centre: a right triangle
 /// leads from it back to the point of contact. Lengths are divided by a power of two, so that
 /// squares neither overflow nor underflow.
-fn meeting_of_balls<N: Space<D>, const D: usize>(
+fn arrival_of_balls<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
     tolerance: N,
@@ -326,7 +326,7 @@ mod tests {
             }
             let expected = by_steps(&start, &path, N::ZERO, found, tolerance);
             count += usize::from(expected.is_some());
-            let Some(arrival) = meeting_of_balls(&start, &path, tolerance) else { continue };
+            let Some(arrival) = arrival_of_balls(&start, &path, tolerance) else { continue };
             met += 1;
             let expected = expected.expect("they meet by steps too");
             // If they graze each other, they are within the tolerance for a longer time.

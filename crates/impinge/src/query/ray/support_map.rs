@@ -61,13 +61,13 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
             return None;
         }
         let [first, last] = around.points();
-        let room = around.leave - around.enter;
-        let enter = Advance { solid: self, from: first, dir: ray.dir, room }.first_contact()?;
+        let duration = around.leave - around.enter;
+        let enter = Advance { solid: self, from: first, dir: ray.dir, duration }.first_contact()?;
         let enter = Crossing { t: around.enter + enter.t, ..enter };
         if enter.t >= N::ZERO {
             return Some(Span { enter, leave: Crossing::never(N::INFINITY), thin: false });
         }
-        let backward = Advance { solid: self, from: last, dir: -ray.dir, room };
+        let backward = Advance { solid: self, from: last, dir: -ray.dir, duration };
         let leave = match backward.first_contact() {
             Some(found) => Crossing { t: around.leave - found.t, ..found },
             // By rounding the backward search missed: the line only touches.
@@ -83,7 +83,7 @@ struct Advance<'a, N: Real, const D: usize> {
     from: Vector<N, D>,
     dir: Vector<N, D>,
     /// The time for which it may move.
-    room: N,
+    duration: N,
 }
 
 impl<N: Real, const D: usize> Advance<'_, N, D> {
@@ -106,7 +106,7 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
                 return Some(self.crossing(t + step, normal));
             }
             t += distance / approach;
-            let is_within = approach > N::ZERO && t <= self.room;
+            let is_within = approach > N::ZERO && t <= self.duration;
             if !is_within {
                 return None;
             }

@@ -47,7 +47,7 @@ struct TaperedSide<'a, N: Real, const D: usize> {
     flat_dir: Vector<N, D>,
     climb: N,
     /// The right-hand side at that point, and its rate of change.
-    room: N,
+    surface_radius: N,
     widening: N,
 }
 
@@ -67,7 +67,7 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
             height,
             flat_dir: ray.dir - taper.along * climb,
             climb,
-            room: radius1 - taper.sine * height,
+            surface_radius: radius1 - taper.sine * height,
             widening: -taper.sine * climb,
         }
     }
@@ -107,10 +107,10 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         let (cosine, always) = (self.taper.cosine, (-N::INFINITY, N::INFINITY));
         let form = |a: N, b: N| (cosine * a - b) * (cosine * a + b);
         let quadratic = form(self.flat_dir.norm(), self.widening.abs());
-        let constant = form(self.flat.norm(), self.room.abs());
+        let constant = form(self.flat.norm(), self.surface_radius.abs());
         let along = self.flat.dot(&self.flat_dir);
-        let linear = cosine * cosine * along - self.room * self.widening;
-        let moment = (self.flat_dir * self.room - self.flat * self.widening).norm();
+        let linear = cosine * cosine * along - self.surface_radius * self.widening;
+        let moment = (self.flat_dir * self.surface_radius - self.flat * self.widening).norm();
         let discriminant = (moment - cosine * self.twist()) * (moment + cosine * self.twist());
         if discriminant < N::ZERO && quadratic > N::ZERO && constant > N::ZERO {
             return None;

@@ -100,8 +100,8 @@ impl<N: Real> Bend<N> {
         } else {
             min(insides[0], insides[1])
         };
-        let room = N::lit(8.0) * slack::<N>();
-        if inside < -room {
+        let margin = N::lit(8.0) * slack::<N>();
+        if inside < -margin {
             return Some(false);
         }
         let sine = (N::ONE - self.cosine * self.cosine).sqrt();
@@ -109,7 +109,7 @@ impl<N: Real> Bend<N> {
         if along_edge > N::lit(FLAT_SINE * (1.0 + CLOSE)) {
             return Some(false);
         }
-        (inside > room && along_edge < N::lit(FLAT_SINE * (1.0 - CLOSE))).then_some(true)
+        (inside > margin && along_edge < N::lit(FLAT_SINE * (1.0 - CLOSE))).then_some(true)
     }
 }
 

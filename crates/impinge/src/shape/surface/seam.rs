@@ -74,8 +74,8 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
     /// Adds a side of any length, as a vector away from the corner.
     #[inline]
     pub(in crate::shape) fn add(&mut self, edge: &Vector<N, D>) {
-        let (rise, room) = (edge.dot(self.normal), N::lit(CLEAR) * slack());
-        let is_clear = rise * rise > room * room * edge.norm_squared();
+        let (rise, margin) = (edge.dot(self.normal), N::lit(CLEAR) * slack());
+        let is_clear = rise * rise > margin * margin * edge.norm_squared();
         self.has_rising |= is_clear && rise > N::ZERO;
         self.has_level |= !is_clear;
     }
@@ -112,8 +112,8 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     /// The component of the normal along the face or segment that asks.
     tilt: Vector<N, D>,
     /// A piece lies on the side that the normal tilts to if a direction into it rises along `tilt`
-    /// by more than `room`.
-    room: N,
+    /// by more than `margin`.
+    margin: N,
     /// The normal is that of the asking face or segment, and all pieces are coplanar with this,
     /// within `FLAT_SINE`.
     is_flat: bool,
@@ -140,7 +140,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
     /// of a rim.
     pub(in crate::shape) fn along(mut self, edge: &Vector<N, D>) -> Self {
         if let Some((along, _)) = unit(edge) {
-            self.room -= along.dot(&self.tilt).abs();
+            self.margin -= along.dot(&self.tilt).abs();
         }
         self
     }
@@ -156,7 +156,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
             normal: *normal,
             own,
             tilt,
-            room: slack(),
+            margin: slack(),
             is_flat,
             is_hemmed: false,
             is_in_cone: true,
@@ -192,7 +192,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
         let (own, flatness) = (rise(&self.normal), front.abs());
         self.is_in_cone &= own <= slack();
         self.is_flat &= is_level(line.dot(&self.own));
-        self.is_hemmed |= self.is_flat && rise(&self.tilt) > self.room;
+        self.is_hemmed |= self.is_flat && rise(&self.tilt) > self.margin;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
             // A piece that was added twice has its front up if it has in either.

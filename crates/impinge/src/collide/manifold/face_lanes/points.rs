@@ -191,16 +191,16 @@ impl<N: Real> LaneClip<'_, N> {
         sides: impl Iterator<Item = usize>,
         ends: impl Fn(usize) -> [(Vector<N, 3>, FeatureId, FeatureId); 2],
     ) -> Option<FeatureId> {
-        let room = N::TWO * self.clip.tolerance[self.lane];
+        let tolerance = N::TWO * self.clip.tolerance[self.lane];
         let flat = |v: Vector<N, 3>| v - self.normal * self.normal.dot(&v);
         let mut part = None;
         for side in sides {
             let [(from, from_id, side_id), (to, to_id, _)] = ends(side);
             let (edge, arm) = (flat(to - from), flat(at - from));
             let share = arm.dot(&edge);
-            if arm.norm() <= room {
+            if arm.norm() <= tolerance {
                 part = Some(from_id);
-            } else if flat(at - to).norm() <= room {
+            } else if flat(at - to).norm() <= tolerance {
                 part = Some(to_id);
             } else if share >= N::ZERO && share <= edge.norm_squared() {
                 part = Some(side_id);

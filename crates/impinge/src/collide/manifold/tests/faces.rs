@@ -122,7 +122,7 @@ fn check<N: Real>(
     normal: &Vector<N, 3>,
     found: &[RawPoint<N, 3>],
 ) {
-    let room = 400.0 * N::EPSILON.as_f64();
+    let tolerance = 400.0 * N::EPSILON.as_f64();
     let ring = |points: &[Point<f64, 3>]| -> Outline {
         let projected: Outline =
             points.iter().map(|p| projected_along(p, &normal.map(Real::as_f64))).collect();
@@ -138,15 +138,15 @@ fn check<N: Real>(
     let positions: Vec<_> =
         found.iter().map(|point| projected_along(&point.point1, normal)).collect();
     let spanned = hull_area(&positions);
-    assert!((spanned - shared).abs() <= 4.0 * room, "spans {spanned} of {shared}");
+    assert!((spanned - shared).abs() <= 4.0 * tolerance, "spans {spanned} of {shared}");
     let (normal, up) = (normal.map(Real::as_f64), upward(&corners));
     for point in found {
         let (position, distance) =
             (Point::from(point.point1.coords.map(Real::as_f64)), point.distance.as_f64());
         let foot = position - normal * distance;
-        assert!(position.z.abs() <= room, "on the bottom: {position}");
-        assert!(up.dot(&(foot - corners[0])).abs() <= room, "on the triangle: {foot}");
-        let is_at = |at: &Point<f64, 3>, corner: &Point<f64, 3>| (at - corner).norm() <= room;
+        assert!(position.z.abs() <= tolerance, "on the bottom: {position}");
+        assert!(up.dot(&(foot - corners[0])).abs() <= tolerance, "on the triangle: {foot}");
+        let is_at = |at: &Point<f64, 3>, corner: &Point<f64, 3>| (at - corner).norm() <= tolerance;
         match point.feature1 {
             FeatureId::Vertex(_) => {
                 assert!(

@@ -66,7 +66,7 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
         pair.pose12.translation = normal * (deep - fact(&pair).distance);
         let mut asked = request::<N>(0.05 * scale, 0.0);
         asked.max_points = 64;
-        let (mut raw, room) = (RawManifold::default(), N::lit(256.0 * scale) * N::EPSILON);
+        let (mut raw, tolerance) = (RawManifold::default(), N::lit(256.0 * scale) * N::EPSILON);
         for _ in 0..3 {
             let found = fact(&pair);
             let before = raw.clone();
@@ -93,16 +93,17 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                 let distance = -height - radius;
                 // Over a capsule's raised end the surface is a little nearer than the ball around
                 // the end.
-                let reach =
-                    asked.prediction + if radius > N::ZERO { N::lit(-0.05 * scale) } else { room };
-                let is_near = |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= room;
+                let reach = asked.prediction
+                    + if radius > N::ZERO { N::lit(-0.05 * scale) } else { tolerance };
+                let is_near =
+                    |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= tolerance;
                 let has_it = raw.points.iter().any(|point| is_near(point.point1));
                 // With more than four corners, those on the outline count, and old ones that span
                 // most of it.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
-                let is_far = distance > reach - room - room;
+                let is_far = distance > reach - tolerance - tolerance;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");
-                expected += usize::from(distance <= asked.prediction + room);
+                expected += usize::from(distance <= asked.prediction + tolerance);
             }
             assert!(raw.points.len() <= expected.max(1) || radius > N::ZERO, "{what}");
             pair.pose12.translation += random.vector::<N, 3>(0.02).map(|x| x * N::lit(scale));

@@ -54,7 +54,7 @@ fn is_round<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
 }
 
 /// Returns the tolerance; the general algorithm is accurate to 2⁻⁴⁰ of the size for curved solids.
-fn room<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
+fn tolerance<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
     let least = if is_round(pair) { N::lit(8.0e-12) } else { N::ZERO };
     max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale)
 }
@@ -105,18 +105,18 @@ fn visit<N: Scene<3>>(
 /// Asserts that the distances agree, and that normal and points match the distance.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     visit::<N>((seed, scale), |pair, round, _| {
-        let room = room(pair, scale);
+        let tolerance = tolerance(pair, scale);
         let truth = truth(pair);
         let found = separation_in_space(pair, N::INFINITY).expect("no limit");
         let what = describe(pair);
         let off = (found.distance - truth.distance).abs();
-        assert!(off <= room, "round {round}: {found:?}\n{truth:?}\n{what}");
+        assert!(off <= tolerance, "round {round}: {found:?}\n{truth:?}\n{what}");
         let across = found.point2 - found.point1 - found.normal * found.distance;
-        assert!(across.norm() <= room, "round {round}: {found:?} {what}");
+        assert!(across.norm() <= tolerance, "round {round}: {found:?} {what}");
         assert!((found.normal.norm() - N::ONE).abs() < N::lit(64.0) * N::EPSILON, "{found:?}");
-        let limited = separation_in_space(pair, truth.distance + room);
+        let limited = separation_in_space(pair, truth.distance + tolerance);
         assert_eq!(limited.map(|limited| limited.distance), Some(found.distance), "{what}");
-        assert!(separation_in_space(pair, truth.distance - room).is_none(), "{what}");
+        assert!(separation_in_space(pair, truth.distance - tolerance).is_none(), "{what}");
     });
 }
 

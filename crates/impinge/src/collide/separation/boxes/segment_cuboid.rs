@@ -231,8 +231,9 @@ impl<N: Real> LocalBox<'_, N> {
         } else {
             *a
         };
-        let room = rounding_error::<N>();
-        let is_over = (0..3).all(|at| at == axis || on_segment[at].abs() <= self.half[at] + room);
+        let tolerance = rounding_error::<N>();
+        let is_over =
+            (0..3).all(|at| at == axis || on_segment[at].abs() <= self.half[at] + tolerance);
         let mut on_solid = on_segment;
         on_solid[axis] = self.half[axis] * sign;
         let outward = Vector::<N, 3>::ith(axis, sign);

@@ -134,8 +134,8 @@ impl<N: Real> SegmentAxes<N> {
         let sizes = [a[0].abs() + a[1].abs(), b[0].abs() + b[1].abs()];
         let size = sizes[0].larger(sizes[1]).larger(V::all(simd, solid.size));
         let rounding_error = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
-        let room = rounding_error + V::all(simd, N::EPSILON * rounding);
-        let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * room;
+        let slack = rounding_error + V::all(simd, N::EPSILON * rounding);
+        let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * slack;
         // The gap is a lower bound: a gap beyond the limit by more than rounding rejects the
         // segment.
         let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach);

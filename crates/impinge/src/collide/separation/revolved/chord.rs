@@ -104,8 +104,8 @@ impl<N: Real> Profile<N> {
                 ));
             }
             search.note(share, slope);
-            let ahead = if slope > N::ZERO { -N::ONE } else { N::ONE };
-            let next = search.admitted(share + descent.unwrap_or(ahead));
+            let sign = if slope > N::ZERO { -N::ONE } else { N::ONE };
+            let next = search.admitted(share + descent.unwrap_or(sign));
             share = match next {
                 Some(next) => next,
                 // Inside, the distance has a kink here.

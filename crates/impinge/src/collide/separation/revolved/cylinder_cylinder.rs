@@ -34,8 +34,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
         return None;
     }
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
-    let meeting = CylinderPair::new(first, second, &pair.pose12, units.shrink);
-    let result = meeting.resolve(out_of_reach(&units, limit));
+    let cylinders = CylinderPair::new(first, second, &pair.pose12, units.shrink);
+    let result = cylinders.resolve(out_of_reach(&units, limit));
     match result.answer(&units, &pair.pose12) {
         Some(found) => found.filter(|found| found.distance <= limit),
         None => coaxial::separation(pair, limit),
@@ -186,11 +186,11 @@ impl<N: Real> CylinderView<N> {
             - sine * self.other.radius
             - self.own.half;
         let point = self.lowest_above_cap(&normal, sine);
-        let room = self.own.radius - radial(&point).norm();
+        let margin = self.own.radius - radial(&point).norm();
         let is_above = if height > N::ZERO {
-            room >= -rounding_error::<N>()
+            margin >= -rounding_error::<N>()
         } else {
-            min(room, self.own.half) >= -height - rounding_error()
+            min(margin, self.own.half) >= -height - rounding_error()
         };
         let found = RevolvedFound { distance: height, normal, on_other: point };
         Tried { height, found: is_above.then_some(found) }
@@ -249,13 +249,13 @@ impl<N: Real> CylinderView<N> {
         let (cosine, along) = (self.axis.y, self.center.dot(&self.axis));
         let at_own = (self.center.y - cosine * along) / squared;
         let at_other = (cosine * self.center.y - along) / squared;
-        let (room1, room2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
-        let is_between = room1 >= -rounding_error::<N>() && room2 >= -rounding_error::<N>();
+        let (margin1, margin2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
+        let is_between = margin1 >= -rounding_error::<N>() && margin2 >= -rounding_error::<N>();
         // The proof: a ball around a point between the axes, or one in each solid with radii that
         // add up.
         let entry = away - self.other.radius;
-        let least = max(self.own.radius - room1, max(entry, N::ZERO));
-        let most = min(entry + room2, min(away, self.own.radius));
+        let least = max(self.own.radius - margin1, max(entry, N::ZERO));
+        let most = min(entry + margin2, min(away, self.own.radius));
         let is_proved = height > N::ZERO || least <= most + rounding_error();
         let on_other = self.center + self.axis * at_other - normal * self.other.radius;
         let found = RevolvedFound { distance: height, normal, on_other };
@@ -267,12 +267,12 @@ impl<N: Real> CylinderView<N> {
     fn side(&self) -> Option<Tried<N>> {
         let start = unit(&radial(&self.center))?.0;
         let (normal, point) = self.toward_rim(start)?;
-        let room = self.own.half - point.y.abs();
+        let margin = self.own.half - point.y.abs();
         let height = radial(&point).dot(&normal) - self.own.radius;
         let is_beside = if height > N::ZERO {
-            room >= -rounding_error::<N>()
+            margin >= -rounding_error::<N>()
         } else {
-            min(room, self.own.radius) >= -height - rounding_error()
+            min(margin, self.own.radius) >= -height - rounding_error()
         };
         let found = RevolvedFound { distance: height, normal: lifted(&normal), on_other: point };
         Some(Tried { height, found: is_beside.then_some(found) })
@@ -474,9 +474,9 @@ pub(in crate::collide::separation) mod tests {
             let mut pose12 = random.turn();
             pose12.translation = random.vector() * 1.5;
             let units = Units::of(first.reach(), second.reach(), &pose12.translation);
-            let meeting = CylinderPair::new(&first, &second, &pose12, units.shrink);
+            let cylinders = CylinderPair::new(&first, &second, &pose12, units.shrink);
             undecided +=
-                usize::from(matches!(meeting.resolve(f64::INFINITY), RevolvedResult::Undecided));
+                usize::from(matches!(cylinders.resolve(f64::INFINITY), RevolvedResult::Undecided));
         }
         assert!(undecided < 400, "{undecided} of 1000 are left to the general algorithm");
     }

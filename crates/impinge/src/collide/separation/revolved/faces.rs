@@ -1,9 +1,9 @@
 //! Overlaps whose shortest way out is along a face of the flat solid or a cap of the round one.
 
-use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedMeeting, still};
+use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedPair, still};
 use crate::math::{Real, Vector};
 
-impl<N: Real> RevolvedMeeting<'_, N> {
+impl<N: Real> RevolvedPair<'_, N> {
     /// Returns the answer along the face or cap with the least depth, if balls prove it.
     pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())

@@ -90,7 +90,7 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     let beyond = out_of_reach(&units, limit + map1.rounding());
     let result = match FlatCore::of(pair.first) {
         Some(flat) => {
-            RevolvedMeeting { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
+            RevolvedPair { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
         }
         None => {
             let first = Profile::new(Round::new(&pair.first, units.shrink)?);
@@ -109,7 +109,7 @@ fn in_second_frame<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N
 
 /// Core of the flat solid and the round one, in the frame of the round one and in units of the
 /// pair.
-struct RevolvedMeeting<'a, N: Real> {
+struct RevolvedPair<'a, N: Real> {
     flat: FlatCore<'a, N, 3>,
     /// Pose of the round solid in the frame of the flat one.
     pose12: &'a Pose<N, 3>,
@@ -140,7 +140,7 @@ enum NearestHull<N: Real> {
     Triangle,
 }
 
-impl<N: Real> RevolvedMeeting<'_, N> {
+impl<N: Real> RevolvedPair<'_, N> {
     /// Runs the search from the vertex nearest along the first direction; then tries faces and
     /// caps.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
@@ -211,12 +211,12 @@ impl<N: Real> RevolvedMeeting<'_, N> {
         }
         let height = outward.dot(&a) - level;
         let point = nearest + outward * height;
-        let room = -rounding_error::<N>() * area;
+        let slack = -rounding_error::<N>() * area;
         let over = |from: &Vector<N, 3>, to: &Vector<N, 3>| {
             cross(&(to - from), &(point - from)).dot(&unit_across)
         };
         let sides = [over(&b, &c), over(&c, &a), over(&a, &b)];
-        if sides.iter().all(|&side| side >= room) {
+        if sides.iter().all(|&side| side >= slack) {
             let is_proved = height > N::ZERO || self.holds(&nearest, -height);
             return is_proved.then_some((
                 NearestHull::Triangle,
@@ -240,16 +240,16 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     /// Returns whether the flat solid contains the ball around a point, up to rounding.
     fn holds(&self, center: &Vector<N, 3>, radius: N) -> bool {
         let center = self.pose12.rotation * center + self.shift;
-        let room = rounding_error::<N>() - radius;
+        let slack = rounding_error::<N>() - radius;
         match self.flat {
             FlatCore::Cuboid(cuboid) => {
                 let half = cuboid.half_extents() * self.shrink;
-                (0..3).all(|axis| center[axis].abs() <= half[axis] + room)
+                (0..3).all(|axis| center[axis].abs() <= half[axis] + slack)
             }
             FlatCore::Polytope(hull) => hull
                 .faces()
                 .iter()
-                .all(|face| face.normal.dot(&center) <= face.offset * self.shrink + room),
+                .all(|face| face.normal.dot(&center) <= face.offset * self.shrink + slack),
             _ => false,
         }
     }

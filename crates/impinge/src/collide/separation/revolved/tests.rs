@@ -136,9 +136,9 @@ fn projections_of_points() {
             (projected.distance - truth).abs() < 1e-14,
             "round {round}: {projected:?}, not {truth}"
         );
-        let ahead = profile.project(point + along * 1e-6);
-        if ahead.part == projected.part && projected.distance.abs() > 0.01 {
-            let slope = (ahead.distance - projected.distance) / 1e-6;
+        let moved = profile.project(point + along * 1e-6);
+        if moved.part == projected.part && projected.distance.abs() > 0.01 {
+            let slope = (moved.distance - projected.distance) / 1e-6;
             assert!(
                 (slope - projected.slope(&along)).abs() < 1e-3,
                 "round {round}: {slope}, {projected:?}"

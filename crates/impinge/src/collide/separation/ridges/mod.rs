@@ -80,18 +80,18 @@ impl<N: Real> Peaks<N, 3> for OverlapPeaks<'_, '_, N> {
         }
         let round = Round::new(&self.pair.second, shrink)?;
         let flat = Flat::new(&self.pair.first, &self.pair.pose12, shrink)?;
-        let mut meeting = DepthSearch {
+        let mut depth_search = DepthSearch {
             flat: &flat,
             round: &round,
             least: N::INFINITY,
             at: DepthFeature::Face(0),
             normal: Vector::<N, 3>::y(),
         };
-        meeting.search(gap)?;
-        if !meeting.is_confirmed(gap) {
+        depth_search.search(gap)?;
+        if !depth_search.is_confirmed(gap) {
             return None;
         }
-        Some(meeting.peak(&self.pair.pose12, shrink))
+        Some(depth_search.peak(&self.pair.pose12, shrink))
     }
 }
 

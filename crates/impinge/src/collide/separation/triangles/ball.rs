@@ -244,8 +244,8 @@ impl<V> TrianglePacket<V> {
         if near != 0 && has_seams {
             let clear = V::all(simd, N::lit(CLEAR) * N::EPSILON) * (size * size);
             let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
-            let (kind, room) = self.beside(simd);
-            let is_beside = is_tall & room.simd_gt(clear.sqrt()) & is_bound;
+            let (kind, margin) = self.beside(simd);
+            let is_beside = is_tall & margin.simd_gt(clear.sqrt()) & is_bound;
             features.sides = bits(is_beside);
             kind.store(&mut features.kinds);
             (self.squared - clear).store(&mut features.least);
@@ -306,19 +306,19 @@ impl<V> TrianglePacket<V> {
             -self.shares[0] / (area * root[1]),
             -self.shares[1] / (area * root[2]),
         ];
-        let (mut kind, mut room) = (V::all(simd, N::ZERO), V::all(simd, -N::INFINITY));
+        let (mut kind, mut margin) = (V::all(simd, N::ZERO), V::all(simd, -N::INFINITY));
         for (at, number) in [0.0, 1.0, 2.0].into_iter().enumerate() {
             let before = (at + 2) % 3;
             let aside = outside[at].larger(outside[before]);
             let of_side = outside[at].smaller(past[at]).smaller(left[at]);
             let of_corner = aside.smaller(-past[at]).smaller(-left[before]);
             for (new, number) in [(of_side, number), (of_corner, number + CORNER)] {
-                let is_more = new.simd_gt(room);
+                let is_more = new.simd_gt(margin);
                 kind = is_more.select(V::all(simd, N::lit(number)), kind);
-                room = is_more.select(new, room);
+                margin = is_more.select(new, margin);
             }
         }
-        (kind, room)
+        (kind, margin)
     }
 }
 

@@ -190,9 +190,9 @@ impl<N: Real> PlacedTriangle<'_, N> {
         let (on_edge, on_along) = (edge.dot(&arm), along.dot(&arm));
         let det = own * other - both * both;
         let (share1, share2) = (both * on_along - on_edge * other, own * on_along - both * on_edge);
-        let room = det * N::lit(INSIDE);
+        let margin = det * N::lit(INSIDE);
         let is_inside =
-            share1 > room && share1 < det - room && share2 > room && share2 < det - room;
+            share1 > margin && share1 < det - margin && share2 > margin && share2 < det - margin;
         let longest = max(own, max(third.norm_squared(), (third - edge).norm_squared()));
         let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * rounding_error::<N>());
         // Written so that NaN is not plain.

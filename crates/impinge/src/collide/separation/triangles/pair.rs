@@ -221,8 +221,8 @@ impl<N: Real> EdgeAxis<N> {
                     best = Self { gap: slack / length, sides: [i, j], across, length };
                 }
             } else if squared > least * least * both {
-                let room = N::TWO * hulls::rounding_error() * both.sqrt();
-                inexact = max((slack + room) / length, inexact);
+                let extra_slack = N::TWO * hulls::rounding_error() * both.sqrt();
+                inexact = max((slack + extra_slack) / length, inexact);
             }
         }
         (best, inexact)

@@ -88,7 +88,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     /// Whether part of a side of a triangle without area has no triangle with an area beside it.
-    pub(super) fn sticks_out(&self, triangle: u32, side: usize) -> bool {
+    pub(super) fn is_exposed(&self, triangle: u32, side: usize) -> bool {
         if self.inward(triangle, side).is_some() {
             return false;
         }
@@ -98,8 +98,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
             spans.push(span.unwrap_or([N::ZERO, line.length]));
         });
         let mut covered = N::ZERO;
-        while covered < line.length - line.room {
-            let reaching = spans.iter().filter(|span| span[0] <= covered + line.room);
+        while covered < line.length - line.slack {
+            let reaching = spans.iter().filter(|span| span[0] <= covered + line.slack);
             let next = reaching.fold(covered, |next, span| max(next, span[1]));
             if next <= covered {
                 return true;
@@ -128,7 +128,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
                 let line = SideLine::of(&corners, opposite);
                 let [position, _] = line.span(&[corners[at], corners[at]]);
                 let is_within =
-                    |[from, to]: [N; 2]| from + line.room < position && position < to - line.room;
+                    |[from, to]: [N; 2]| from + line.slack < position && position < to - line.slack;
                 self.each_along(triangle, opposite, |other, inward, span| {
                     let found = Some(inward).filter(|_| span.is_none_or(is_within));
                     found.into_iter().for_each(|inward| visit(other, inward));
@@ -209,7 +209,7 @@ struct SideLine<N: Real, const D: usize> {
     along: Vector<N, D>,
     length: N,
     /// Lengths up to this are rounding errors.
-    room: N,
+    slack: N,
 }
 
 impl<N: Real, const D: usize> SideLine<N, D> {
@@ -217,7 +217,7 @@ impl<N: Real, const D: usize> SideLine<N, D> {
         let from = corners[side];
         let edge = corners[(side + 1) % 3] - from;
         let (along, length) = unit(&edge).unwrap_or((Vector::<N, D>::zeros(), N::ZERO));
-        Self { from, along, length, room: rounding_error(corners, length) }
+        Self { from, along, length, slack: rounding_error(corners, length) }
     }
 
     /// The interval of a segment along the line, from the beginning of the side.
@@ -229,7 +229,7 @@ impl<N: Real, const D: usize> SideLine<N, D> {
     /// Whether an interval of the line has more than a point in common with the side; true for a
     /// side without length.
     fn overlaps(&self, span: &[N; 2]) -> bool {
-        self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.room
+        self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.slack
     }
 }
 

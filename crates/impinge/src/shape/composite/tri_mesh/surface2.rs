@@ -61,7 +61,7 @@ impl<N: Real> TriMesh<N, 2> {
             // A triangle without area is a segment, which has both sides.
             None => {
                 self.inward(part, side).is_none()
-                    && (self.is_open_along(part, side, normal) || self.sticks_out(part, side))
+                    && (self.is_open_along(part, side, normal) || self.is_exposed(part, side))
             }
         }
     }

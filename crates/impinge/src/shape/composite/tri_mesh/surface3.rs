@@ -134,7 +134,7 @@ impl<N: Real> TriMesh<N, 3> {
             add(part, inward);
         }
         self.each_beyond(part, side, add);
-        is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.sticks_out(part, side))
+        is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.is_exposed(part, side))
     }
 
     /// The rise, along a vector of length at most 1, of the steeper of the two sides that leave a

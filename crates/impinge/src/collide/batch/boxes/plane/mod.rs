@@ -125,7 +125,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
         if is_asked == 0 {
             return;
         }
-        let sides = BoxSides::meeting(simd, &boxes, &axis);
+        let sides = BoxSides::of_axis(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), sides.tolerance);
         let mut admission = Admission::new(simd, Limits { gap, prediction, sine, tolerance });
         self.at_ends = sides.share(simd, &mut admission, &mut self.slots);

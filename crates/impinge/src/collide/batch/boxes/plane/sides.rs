@@ -76,7 +76,7 @@ fn on<S: Simd, V: Wide<S>>(is_y: V::Mask, v: &[V; 2]) -> V {
 impl<V, M> BoxSides<V, M> {
     /// Finds both sides from the separating axis.
     #[inline(always)]
-    pub(super) fn meeting<S: Simd, N: Real>(
+    pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,
         boxes: &Boxes<V, 2>,
         axis: &BestSide<V, M>,

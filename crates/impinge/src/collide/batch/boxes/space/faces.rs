@@ -188,7 +188,7 @@ pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
 impl<V, M> FacesInLanes<V, M> {
     /// Finds both faces from the separating axis.
     #[inline(always)]
-    pub(super) fn meeting<S: Simd, N: Real>(
+    pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,
         boxes: &Boxes<V, 3>,
         axis: &BestAxis<V, M>,

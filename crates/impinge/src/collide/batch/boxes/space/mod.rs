@@ -124,7 +124,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
         if is_asked == 0 {
             return;
         }
-        let faces = FacesInLanes::meeting(simd, &boxes, &axis);
+        let faces = FacesInLanes::of_axis(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
         // If no face of the batch is tilted too far, nothing of the faces has to be excluded.

@@ -34,7 +34,7 @@ use crate::math::{Mapped, Pose, Real, Vector, filled, max_component, unit};
 const ROUNDING: f32 = 64.0;
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
-pub(crate) trait TreeMeeting<N: Real, const D: usize> {
+pub(crate) trait TouchQuery<N: Real, const D: usize> {
     /// The pose of the first (0) or the second (1) tree in the frame of the other.
     fn pose(&self, which: usize) -> &Pose<N, D>;
 
@@ -72,23 +72,23 @@ pub(crate) trait TreeMeeting<N: Real, const D: usize> {
 }
 
 /// A depth-first search of two trees, best first if it is for the nearest pair.
-struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
+struct TouchSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
     turns: [Turn<D>; 2],
     level: Level,
     /// Bound of the rounding error of a gap in `f32`.
-    room: f32,
+    margin: f32,
     /// Bound of the rounding error of a gap in the scalar type.
     slack: N,
     is_for_nearest: bool,
-    question: &'q mut dyn TreeMeeting<N, D>,
+    question: &'q mut dyn TouchQuery<N, D>,
 }
 
 /// Visits all pairs of objects of two trees with boxes within the reach of the question; pairs
 /// somewhat farther may be among them.
-pub(crate) fn visit_meetings<N: Real, const D: usize>(
+pub(crate) fn visit_touching<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
-    question: &mut dyn TreeMeeting<N, D>,
+    question: &mut dyn TouchQuery<N, D>,
 ) {
     if trees.iter().any(|tree| tree.is_empty()) {
         return;
@@ -98,12 +98,12 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
     let distances = max_component(&question.pose(0).translation).as_f32()
         + max_component(&question.pose(1).translation).as_f32();
     let size = trees[0].size() + trees[1].size() + distances;
-    let room = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
+    let margin = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
     let gap = f32::NEG_INFINITY;
     let whole = OpenPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
     let slack = N::lit(f64::from(ROUNDING) * f64::from(size)) * N::EPSILON;
     let (level, is_for_nearest) = (Level::new(), question.is_for_nearest());
-    let mut search = MeetingSearch { trees, turns, level, room, slack, is_for_nearest, question };
+    let mut search = TouchSearch { trees, turns, level, margin, slack, is_for_nearest, question };
     if is_for_nearest {
         search.guess(whole);
         search.run(whole, BinaryHeap::new());
@@ -112,24 +112,24 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
     }
 }
 
-impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
+impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     /// Opens pairs of blocks until the queue is empty or the question ends the search. Of two inner
     /// blocks the one with the larger surface is opened.
     fn run(&mut self, whole: OpenPair, mut agenda: impl Agenda) {
         agenda.put(whole);
         while let Some(pair) = agenda.take() {
-            let Some(room) = self.room() else { return };
-            if pair.gap > room || (self.is_for_nearest && self.is_beyond(&pair)) {
+            let Some(margin) = self.margin() else { return };
+            if pair.gap > margin || (self.is_for_nearest && self.is_beyond(&pair)) {
                 continue;
             }
             match pair.layers {
-                [0, 0] => self.meet(&pair, room),
-                [_, 0] => self.open(0, &pair, room, &mut agenda),
-                [0, _] => self.open(1, &pair, room, &mut agenda),
+                [0, 0] => self.meet(&pair, margin),
+                [_, 0] => self.open(0, &pair, margin, &mut agenda),
+                [0, _] => self.open(1, &pair, margin, &mut agenda),
                 _ => {
                     let [one, other] =
                         [0, 1].mapped(|which| self.bounds(which, &pair).half_surface());
-                    self.open(usize::from(other > one), &pair, room, &mut agenda);
+                    self.open(usize::from(other > one), &pair, margin, &mut agenda);
                 }
             }
         }
@@ -164,8 +164,8 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// The reach plus the rounding error; `None` to end the search.
-    fn room(&self) -> Option<f32> {
-        self.question.reach().map(|reach| self.room + reach.as_f32_above())
+    fn margin(&self) -> Option<f32> {
+        self.question.reach().map(|reach| self.margin + reach.as_f32_above())
     }
 
     /// Hands out one object of each tree. Each is the end of a descent towards the centre of the
@@ -192,19 +192,19 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// Returns the boxes in block `which` that the contents of the other block may touch.
-    fn held(&self, which: usize, pair: &OpenPair, room: f32) -> Held {
+    fn held(&self, which: usize, pair: &OpenPair, margin: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
         let region =
-            self.turns[1 - which].region_of(own.bounds, own.slab, room, self.is_for_nearest);
+            self.turns[1 - which].region_of(own.bounds, own.slab, margin, self.is_for_nearest);
         let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
         region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
 
     /// Queues the children of one block, each paired with the other block, so that the deepest
     /// overlap comes next.
-    fn open(&self, which: usize, pair: &OpenPair, room: f32, agenda: &mut impl Agenda) {
-        let Held { mask, gaps } = self.held(which, pair, room);
+    fn open(&self, which: usize, pair: &OpenPair, margin: f32, agenda: &mut impl Agenda) {
+        let Held { mask, gaps } = self.held(which, pair, margin);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
         let mut near = SmallVec::<[(f32, u32); LANES]>::new();
         for lane in Ones::<LANES>(mask) {
@@ -219,17 +219,17 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             let mut below = *pair;
             (below.layers[which], below.blocks[which]) = (layer, block);
             // Minus the rounding error of the sum.
-            below.gap = gap + room - room.abs() * ROUNDING * f32::EPSILON;
+            below.gap = gap + margin - margin.abs() * ROUNDING * f32::EPSILON;
             agenda.put(below);
         }
     }
 
     /// Visits the objects of two leaf blocks: each of the block with fewer near ones, with those of
     /// the other.
-    fn meet(&mut self, pair: &OpenPair, mut room: f32) {
+    fn meet(&mut self, pair: &OpenPair, mut margin: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
-            masks[which] = self.held(which, pair, room).mask;
+            masks[which] = self.held(which, pair, margin).mask;
             if masks[which] == 0 {
                 return;
             }
@@ -242,15 +242,15 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
             let aabb = self.question.object_in_other(which, id);
             let corners = self.question.corners().filter(|_| self.is_for_nearest);
-            let region = RotatedBox::of_object(&Bounds::enclosing(&aabb), corners, room);
+            let region = RotatedBox::of_object(&Bounds::enclosing(&aabb), corners, margin);
             let near = region.held(self.level, block);
             let ids = Ones::<LANES>(near.mask & masks[1 - which])
                 .filter_map(|lane| other.id_in(others * small(LANES) + small(lane)));
             let ids = ids.collect::<SmallVec<[u32; LANES]>>();
             if !ids.is_empty() {
                 self.question.visit(which, id, &ids);
-                let Some(shrunk) = self.room() else { return };
-                room = shrunk;
+                let Some(shrunk) = self.margin() else { return };
+                margin = shrunk;
             }
         }
     }
@@ -277,7 +277,7 @@ mod tests {
         own: Option<[Vector<f64, 3>; 3]>,
     }
 
-    impl TreeMeeting<f64, 3> for RotatedPairs<'_> {
+    impl TouchQuery<f64, 3> for RotatedPairs<'_> {
         fn pose(&self, which: usize) -> &Pose<f64, 3> {
             &self.poses[which]
         }
@@ -353,7 +353,7 @@ mod tests {
             };
             let results = [false, true].map(|is_for_nearest| {
                 pairs.is_for_nearest = is_for_nearest;
-                visit_meetings(trees.each_ref(), &mut pairs);
+                visit_touching(trees.each_ref(), &mut pairs);
                 let mut found = core::mem::take(&mut pairs.found);
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
@@ -372,7 +372,7 @@ mod tests {
             let most = count1 * count2;
             assert!(most < 1000 || found.len() * 20 < most, "{} of {most} pairs", found.len());
             (pairs.is_first_enough, pairs.is_for_nearest) = (true, false);
-            visit_meetings(trees.each_ref(), &mut pairs);
+            visit_touching(trees.each_ref(), &mut pairs);
             assert!(pairs.found.len() <= LANES, "the search ends");
         }
     }
