@@ -170,7 +170,8 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         request: &ManifoldRequest<N>,
     ) {
         // What is inside of a body touches no part: that is asked in one way.
-        if between.has_bodies() || !<N::Algorithms>::update_quickly(self, between, request) {
+        let has_rules = between.has_bodies() || between.has_ghosts();
+        if has_rules || !<N::Algorithms>::update_quickly(self, between, request) {
             self.update_in_general(between, is_self, request);
         }
     }
@@ -408,7 +409,7 @@ fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, lim
 /// Contacts mostly have a kernel of their own: of balls and surfaces, and of chains.
 fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
-    if parts.has_bodies() {
+    if parts.has_bodies() || parts.has_ghosts() {
         return false;
     }
     let is_chain = || parts.num_parts() > 0 && matches!(parts.part(0).solid, PartSolid::Segment(_));
