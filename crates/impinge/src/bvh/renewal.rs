@@ -212,10 +212,10 @@ impl<const D: usize> Tree<D> {
     /// Creates a sparing tree without objects and with memory for as many as this one.
     fn empty_twin(&self) -> Self {
         let (mut twin, blocks) = (Self::sparing(self.lanes), self.live.div_ceil(LANES) + 1);
-        let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut twin.layers[0];
+        let Layer { blocks: leaves, bounds, swept, changed, .. } = &mut twin.layers[0];
         leaves.reserve(blocks);
         bounds.reserve(blocks);
-        reach.reserve(blocks);
+        swept.reserve(blocks);
         changed.reserve(blocks);
         twin.is_touched.reserve(blocks);
         twin.ids.reserve(blocks * LANES);

@@ -52,14 +52,14 @@ impl<const D: usize> Slabs<D> {
         let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
         let direction = velocity.map(|x| (x / unit).as_f32());
         // The largest finite magnitude of a coordinate of the tree or the box.
-        let mut reach = size;
+        let mut largest = size;
         for axis in 0..D {
             for face in [moving.mins()[axis], moving.maxs()[axis]] {
                 let face = face.as_f32().abs();
-                reach = if face > reach && face < f32::INFINITY { face } else { reach };
+                largest = if face > largest && face < f32::INFINITY { face } else { largest };
             }
         }
-        let pad = PADDING * f32::EPSILON * reach + f32::MIN_POSITIVE;
+        let pad = PADDING * f32::EPSILON * largest + f32::MIN_POSITIVE;
         // Both cases are computed and then selected, since the sign of a direction is
         // unpredictable.
         let low = filled(|axis| at_most(moving.mins()[axis].as_f32(), f32::MAX) - pad);

@@ -53,7 +53,7 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         }
         let [one, other] = [hull1.unwrap_or(*one), hull2.unwrap_or(*other)];
         let between = (other.pose.translation - one.pose.translation).norm();
-        let lengths = reach(&one.shape) + reach(&other.shape) + between + limit;
+        let lengths = bounding_radius(&one.shape) + bounding_radius(&other.shape) + between + limit;
         let slack = lengths * N::lit(ROUNDING_ERRORS) * N::EPSILON;
         slack.is_finite_number() && distance_within(&one, &other, limit + slack).is_none()
     }
@@ -83,7 +83,7 @@ impl<N: Real, const D: usize> Clone for LazyHull<N, D> {
 }
 
 /// An upper bound of the distance of a solid's points from the origin of its frame.
-fn reach<N: Real, const D: usize>(shape: &Geometry<'_, N, D>) -> N {
+fn bounding_radius<N: Real, const D: usize>(shape: &Geometry<'_, N, D>) -> N {
     let Some(parts) = shape.as_composite() else { return shape.extent() };
     let bounds = parts.search().bounds();
     (bounds.center().coords.abs() + bounds.half_extents()).norm()

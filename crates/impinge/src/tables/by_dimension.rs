@@ -4,7 +4,7 @@ use super::Here;
 use crate::batch::{SolidGroup, update_group2, update_group3};
 use crate::bounding_volume::Ray;
 use crate::collide::mesh::{
-    Arena, CompositeContacts, Nearby, PartContacts, Query, Scene, face_contacts, over2, over3,
+    Arena, CompositeContacts, CulledParts, PartContacts, Query, Scene, face_contacts, over2, over3,
     update_chain, update_on_surface,
 };
 use crate::collide::packet::{LANES, PartPacket};
@@ -49,7 +49,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     fn face_contacts(
         query: &Query<'_, N, D>,
         scene: &Scene<'_, N, D>,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
         prediction: N,
         contacts: &mut PartContacts<N, D>,
         arena: &mut Arena<N, D>,
@@ -190,7 +190,7 @@ impl<N: Real> ByDimension<N, 2> for Here {
     fn face_contacts(
         _: &Query<'_, N, 2>,
         _: &Scene<'_, N, 2>,
-        _: &Nearby<N>,
+        _: &CulledParts<N>,
         _: N,
         _: &mut PartContacts<N, 2>,
         _: &mut Arena<N, 2>,
@@ -336,12 +336,12 @@ impl<N: Real> ByDimension<N, 3> for Here {
     fn face_contacts(
         query: &Query<'_, N, 3>,
         scene: &Scene<'_, N, 3>,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
         prediction: N,
         contacts: &mut PartContacts<N, 3>,
         arena: &mut Arena<N, 3>,
     ) -> bool {
-        face_contacts(query, scene, nearby, prediction, contacts, arena)
+        face_contacts(query, scene, culled, prediction, contacts, arena)
     }
 
     fn part_gaps(slabs: &AxisSlabs<N, 3>, tiles: &PartPacket<N, 3>, limit: N) -> [N; LANES] {

@@ -39,7 +39,7 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     fn pose(&self, which: usize) -> &Pose<N, D>;
 
     /// The largest distance of pairs to visit; it never grows, and `None` ends the search.
-    fn reach(&self) -> Option<N>;
+    fn max_distance(&self) -> Option<N>;
 
     /// Whether the reach shrinks to the best distance. If so, pairs of blocks come by their gaps,
     /// not the deepest first.
@@ -139,10 +139,11 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     /// objects so far, or along that between the centres of their boxes. Computed in the scalar
     /// type, which resolves more than `f32` between distant blocks.
     fn is_beyond(&self, pair: &OpenPair) -> bool {
-        let Some((best, reach)) = self.question.best().zip(self.question.reach()) else {
+        let Some((best, max_distance)) = self.question.best().zip(self.question.max_distance())
+        else {
             return false;
         };
-        let limit = reach + self.slack;
+        let limit = max_distance + self.slack;
         if self.gap_along(&best, pair) > limit {
             return true;
         }
@@ -156,16 +157,16 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     /// Returns the gap along a direction, given as a unit vector toward the other tree in the frame
     /// of each.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &OpenPair) -> N {
-        let reaches = [0, 1].mapped(|which| {
+        let extents = [0, 1].mapped(|which| {
             let block = self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which]);
-            block.reach(&toward[which])
+            block.extent(&toward[which])
         });
-        toward[0].dot(&self.question.pose(1).translation) - reaches[0] - reaches[1]
+        toward[0].dot(&self.question.pose(1).translation) - extents[0] - extents[1]
     }
 
     /// The reach plus the rounding error; `None` to end the search.
     fn margin(&self) -> Option<f32> {
-        self.question.reach().map(|reach| self.margin + reach.as_f32_above())
+        self.question.max_distance().map(|max_distance| self.margin + max_distance.as_f32_above())
     }
 
     /// Hands out one object of each tree. Each is the end of a descent towards the centre of the
@@ -269,7 +270,7 @@ mod tests {
     struct RotatedPairs<'a> {
         segments: &'a [Segments; 2],
         poses: [Pose<f64, 3>; 2],
-        reach: f64,
+        max_distance: f64,
         found: Vec<[u32; 2]>,
         is_first_enough: bool,
         is_for_nearest: bool,
@@ -282,8 +283,8 @@ mod tests {
             &self.poses[which]
         }
 
-        fn reach(&self) -> Option<f64> {
-            (self.found.is_empty() || !self.is_first_enough).then_some(self.reach)
+        fn max_distance(&self) -> Option<f64> {
+            (self.found.is_empty() || !self.is_first_enough).then_some(self.max_distance)
         }
 
         fn is_for_nearest(&self) -> bool {
@@ -330,7 +331,7 @@ mod tests {
     #[test]
     fn no_near_pair_is_missed() {
         let random = &mut Xorshift(9);
-        for (count1, count2, reach) in
+        for (count1, count2, max_distance) in
             [(0, 9, 1.0), (1, 1, 60.0), (5, 300, 2.0), (700, 12, 1.0), (400, 900, 0.5)]
         {
             let all = [segments(random, count1), segments(random, count2)];
@@ -345,7 +346,7 @@ mod tests {
             let mut pairs = RotatedPairs {
                 segments: &all,
                 poses,
-                reach,
+                max_distance,
                 found: Vec::new(),
                 is_first_enough: false,
                 is_for_nearest: false,
@@ -366,7 +367,7 @@ mod tests {
                     let distance = distance(one, &other.map(|end| pose.point(&end)));
                     let is_found =
                         results.iter().all(|result| result.binary_search(&[id1, id2]).is_ok());
-                    assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
+                    assert!(is_found || distance > max_distance, "{id1} and {id2}: {distance}");
                 }
             }
             let most = count1 * count2;

@@ -11,7 +11,7 @@
 
 use smallvec::SmallVec;
 
-use super::gather::Nearby;
+use super::gather::CulledParts;
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::part_cache::PartCache;
 use super::part_contact::{self, Arena, PartContact, PartStatus, overlooks};
@@ -32,16 +32,16 @@ use core::cell::Cell;
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
     scene: &Scene<'_, N, 3>,
-    nearby: &Nearby<N>,
+    culled: &CulledParts<N>,
     prediction: N,
     contacts: &mut PartContacts<N, 3>,
     arena: &mut Arena<N, 3>,
 ) -> bool {
-    let Some(configuration) = FaceConfiguration::new(query, scene, nearby) else { return false };
+    let Some(configuration) = FaceConfiguration::new(query, scene, culled) else { return false };
     arena.are_fronts = true;
-    let (tiles, near, origin) =
-        (configuration.around.tiles(), nearby.near.as_slice(), configuration.origin);
-    let parts = TiledTriangles { tiles, near, origin };
+    let (tiles, masks, origin) =
+        (configuration.around.tiles(), culled.masks.as_slice(), configuration.origin);
+    let parts = TiledTriangles { tiles, masks, origin };
     let pose12 = Pose { rotation: configuration.turn, translation: Vector::<N, 3>::zeros() };
     let limit = query.request.prediction;
     let (slot, pending, clip) = (None, PendingClips::default(), FaceClip::blank());
@@ -111,19 +111,19 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
     ) -> Option<Self> {
         let (between, around, surface) = (query.between, query.around, scene.surfaces[1]?);
         let solid = between.pair.first;
         let is_served = has_faces(solid)
-            && nearby.near.len() == around.tiles().len()
+            && culled.masks.len() == around.tiles().len()
             && around.has_triangles_alone()
             && !between.has_bodies();
         let map = Geometry(solid).as_support_map().filter(|_| is_served)?;
         let from = query.reference.unwrap_or_else(|| between.pose21.point(&map.center()));
-        let near = nearby.near.iter().enumerate();
-        let cache_indices = near.flat_map(|(block, near)| {
-            Ones::<LANES>((*near).into()).map(move |lane| block * LANES + lane)
+        let masks = culled.masks.iter().enumerate();
+        let cache_indices = masks.flat_map(|(block, mask)| {
+            Ones::<LANES>((*mask).into()).map(move |lane| block * LANES + lane)
         });
         Some(Self {
             query,

@@ -50,7 +50,7 @@ use smallvec::SmallVec;
 pub(crate) use self::ball::update_on_surface;
 pub(crate) use self::chain::update_chain;
 pub(crate) use self::faces::face_contacts;
-pub(crate) use self::gather::Nearby;
+pub(crate) use self::gather::CulledParts;
 use self::hidden::are_alike;
 pub(crate) use self::over::{over2, over3};
 use self::part_cache::PartCache;
@@ -184,16 +184,16 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     ) {
         let of_parts = of_parts(between, request);
         let around = &mut self.around;
-        let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
+        let culled = gather::culled(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
         // A body knows by itself on which side its inside is.
         let old = self.reference.filter(|_| !between.has_bodies());
-        let travelled = Travelled { old, clearance: nearby.clearance };
+        let travelled = Travelled { old, clearance: culled.clearance };
         let reference = center.map(|center| advanced(between, &travelled, center));
         let around = &self.around;
         let query = Query { between, is_self, around, reference: &reference, request: &of_parts };
         let mut arena = Arena::default();
-        let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
+        let contacts = query.part_contacts(request.prediction, &culled, &mut arena);
         self.conclude(&between.pair, request, [reference, center], &contacts, &arena);
     }
 
@@ -305,18 +305,18 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     fn part_contacts(
         &self,
         prediction: N,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
         arena: &mut Arena<N, D>,
     ) -> PartContacts<N, D> {
         let scene = Scene::new(self.between, self.around);
         let mut contacts = PartContacts::new();
-        if nearby.parts.len() > MANY_PARTS {
-            contacts.reserve(nearby.parts.len());
-            arena.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
+        if culled.parts.len() > MANY_PARTS {
+            contacts.reserve(culled.parts.len());
+            arena.points.reserve(POINTS_AT_A_PART * culled.parts.len());
         }
-        if !<N::Algorithms>::face_contacts(self, &scene, nearby, prediction, &mut contacts, arena) {
+        if !<N::Algorithms>::face_contacts(self, &scene, culled, prediction, &mut contacts, arena) {
             let mut slot = None;
-            for &parts in &nearby.parts {
+            for &parts in &culled.parts {
                 let placed = scene.pair_in(&mut slot, parts);
                 contacts.extend(part_contact::compute(&scene, placed, parts, self, None, arena));
             }
@@ -428,9 +428,9 @@ fn deepest<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let (near, rounding) = (max(distance, N::ZERO), rounding(between));
     // Along the normal of its face a part may be a little farther than it is.
-    let reach = near + near * N::lit(NEARLY) + rounding;
-    let mut found =
-        deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
+    let max_distance = near + near * N::lit(NEARLY) + rounding;
+    let mut found = deepest_within(between, max_distance)
+        .or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
     let farther = found.distance - near;
     let is_off = farther > N::ZERO || distance > N::ZERO;
     let touches = distance <= N::ZERO && farther > N::ZERO;

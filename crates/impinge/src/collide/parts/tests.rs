@@ -92,8 +92,8 @@ fn searches<N: Space<D>, const D: usize>(
     let (first, parts) = (mesh.geometry().0, mesh.num_parts());
     let mut overlaps = [0; 2];
     for round in 0..48 {
-        let reach = N::lit([0.3, 1.0, 2.0, 8.0][round % 4]);
-        let pose12 = Pose { translation: vector(random) * reach, ..turn(random) };
+        let distance = N::lit([0.3, 1.0, 2.0, 8.0][round % 4]);
+        let pose12 = Pose { translation: vector(random) * distance, ..turn(random) };
         let second = other.geometry().0;
         let distance = check(&Pair { first, second, pose12 }, [parts, other.num_parts()]);
         overlaps[usize::from(distance > N::ZERO)] += 1;
@@ -115,9 +115,9 @@ fn searches_of_surface<N: Space<3>>() {
     let mesh = TriMesh::new(surface.vertices, surface.triangles);
     let (first, parts, random) = (mesh.geometry().0, mesh.num_parts(), &mut Random(5));
     let mut overlaps = [0; 2];
-    for reach in [0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 4.0, 1e4] {
-        let along = Vector::<N, 3>::new(N::lit(reach), N::ZERO, N::ZERO);
-        let aside = random.vector::<N>() * N::lit(reach);
+    for distance in [0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 4.0, 1e4] {
+        let along = Vector::<N, 3>::new(N::lit(distance), N::ZERO, N::ZERO);
+        let aside = random.vector::<N>() * N::lit(distance);
         for pose12 in [
             Pose::from_translation(along),
             Pose { translation: along, ..random.turn() },

@@ -72,7 +72,7 @@ pub(crate) use segments::segment_lanes::{SegmentGap, is_square_in_range, nearest
 pub(crate) use table2::separation as separation_in_plane;
 pub(crate) use table3::separation as separation_in_space;
 pub(crate) use triangles::{
-    BallQuestion, NearTriangles, TiledTriangles, TriangleGap, gaps3, near_triangles,
+    BallQuestion, CandidateTriangles, TiledTriangles, TriangleGap, candidate_triangles, gaps3,
 };
 pub(crate) use world::{
     AtIsometry, distance_in_world, in_world, of_ordered, placed, touching_in_world,

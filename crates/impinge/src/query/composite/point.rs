@@ -119,9 +119,9 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
         {
             best = Some(found);
         }
-        let reach = best.map_or(limit, |best| best.distance);
-        let is_decided = touching && reach <= N::ZERO && best.is_some();
-        if is_decided { -N::ONE } else { loosened(max(reach, N::ZERO)) }
+        let bound = best.map_or(limit, |best| best.distance);
+        let is_decided = touching && bound <= N::ZERO && best.is_some();
+        if is_decided { -N::ONE } else { loosened(max(bound, N::ZERO)) }
     });
     let best = best.filter(|best| !touching || best.distance <= N::ZERO);
     if parts.has_bodies() { deepest_within(parts, point, best) } else { best }

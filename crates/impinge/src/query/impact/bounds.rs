@@ -141,8 +141,8 @@ impl<N: Real> Rate<N> {
             return N::ZERO;
         }
         // The product may overflow where its factors do not.
-        let reach = N::TWO * self.bend.sqrt() * gap.sqrt();
-        let root = length(&Vector::<N, 2>::new(self.speed, reach));
+        let gained_speed = N::TWO * self.bend.sqrt() * gap.sqrt();
+        let root = length(&Vector::<N, 2>::new(self.speed, gained_speed));
         if self.speed > N::ZERO {
             // The usual formula would cancel.
             N::TWO * gap / (self.speed + root)

@@ -105,12 +105,12 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
     }
 
     /// An edge of the supporting feature that is perpendicular to the contact's normal.
-    pub(super) fn level_edge(&self) -> Option<Vector<N, D>> {
+    pub(super) fn perpendicular_edge(&self) -> Option<Vector<N, D>> {
         match &self.facing {
-            SideFacing::Part(part) => {
-                part.most_level_side(&self.outward).filter(|side| is_level(side, &self.outward))
-            }
-            SideFacing::Feature(feature) => level_edge(feature, &self.outward),
+            SideFacing::Part(part) => part
+                .flattest_side(&self.outward)
+                .filter(|side| is_perpendicular(side, &self.outward)),
+            SideFacing::Feature(feature) => perpendicular_edge(feature, &self.outward),
             _ => None,
         }
     }
@@ -118,19 +118,19 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
 
 /// The side of a feature that is most nearly perpendicular to a direction; `None` if it is not so
 /// up to rounding.
-fn level_edge<N: Real, const D: usize>(
+fn perpendicular_edge<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     outward: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
     let sides = (0..feature.side_ids.len()).filter_map(|index| along(feature, index));
     let component = |side: &Vector<N, D>| side.dot(outward).abs();
-    let level =
+    let flattest =
         sides.reduce(|best, side| if component(&side) < component(&best) { side } else { best });
-    level.filter(|side| is_level(side, outward))
+    flattest.filter(|side| is_perpendicular(side, outward))
 }
 
 /// Whether two unit vectors are perpendicular up to rounding.
-fn is_level<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
+fn is_perpendicular<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
     side.dot(outward).abs() <= super::least_angle()
 }
 

@@ -132,13 +132,13 @@ impl<N: Real, const D: usize> FacingPart<N, D> {
 
     /// The direction of the side of the part that is most nearly perpendicular to a vector, the
     /// first of equals; `None` for a point.
-    pub(crate) fn most_level_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
+    pub(crate) fn flattest_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
         let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
         let axes =
             (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.part.free, axis));
         let tilt = |axis: usize| vector[axis].abs();
-        let level = axes.reduce(|best, axis| if tilt(axis) < tilt(best) { axis } else { best })?;
-        Some(axis_vector(level))
+        let axis = axes.reduce(|best, axis| if tilt(axis) < tilt(best) { axis } else { best })?;
+        Some(axis_vector(axis))
     }
 }
 
@@ -170,7 +170,7 @@ impl<const D: usize> CuboidPart<D> {
     };
 
     /// The supporting feature for a unit vector. Frees axes, the smallest component first, while
-    /// the tilt admits the sum of their squares; equals the rule for the flattest edge and its most
+    /// the tilt admits the sum of their squares; equals the rule for the axis edge and its most
     /// aligned face.
     pub(in crate::shape) fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut sine_squared) = (0, N::ZERO);

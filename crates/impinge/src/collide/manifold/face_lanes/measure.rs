@@ -144,9 +144,9 @@ impl<N: Real> FaceClip<N> {
             dot(&corners[1], &corners[1]),
             dot(&corners[2], &corners[2]),
         ];
-        let reach = squared[0].larger(squared[1]).larger(squared[2]).sqrt();
+        let farthest = squared[0].larger(squared[1]).larger(squared[2]).sqrt();
         let rounding = V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON);
-        let tolerance = rounding * (V::all(simd, solid.reach()) + reach);
+        let tolerance = rounding * (V::all(simd, solid.reach()) + farthest);
         let projected = ProjectedTriangles::new(simd, &corners, &normal);
         let (supporting, is_supporting) = projected.supporting(simd, tolerance);
         let has_extent = is_supporting & self.measure_face(simd, &projected, tolerance);

@@ -186,8 +186,8 @@ fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     let all = (0..24).map(|_| [corner(0), corner(1), corner(2)]);
     let is_wide = |corners: &Corners<N>| {
         let [a, b, c] = corners;
-        let is_level = upward(corners).z > N::lit(0.9);
-        is_level && cross(&(b - a), &(c - a)).norm() > N::lit(0.3)
+        let is_upright = upward(corners).z > N::lit(0.9);
+        is_upright && cross(&(b - a), &(c - a)).norm() > N::lit(0.3)
     };
     all.filter(is_wide).collect()
 }
@@ -296,14 +296,14 @@ fn what_touches_is_as_near_as_is_known() {
 #[test]
 fn edges_and_corners_of_a_solid_are_clipped_too() {
     let solid = Cuboid::new(Vector::<f64, 3>::repeat(1.0));
-    let found = |up: [f64; 3], reach: f64| {
+    let found = |up: [f64; 3], size: f64| {
         let normal = Vector::<f64, 3>::from(up).normalize();
         let (u, v) = orthonormal_basis(&normal);
         let low = Point::from(-normal * 2.0);
         let corners = [
-            low - u * reach - v * reach,
-            low + u * (3.0 * reach) - v * reach,
-            low + v * (3.0 * reach) - u * reach,
+            low - u * size - v * size,
+            low + u * (3.0 * size) - v * size,
+            low + v * (3.0 * size) - u * size,
         ];
         let scene = Scene::new(&solid, vec![(corners, normal)]);
         let identity = (&Matrix::<f64, 3>::identity(), Vector::<f64, 3>::zeros());

@@ -93,7 +93,7 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                 let distance = -height - radius;
                 // Over a capsule's raised end the surface is a little nearer than the ball around
                 // the end.
-                let reach = asked.prediction
+                let max_distance = asked.prediction
                     + if radius > N::ZERO { N::lit(-0.05 * scale) } else { tolerance };
                 let is_near =
                     |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= tolerance;
@@ -101,7 +101,7 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                 // With more than four corners, those on the outline count, and old ones that span
                 // most of it.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
-                let is_far = distance > reach - tolerance - tolerance;
+                let is_far = distance > max_distance - tolerance - tolerance;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");
                 expected += usize::from(distance <= asked.prediction + tolerance);
             }

@@ -110,8 +110,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         None => best_side::<S, N, V>(simd, &own, &other),
     };
     // The gap is a lower bound: beyond the limit by more than rounding it rejects the pair.
-    let reach = limit + N::lit(16.0) * (rounding_error + N::EPSILON * rounding);
-    if sides.gap - rounding > reach {
+    let max_gap = limit + N::lit(16.0) * (rounding_error + N::EPSILON * rounding);
+    if sides.gap - rounding > max_gap {
         return OutlineResult::Beyond;
     }
     let facing = Facing::of::<S, V>(simd, outlines, &sides, rounding_error);
@@ -120,7 +120,7 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         None => {
             let is_known = known.is_some();
             let best = if is_known { sides } else { best_axis::<S, N, V>(simd, outlines, sides) };
-            if best.gap - rounding > reach {
+            if best.gap - rounding > max_gap {
                 return OutlineResult::Beyond;
             }
             of_axis::<S, N, V>(simd, outlines, &best, rounding_error)
@@ -177,7 +177,7 @@ fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         let [x, y]: [V; 2] = load(simd, &block.normals);
         let [at_x, at_y]: [V; 2] = load(simd, &block.vertices);
         let offsets = x * at_x + y * at_y;
-        let (gap, side) = highest(simd, -other.reach(simd, &[-x, -y]) - offsets);
+        let (gap, side) = highest(simd, -other.extent(simd, &[-x, -y]) - offsets);
         if gap > best.gap {
             best = Axis { gap, normal: own.normal(number * LANES + side) };
         }
@@ -221,7 +221,7 @@ fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         if !is_tip.any_true() {
             continue;
         }
-        let gaps = -other.reach(simd, &[-tips[0], -tips[1]]) - own.reach(simd, &tips);
+        let gaps = -other.extent(simd, &[-tips[0], -tips[1]]) - own.extent(simd, &tips);
         let (gap, tip) = highest(simd, is_tip.select(gaps, none));
         if best.is_none_or(|best| gap > best.gap) {
             best = Some(Axis { gap, normal: lane(&tips, tip).coords });

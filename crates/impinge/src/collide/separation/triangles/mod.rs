@@ -9,7 +9,7 @@
 //! decides whether a pair is within.
 //!
 //! ```text
-//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `near`: bits of those that are meant
+//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of those that are meant
 //!              |   | |         |     |
 //!   packet  [0 1 2 3 4 ...]                            up to eight of them, packed without gaps;
 //!                                                      the visitor counts on over all packets
@@ -23,7 +23,7 @@ mod ball;
 pub(super) mod pair;
 
 use self::axes::{AxisFeature, TriangleAxes};
-pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
+pub(crate) use self::ball::{BallQuestion, CandidateTriangles, candidate_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::math::ones::Ones;
@@ -52,7 +52,7 @@ fn rounding_error<N: Real>() -> N {
 pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
     /// For each tile the bits of the triangles that are meant.
-    pub(crate) near: &'a [u8],
+    pub(crate) masks: &'a [u8],
     /// Origin that the triangles are taken relative to.
     pub(crate) origin: Vector<N, 3>,
 }
@@ -75,9 +75,9 @@ pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap
 impl<N: Real> TiledTriangles<'_, N> {
     /// Tile and lane of each triangle that is meant.
     fn slots(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
-        let all = self.tiles.iter().zip(self.near);
-        all.flat_map(move |(tiles, near)| {
-            Ones::<LANES>((*near).into()).map(move |lane| (tiles, lane))
+        let all = self.tiles.iter().zip(self.masks);
+        all.flat_map(move |(tiles, mask)| {
+            Ones::<LANES>((*mask).into()).map(move |lane| (tiles, lane))
         })
     }
 }
