@@ -19,7 +19,7 @@ use smallvec::SmallVec;
 
 use super::agenda::{Agenda, OpenPair, STACK};
 use super::near_pairs::Toward;
-use super::regions::{Held, RotatedBox, Turn};
+use super::regions::{Held, RotatedBox, TreePose};
 use crate::bounding_volume::Aabb;
 use crate::bvh::tree::small;
 use crate::bvh::{Bounds, LANES, NONE, Tree};
@@ -74,7 +74,7 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
 /// A depth-first search of two trees, best first if it is for the nearest pair.
 struct TouchSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
-    turns: [Turn<D>; 2],
+    tree_poses: [TreePose<D>; 2],
     level: Level,
     /// Bound of the rounding error of a gap in `f32`.
     margin: f32,
@@ -94,7 +94,7 @@ pub(crate) fn visit_touching<N: Real, const D: usize>(
         return;
     }
     debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
-    let turns = [0, 1].mapped(|which| Turn::of(question.pose(which)));
+    let tree_poses = [0, 1].mapped(|which| TreePose::of(question.pose(which)));
     let distances = max_component(&question.pose(0).translation).as_f32()
         + max_component(&question.pose(1).translation).as_f32();
     let size = trees[0].size() + trees[1].size() + distances;
@@ -103,7 +103,8 @@ pub(crate) fn visit_touching<N: Real, const D: usize>(
     let whole = OpenPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
     let slack = N::lit(f64::from(ROUNDING) * f64::from(size)) * N::EPSILON;
     let (level, is_for_nearest) = (Level::new(), question.is_for_nearest());
-    let mut search = TouchSearch { trees, turns, level, margin, slack, is_for_nearest, question };
+    let mut search =
+        TouchSearch { trees, tree_poses, level, margin, slack, is_for_nearest, question };
     if is_for_nearest {
         search.guess(whole);
         search.run(whole, BinaryHeap::new());
@@ -174,7 +175,7 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     fn guess(&mut self, whole: OpenPair) {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
-            let turn = &self.turns[1 - which];
+            let turn = &self.tree_poses[1 - which];
             let center = turn.vector(&self.bounds(1 - which, &pair).center());
             let middle = filled(|row| center[row] + turn.shift[row]);
             let Some(slot) = self.trees[which].slot_near(&middle) else { return };
@@ -197,7 +198,7 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
         let region =
-            self.turns[1 - which].region_of(own.bounds, own.slab, margin, self.is_for_nearest);
+            self.tree_poses[1 - which].region_of(own.bounds, own.slab, margin, self.is_for_nearest);
         let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
         region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }

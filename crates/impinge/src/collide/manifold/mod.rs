@@ -3,14 +3,14 @@
 //! ```text
 //!   separation   `frame`           supporting features           candidates      points and ids
 //!   (witness) -> ContactFrame  ->  3D: `ring`, `clip`        ->  corners of  ->  `reduce`
-//!                                  2D: `stretch`                 the common      `ids`, `matching`
+//!                                  2D: `interval`                the common      `ids`, `matching`
 //!                                  half-space: `half_space`      area
 //! ```
 //!
 //! The separation provides the normal and the witness, its nearest pair of points. The supporting
 //! features of both solids, projected along the normal, are points, segments and convex polygons
 //! ([`ring`]), and the corners of their intersection ([`clip`]) are the candidates. In 2D the
-//! intersection is an interval ([`stretch`]); over a [`half_space`] every corner counts. [`reduce`]
+//! intersection is an interval ([`interval`]); over a [`half_space`] every corner counts. [`reduce`]
 //! chooses a few candidates and [`ids`] numbers them.
 //!
 //! The witness is always represented, so the smallest distance of a manifold is exactly that of the
@@ -23,10 +23,10 @@ pub(in crate::collide) mod face_lanes;
 pub(in crate::collide) mod frame;
 mod half_space;
 pub(in crate::collide) mod ids;
+mod interval;
 pub(in crate::collide) mod matching;
 pub(in crate::collide) mod reduce;
 mod ring;
-mod stretch;
 mod supporting;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -86,7 +86,7 @@ fn build_in_plane<N: Real>(
         return;
     }
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
-    if !stretch::build(pair, &frame, limit, out) {
+    if !interval::build(pair, &frame, limit, out) {
         // A user's solid whose supporting feature is neither a point nor a side.
         build_witness_manifold(pair, separation, out);
     }

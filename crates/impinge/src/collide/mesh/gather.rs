@@ -46,7 +46,7 @@ pub(super) fn culled<N: Space<D>, const D: usize>(
         if around.covers(parts2, &aabb)
             && let Some(query) = LowerBoundQuery::new(between, max_distance, around, &aabb)
         {
-            let culled = near_kept(&query, parts2, around, &aabb);
+            let culled = cull_kept(&query, parts2, around, &aabb);
             if has_faces(between.pair.first) {
                 around.learn_seams(parts2, &culled.masks);
             }
@@ -58,7 +58,7 @@ pub(super) fn culled<N: Space<D>, const D: usize>(
 }
 
 /// Of the parts that are kept those that may be within reach; of parts without corners those whose boxes may be.
-fn near_kept<N: Space<D>, const D: usize>(
+fn cull_kept<N: Space<D>, const D: usize>(
     query: &LowerBoundQuery<N, D>,
     composite: &dyn CompositeShape<N, D>,
     around: &PartCache<N, D>,

@@ -17,20 +17,20 @@ pub(crate) struct PartPoint<N: Real, const D: usize> {
     pub(crate) point: Point<N, D>,
     pub(crate) feature: FeatureId,
     pub(crate) part: u32,
-    /// The nearest point, in the frame of [`Near`].
+    /// The nearest point, in the frame of [`PartQuery`].
     pub(crate) local: Point<N, D>,
 }
 
 /// A part in a frame near the query point: a part in the composite's frame is translated so that
 /// the query point is the origin.
-pub(crate) struct Near<'a, N: Real, const D: usize> {
+pub(crate) struct PartQuery<'a, N: Real, const D: usize> {
     part: Part<'a, N, D>,
     moved: Vector<N, D>,
     /// The query point in that frame.
     pub(crate) asked: Point<N, D>,
 }
 
-impl<'a, N: Real, const D: usize> Near<'a, N, D> {
+impl<'a, N: Real, const D: usize> PartQuery<'a, N, D> {
     pub(crate) fn new(part: Part<'a, N, D>, point: &Point<N, D>) -> Self {
         let asked = part.pose.inverse_point(point);
         match recentred(&part.solid, &asked.coords) {
@@ -52,7 +52,7 @@ impl<'a, N: Real, const D: usize> Near<'a, N, D> {
     }
 }
 
-impl<N: Real, const D: usize> Near<'_, N, D> {
+impl<N: Real, const D: usize> PartQuery<'_, N, D> {
     /// Whether the part is certainly farther than `distance`, by a plane perpendicular to the
     /// direction of its centre. Tests triangles and segments without a pose only. With m the sum of
     /// the corners c relative to the query point, the plane is at the distance min(m · c) / |m|.
@@ -81,7 +81,7 @@ impl<N: Real, const D: usize> Near<'_, N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> Near<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartQuery<'_, N, D> {
     /// The nearest point of the part; `None` if there is none, or on overflow.
     fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
         let Geometry(kind) = self.part.solid.geometry();
@@ -111,7 +111,7 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     let mut best: Option<PartPoint<N, D>> = None;
     let limit = if touching { N::ZERO } else { N::INFINITY };
     search.nearest(&start, limit, &mut |index, _| {
-        let near = Near::new(parts.part(index), point);
+        let near = PartQuery::new(parts.part(index), point);
         let is_beyond = best.is_some_and(|best| near.is_beyond(best.distance));
         if !is_beyond
             && let Some(found) = near.nearest(index, point)
@@ -144,7 +144,7 @@ fn deepest_within<N: Space<D>, const D: usize>(
         let mut nearest: Option<PartPoint<N, D>> = None;
         search.nearest(&start, N::INFINITY, &mut |index, _| {
             if range.contains(&index)
-                && let Some(found) = Near::new(parts.part(index), point).nearest(index, point)
+                && let Some(found) = PartQuery::new(parts.part(index), point).nearest(index, point)
                 && nearest.is_none_or(|nearest| found.is_before(&nearest))
             {
                 nearest = Some(found);
@@ -205,7 +205,7 @@ mod tests {
             } else {
                 PartSolid::Triangle(Triangle::new(corners[0], corners[1], corners[2]))
             };
-            let near = Near::new(Part { pose: Pose::identity(), solid }, &point);
+            let near = PartQuery::new(Part { pose: Pose::identity(), solid }, &point);
             let found = near.nearest(0, &point).expect("finite").distance;
             assert!(!near.is_beyond(found), "{round}: it is as near as it is");
             let share = N::lit(0.25 + 0.5 * f64::from(u32::try_from(round % 2).expect("small")));

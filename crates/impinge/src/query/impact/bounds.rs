@@ -257,7 +257,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
 
     /// Whether the parts of the bodies can be advanced separately: one is a composite, and both
     /// have constant velocities.
-    pub(super) fn has_parts_on_known_ways(&self) -> bool {
+    pub(super) fn has_parts_on_known_paths(&self) -> bool {
         let is_known = self.bodies.iter().all(|body| body.constant().is_some());
         is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
     }

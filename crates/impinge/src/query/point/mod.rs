@@ -32,7 +32,7 @@ pub(super) use segment::{feature_at, nearest as nearest_on_segment};
 pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
 
-use super::composite::{Near, PartPoint};
+use super::composite::{PartPoint, PartQuery};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 use crate::tables::entries;
@@ -375,7 +375,7 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
         point: &Point<N, D>,
         solid: bool,
     ) -> PointLocation<N> {
-        let near = Near::new(parts.part(self.part), point);
+        let near = PartQuery::new(parts.part(self.part), point);
         let is_own = solid && self.distance <= N::ZERO && near.asked != self.local;
         let (at, feature) =
             if is_own { (&near.asked, None) } else { (&self.local, Some(self.feature)) };

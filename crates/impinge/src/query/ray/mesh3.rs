@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn all_ways_have_the_same_bits() {
+    fn all_paths_have_the_same_bits() {
         for (scale, speed) in [(1.0, 1.0), (1e18, 1.0), (1e-18, 1e6), (1.0, 1e-30), (1e12, 1e12)] {
             agrees::<f32>(scale, speed);
             agrees::<f64>(scale, speed);

@@ -6,14 +6,14 @@
 //! positive, so the nearest points lie on the sides next to the best normal, ends included.
 //!
 //! Eight sides are tried at a time, each against all vertices of the other solid. If the best
-//! normal leads to the nearest points, as it mostly does ([`Facing::clear_case`]), the tips of sharp
+//! normal leads to the nearest points, as it mostly does ([`OutlinePair::clear_case`]), the tips of sharp
 //! corners are skipped. The rest goes to the [general
 //! algorithm](crate::collide::separation::general): outlines with too many vertices, sides whose
 //! squared length is close to underflow or overflow, and nearest points that do not lie along the
 //! best axis.
 
 use super::outline::{LANES, PolygonOutline, highest, lane};
-use super::polygon_nearest::Facing;
+use super::polygon_nearest::OutlinePair;
 use crate::collide::Pair;
 use crate::collide::separation::boxes::rectangle_axes::Rectangles;
 use crate::collide::separation::general;
@@ -114,8 +114,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     if sides.gap - rounding > max_gap {
         return OutlineResult::Beyond;
     }
-    let facing = Facing::of::<S, V>(simd, outlines, &sides, rounding_error);
-    let found = match facing.clear_case() {
+    let outlines_along = OutlinePair::of::<S, V>(simd, outlines, &sides, rounding_error);
+    let found = match outlines_along.clear_case() {
         Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
         None => {
             let is_known = known.is_some();
@@ -138,8 +138,8 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
     best: &Axis<N>,
     rounding_error: N,
 ) -> Option<Separation<N, 2>> {
-    let facing = Facing::of::<S, V>(simd, outlines, best, rounding_error);
-    let cores = facing.separation::<S, V>(simd)?;
+    let outlines_along = OutlinePair::of::<S, V>(simd, outlines, best, rounding_error);
+    let cores = outlines_along.separation::<S, V>(simd)?;
     Some(cores.rounded(outlines[0].rounding, outlines[1].rounding))
 }
 

@@ -12,7 +12,7 @@ use crate::shape::{
 
 type Solid<N> = Box<dyn Shape<N, 3>>;
 
-fn rod<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Solid<N> {
+fn segment<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Solid<N> {
     let point =
         |random: &mut Random| Point::from(random.vector::<f64, 3>(1.0).map(|x| N::lit(x * scale)));
     let length = |random: &mut Random| N::lit(random.between(0.1, 1.0) * scale);
@@ -84,7 +84,7 @@ fn visit<N: Scene<3>>(
 ) {
     let random = &mut Random(seed);
     for round in 0..2400_usize {
-        let one = rod::<N>(round % 4, scale, random);
+        let one = segment::<N>(round % 4, scale, random);
         let other = solid::<N>(round / 4 % 8, scale, random);
         let turn = turn(round / 24, random);
         let direction = random.vector::<N, 3>(scale);
