@@ -179,7 +179,7 @@ mod tests {
         }
     }
 
-    fn asked(
+    fn proposed(
         lanes: Lanes,
         block: &Block<3>,
         gaps: &Gaps<3>,
@@ -211,9 +211,9 @@ mod tests {
             let Ok(aabb) = Aabb::try_new(corner, end) else { continue };
             let gaps = Gaps::new(&aabb, largest);
             for limit in [0.0, number(state, largest).abs(), f32::INFINITY] {
-                let expected = asked(Lanes::scalar(), &block, &gaps, gaps.limit(limit));
+                let expected = proposed(Lanes::scalar(), &block, &gaps, gaps.limit(limit));
                 for lanes in Lanes::available() {
-                    let own = asked(lanes, &block, &gaps, gaps.limit(limit));
+                    let own = proposed(lanes, &block, &gaps, gaps.limit(limit));
                     assert_eq!(own, expected, "{lanes:?} {aabb:?} {limit}");
                 }
                 let (mask, keys, least) = expected;

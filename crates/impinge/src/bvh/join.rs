@@ -116,7 +116,7 @@ impl<const D: usize> Joiner<D> {
     pub(crate) fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first: tree, second: tree, is_self: true };
         if tree.changed * QUERIES_BELOW < tree.live {
-            self.ask_changed(sides);
+            self.search_changed(sides);
         } else {
             self.join(sides);
         }
@@ -132,8 +132,8 @@ impl<const D: usize> Joiner<D> {
         let few = (first.changed + second.changed) * QUERIES_BELOW < all;
         match (first.changed, second.changed) {
             (0, 0) => {}
-            (_, 0) if few => self.ask_and_report(sides, changes),
-            (0, _) if few => self.ask_and_report(flipped, changes),
+            (_, 0) if few => self.search_and_report(sides, changes),
+            (0, _) if few => self.search_and_report(flipped, changes),
             _ => {
                 self.join(sides);
                 self.report(sides, changes);
@@ -142,8 +142,8 @@ impl<const D: usize> Joiner<D> {
     }
 
     /// Finds the pairs of the changed objects of the first tree by queries, and reports them.
-    fn ask_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
-        self.ask_changed(sides);
+    fn search_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
+        self.search_changed(sides);
         self.report(sides, changes);
     }
 
@@ -163,13 +163,13 @@ impl<const D: usize> Joiner<D> {
 
     /// Queries the second tree with each changed box of the first. The second tree must be
     /// unchanged, unless both are the same.
-    fn ask_changed(&mut self, sides: JoinSides<'_, D>) {
+    fn search_changed(&mut self, sides: JoinSides<'_, D>) {
         let mut slots = core::mem::take(&mut self.slots);
         sides.first.list_changed_slots(&mut slots);
         if !slots.is_empty() && sides.second.live > 0 {
             let run = |range: Range<usize>, out: &mut TaskList, scratch: &mut Scratch<D>| {
                 with_kernel!(sides.first.lanes, kernel => {
-                    super::query::ask(kernel, sides, &slots[range], out, scratch);
+                    super::query::search(kernel, sides, &slots[range], out, scratch);
                 });
             };
             let chunks = Chunks { count: slots.len(), size: UPPER_CHUNK };

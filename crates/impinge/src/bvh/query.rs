@@ -12,7 +12,7 @@ use super::tree::small;
 /// changed slots that began or ended. If both trees are the same, a pair of two changed slots is
 /// reported by the lower one.
 #[inline(always)]
-pub(super) fn ask<K: Kernel, const D: usize>(
+pub(super) fn search<K: Kernel, const D: usize>(
     kernel: K,
     sides: JoinSides<'_, D>,
     slots: &[u32],

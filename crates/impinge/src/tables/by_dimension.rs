@@ -119,7 +119,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     );
 
     /// Computes contacts along the normal of a triangle; `false` if there are none.
-    fn on_face(pair: &Pair<'_, N, D>, asked: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
+    fn on_face(pair: &Pair<'_, N, D>, query: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
 
     /// Updates some pairs of a group in SIMD lanes; `false` if there is no kernel for their kinds.
     fn update_lanes(solids: [&Solid<N, D>; 2], due: &mut DueContacts<'_, '_, N, D>) -> bool
@@ -255,8 +255,8 @@ impl<N: Real> ByDimension<N, 2> for Here {
         between2(pair, separation, request, out);
     }
 
-    fn on_face(pair: &Pair<'_, N, 2>, asked: &OnFace<N, 2>, out: &mut RawManifold<N, 2>) -> bool {
-        on_face2(pair, asked, out)
+    fn on_face(pair: &Pair<'_, N, 2>, query: &OnFace<N, 2>, out: &mut RawManifold<N, 2>) -> bool {
+        on_face2(pair, query, out)
     }
 
     fn update_lanes(solids: [&Solid<N, 2>; 2], due: &mut DueContacts<'_, '_, N, 2>) -> bool {
@@ -401,8 +401,8 @@ impl<N: Real> ByDimension<N, 3> for Here {
         build3(pair, separation, request, out);
     }
 
-    fn on_face(pair: &Pair<'_, N, 3>, asked: &OnFace<N, 3>, out: &mut RawManifold<N, 3>) -> bool {
-        on_face3(pair, asked, out)
+    fn on_face(pair: &Pair<'_, N, 3>, query: &OnFace<N, 3>, out: &mut RawManifold<N, 3>) -> bool {
+        on_face3(pair, query, out)
     }
 
     fn update_lanes(solids: [&Solid<N, 3>; 2], due: &mut DueContacts<'_, '_, N, 3>) -> bool {

@@ -18,7 +18,7 @@ use super::part_contact::{self, Arena, PartContact, PartStatus, overlooks};
 use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
 use super::{PartContacts, Query};
-use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
+use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::{TiledTriangles, TriangleGap, gaps3};
@@ -185,12 +185,12 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
     }
 
     /// What is asked of the clip for a contact; `None` where the nearest points are needed, or the solid shows no face.
-    fn asked(
+    fn clip_request(
         &self,
         contact: &FaceContact<N>,
         distance: N,
         tolerance: N,
-    ) -> Option<TriangleAsked<N>> {
+    ) -> Option<ClipRequest<N>> {
         let is_own = contact.status == PartStatus::Own;
         if is_own && distance > self.query.request.prediction {
             return None;
@@ -198,7 +198,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         // What touches but for rounding does not reach below the face.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
-        TriangleAsked::new(self.solid, normal, is_own.then_some(distance), least)
+        ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)
     }
 }
 
@@ -210,14 +210,14 @@ pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) ->
 /// Triangles that are to be clipped together, each with the number of its contact and its place.
 struct PendingClips<N: Real> {
     triangles: PartPacket<N, 3>,
-    asked: SmallVec<[TriangleAsked<N>; LANES]>,
+    requests: SmallVec<[ClipRequest<N>; LANES]>,
     contacts: SmallVec<[(usize, usize); LANES]>,
 }
 
 impl<N: Real> Default for PendingClips<N> {
     fn default() -> Self {
         let triangles = PartPacket::blank();
-        Self { triangles, asked: SmallVec::new(), contacts: SmallVec::new() }
+        Self { triangles, requests: SmallVec::new(), contacts: SmallVec::new() }
     }
 }
 
@@ -240,7 +240,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
             let found = self.in_general(cache_index);
             self.contacts.extend(found);
         }
-        if self.pending.asked.len() == LANES {
+        if self.pending.requests.len() == LANES {
             self.clip();
         }
     }
@@ -254,9 +254,10 @@ impl<N: Real> FaceContacts<'_, '_, N> {
             SurfaceAnswer::Unclear => return None,
         };
         if contact.status != PartStatus::Left {
-            let asked = self.configuration.asked(&contact, gap.distance, triangle.tolerance)?;
-            self.pending.triangles.put(self.pending.asked.len(), &triangle.corners);
-            self.pending.asked.push(asked);
+            let request =
+                self.configuration.clip_request(&contact, gap.distance, triangle.tolerance)?;
+            self.pending.triangles.put(self.pending.requests.len(), &triangle.corners);
+            self.pending.requests.push(request);
             self.pending.contacts.push((self.contacts.len(), cache_index));
         }
         self.note_face(cache_index, contact.face.as_ref());
@@ -283,9 +284,9 @@ impl<N: Real> FaceContacts<'_, '_, N> {
 
     /// Finds the points of the triangles that are due.
     fn clip(&mut self) {
-        let (PendingClips { triangles, asked, contacts }, configuration) =
+        let (PendingClips { triangles, requests, contacts }, configuration) =
             (core::mem::take(&mut self.pending), self.configuration);
-        if asked.is_empty() {
+        if requests.is_empty() {
             return;
         }
         let solid = FaceSolid {
@@ -297,7 +298,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         let (mut start, mut left) = (self.arena.points.len(), 0_u8);
         let all = &mut *self.contacts;
         let (clip, points) = (&mut self.clip, &mut self.arena.points);
-        solid.each_clip(&triangles, &asked, clip, points, |lane, lowest, points| {
+        solid.each_clip(&triangles, &requests, clip, points, |lane, lowest, points| {
             let contact = &mut all[contacts[lane].0];
             match lowest {
                 Some(lowest) => {

@@ -120,8 +120,8 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         return held.verdicts(false);
     }
     let (squares, other_squares) = (squares_of(&own), squares_of(&others));
-    held.ask_width(&normal, squares[0] * squares[1]);
-    held.ask_width(&other_normal, other_squares[0] * other_squares[1]);
+    held.require_width(&normal, squares[0] * squares[1]);
+    held.require_width(&other_normal, other_squares[0] * other_squares[1]);
     let across = cross(&normal, &other_normal);
     let both = dot(&normal, &normal) * dot(&other_normal, &other_normal);
     let is_askew = held.is_wide(&across, both);
@@ -129,7 +129,7 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         for (other, other_squared) in others.iter().zip(other_squares) {
             let along = cross(side, other);
             held.along(&along);
-            held.ask_width(&along, squared * other_squared);
+            held.require_width(&along, squared * other_squared);
         }
     }
     held.unsure |= !is_askew;
@@ -225,7 +225,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
 
     /// Marks the pairs whose direction is not exact as unsure.
     #[inline(always)]
-    fn ask_width(&mut self, along: &[V; D], squares: V) {
+    fn require_width(&mut self, along: &[V; D], squares: V) {
         self.unsure |= !self.is_wide(along, squares);
     }
 

@@ -27,18 +27,18 @@ pub(crate) struct PartQuery<'a, N: Real, const D: usize> {
     part: Part<'a, N, D>,
     moved: Vector<N, D>,
     /// The query point in that frame.
-    pub(crate) asked: Point<N, D>,
+    pub(crate) query: Point<N, D>,
 }
 
 impl<'a, N: Real, const D: usize> PartQuery<'a, N, D> {
     pub(crate) fn new(part: Part<'a, N, D>, point: &Point<N, D>) -> Self {
-        let asked = part.pose.inverse_point(point);
-        match recentred(&part.solid, &asked.coords) {
+        let query = part.pose.inverse_point(point);
+        match recentred(&part.solid, &query.coords) {
             Some(solid) => {
                 let part = Part { solid, ..part };
-                Self { part, moved: asked.coords, asked: Point::origin() }
+                Self { part, moved: query.coords, query: Point::origin() }
             }
-            None => Self { part, moved: Vector::<N, D>::zeros(), asked },
+            None => Self { part, moved: Vector::<N, D>::zeros(), query },
         }
     }
 
@@ -58,7 +58,7 @@ impl<N: Real, const D: usize> PartQuery<'_, N, D> {
     /// the corners c relative to the query point, the plane is at the distance min(m · c) / |m|.
     fn is_beyond(&self, distance: N) -> bool {
         let corners: [Vector<N, D>; 3] = match self.solid() {
-            _ if self.asked != Point::origin() => return false,
+            _ if self.query != Point::origin() => return false,
             PartSolid::Triangle(triangle) => triangle.corners().mapped(|corner| corner.coords),
             PartSolid::Segment(segment) => {
                 let (a, b) = (segment.a().coords, segment.b().coords);
@@ -85,13 +85,13 @@ impl<N: Space<D>, const D: usize> PartQuery<'_, N, D> {
     /// The nearest point of the part; `None` if there is none, or on overflow.
     fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
         let Geometry(kind) = self.part.solid.geometry();
-        let found = <N::Algorithms>::surface_point(kind, &self.asked);
-        let (projected, feature) = found.projection(&self.asked);
+        let found = <N::Algorithms>::surface_point(kind, &self.query);
+        let (projected, feature) = found.projection(&self.query);
         let local = projected.point;
-        let apart = length(&(self.asked - local));
+        let apart = length(&(self.query - local));
         let distance = if projected.is_inside { N::ZERO - apart } else { apart };
-        let is_asked = apart == N::ZERO;
-        let outer = if is_asked { *point } else { self.outer(&local) };
+        let is_at_query = apart == N::ZERO;
+        let outer = if is_at_query { *point } else { self.outer(&local) };
         let is_number = distance <= N::INFINITY;
         is_number.then_some(PartPoint { distance, point: outer, feature, part: number, local })
     }
@@ -190,7 +190,7 @@ mod tests {
     /// are reported.
     fn parts_beyond<N: Space<3>>() {
         let random = &mut Xorshift(7);
-        let (mut beyond, mut said) = (0, 0);
+        let (mut beyond, mut decided) = (0, 0);
         for round in 0..3000 {
             let scale = [1.0, 1e-12, 1e9][round % 3];
             let aside = random.vector::<f64>(3.0);
@@ -213,9 +213,9 @@ mod tests {
                 assert!(!near.is_beyond(limit) || limit < found, "{round}: {found} and {limit}");
             }
             beyond += 1;
-            said += usize::from(near.is_beyond(found * share));
+            decided += usize::from(near.is_beyond(found * share));
         }
-        assert!(said * 3 > beyond, "{said} of {beyond}");
+        assert!(decided * 3 > beyond, "{decided} of {beyond}");
     }
 
     #[test]

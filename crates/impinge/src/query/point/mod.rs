@@ -202,8 +202,8 @@ pub(crate) fn located_at<N: Space<D>, const D: usize>(
     point: &Point<N, D>,
     solid: bool,
 ) -> (PointProjection<N, D>, PointLocation<N>) {
-    let asked = pose.inverse_point(point);
-    let (local, location) = shape.project_local_point_with_location(&asked, solid);
+    let local_point = pose.inverse_point(point);
+    let (local, location) = shape.project_local_point_with_location(&local_point, solid);
     (placed(&local, pose, point, solid), location)
 }
 
@@ -376,9 +376,9 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
         solid: bool,
     ) -> PointLocation<N> {
         let near = PartQuery::new(parts.part(self.part), point);
-        let is_own = solid && self.distance <= N::ZERO && near.asked != self.local;
+        let is_own = solid && self.distance <= N::ZERO && near.query != self.local;
         let (at, feature) =
-            if is_own { (&near.asked, None) } else { (&self.local, Some(self.feature)) };
+            if is_own { (&near.query, None) } else { (&self.local, Some(self.feature)) };
         let barycentric = Barycentric::of(near.solid().geometry(), at, feature);
         PointLocation { part: self.part, feature: self.feature, barycentric }
     }

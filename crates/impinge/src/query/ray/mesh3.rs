@@ -109,8 +109,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
     #[inline(always)]
     fn new(mesh: &TriMesh<N, 3>, ray: &'a Ray<N, 3>, max_time: N, solid: bool) -> Option<Self> {
         let is_finite = filled(|axis| ray.dir[axis].is_finite_number()) == [true; 3];
-        let asks = is_finite && max_time >= N::ZERO;
-        if !asks || (solid && mesh.has_bodies()) {
+        let is_valid = is_finite && max_time >= N::ZERO;
+        if !is_valid || (solid && mesh.has_bodies()) {
             return None;
         }
         let own = TriangleRay::new(ray)?;

@@ -1,6 +1,6 @@
 //! The points of one triangle, made of what is measured.
 
-use super::TriangleAsked;
+use super::ClipRequest;
 use super::measure::FaceClip;
 use crate::collide::{RawPoint, RawPoints};
 use crate::math::{Point, Real, Vector, max, min};
@@ -12,7 +12,7 @@ impl<N: Real> FaceClip<N> {
     pub(super) fn points_of(
         &self,
         lane: usize,
-        asked: &TriangleAsked<N>,
+        request: &ClipRequest<N>,
         prediction: N,
         points: &mut RawPoints<N, 3>,
     ) -> Option<N> {
@@ -23,8 +23,8 @@ impl<N: Real> FaceClip<N> {
             return None;
         }
         let (tolerance, first) = (self.tolerance[lane], points.len());
-        let mut found = FoundPoints { asked, prediction, tolerance, points, first };
-        let one = LaneClip { clip: self, lane, normal: &asked.normal };
+        let mut found = FoundPoints { request, prediction, tolerance, points, first };
+        let one = LaneClip { clip: self, lane, normal: &request.normal };
         let is_clear = one.corners(&mut found).and_then(|()| one.vertices(&mut found)).is_some();
         if is_clear {
             one.crossings(&mut found);
@@ -39,7 +39,7 @@ impl<N: Real> FaceClip<N> {
 
 /// The points of one triangle as they are found.
 struct FoundPoints<'a, N: Real> {
-    asked: &'a TriangleAsked<N>,
+    request: &'a ClipRequest<N>,
     prediction: N,
     tolerance: N,
     points: &'a mut RawPoints<N, 3>,
@@ -52,7 +52,7 @@ impl<N: Real> FoundPoints<'_, N> {
     fn lowest(&mut self) -> Option<N> {
         let new = &mut self.points[self.first..];
         let lowest = new.iter().fold(N::INFINITY, |lowest, point| min(point.distance, lowest));
-        let Some(nearest) = self.asked.nearest else { return Some(lowest) };
+        let Some(nearest) = self.request.nearest else { return Some(lowest) };
         // NaN is not near.
         let is_reached = lowest <= nearest + self.tolerance;
         let deepest = new.iter_mut().find(|point| point.distance == lowest)?;
@@ -62,7 +62,7 @@ impl<N: Real> FoundPoints<'_, N> {
 
     /// Adds a point of the triangle, from which the face of the solid is a distance away, if that is asked for.
     fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
-        let TriangleAsked { normal, nearest, least, .. } = self.asked;
+        let ClipRequest { normal, nearest, least, .. } = self.request;
         let mut distance = max(distance, nearest.unwrap_or(distance));
         // NaN is not near.
         let is_near = distance <= self.prediction + self.tolerance;

@@ -1,7 +1,7 @@
 //! Contacts of faces with triangles, eight at a time: what the two share, seen along the normal.
 
 use super::clip::{Outline, common, prism, regular};
-use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
+use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::{RawPoint, RawPoints};
 use crate::math::simd::Level;
@@ -14,7 +14,7 @@ type Corners<N> = [Point<N, 3>; 3];
 /// Eight triangles in the frame of the solid, and what is asked of each; of those that the solid shows a face along.
 struct Scene<N: Real> {
     triangles: Vec<Corners<N>>,
-    asked: Vec<TriangleAsked<N>>,
+    requests: Vec<ClipRequest<N>>,
 }
 
 /// What is found of one triangle: its points, unless the lanes leave it.
@@ -29,11 +29,11 @@ fn upward<N: Real>([a, b, c]: &Corners<N>) -> Vector<N, 3> {
 impl<N: Real> Scene<N> {
     fn new(solid: &dyn Shape<N, 3>, triangles: Vec<(Corners<N>, Vector<N, 3>)>) -> Self {
         let solid = solid.geometry().0;
-        let mut scene = Self { triangles: Vec::new(), asked: Vec::new() };
+        let mut scene = Self { triangles: Vec::new(), requests: Vec::new() };
         for (triangle, normal) in triangles {
-            let asked = TriangleAsked::new(solid, normal, None, -N::INFINITY);
+            let request = ClipRequest::new(solid, normal, None, -N::INFINITY);
             scene.triangles.push(triangle);
-            scene.asked.push(asked.expect("a box or a hull"));
+            scene.requests.push(request.expect("a box or a hull"));
         }
         scene
     }
@@ -49,15 +49,15 @@ impl<N: Real> Scene<N> {
         let lanes = FaceSolid { solid: geometry.0, turn, origin, prediction: N::lit(10.0) };
         let mut all = vec![None; self.triangles.len()];
         let mut clip = FaceClip::blank();
-        for (first, (triangles, asked)) in
-            self.triangles.chunks(LANES).zip(self.asked.chunks(LANES)).enumerate()
+        for (first, (triangles, requests)) in
+            self.triangles.chunks(LANES).zip(self.requests.chunks(LANES)).enumerate()
         {
             let (mut packet, mut points) = (PartPacket::blank(), RawPoints::new());
             for (lane, corners) in triangles.iter().enumerate() {
                 packet.put(lane, &corners.map(|corner| Point::from(turn * corner.coords + origin)));
             }
             let mut start = 0;
-            let packet = (&packet, asked);
+            let packet = (&packet, requests);
             lanes.each_clip_at(level, packet, &mut clip, &mut points, |lane, lowest, points| {
                 let own = points[start..].to_vec();
                 start = points.len();
@@ -205,11 +205,11 @@ fn check_all<N: Real>(
     let scene = Scene::new(solid, placed.collect());
     for (turn, origin) in frames(random) {
         let found = scene.found(Level::new(), solid, (&turn, origin));
-        for ((moved, asked), found) in scene.triangles.iter().zip(&scene.asked).zip(found) {
+        for ((moved, request), found) in scene.triangles.iter().zip(&scene.requests).zip(found) {
             counts[usize::from(found.is_some())] += 1;
             if let Some(mut found) = found {
                 found.iter_mut().for_each(|point| point.point1 += up);
-                check(outline, &moved.map(|corner| corner + up), &asked.normal, &found);
+                check(outline, &moved.map(|corner| corner + up), &request.normal, &found);
             }
         }
     }
@@ -280,17 +280,17 @@ fn what_touches_is_as_near_as_is_known() {
     let solid = Cuboid::new(Vector::<f64, 3>::repeat(1.0));
     let corners = [[-3.0, -3.0, -1.2], [3.0, -3.0, -1.2], [0.0, 4.0, -1.2]].map(Point::from);
     let up = Vector::<f64, 3>::z();
-    let ask = |nearest: Option<f64>, least: f64| {
-        let asked = TriangleAsked::new(solid.geometry().0, up, nearest, least).expect("a face");
-        let scene = Scene { triangles: vec![corners], asked: vec![asked] };
+    let clip = |nearest: Option<f64>, least: f64| {
+        let request = ClipRequest::new(solid.geometry().0, up, nearest, least).expect("a face");
+        let scene = Scene { triangles: vec![corners], requests: vec![request] };
         let identity = (&Matrix::<f64, 3>::identity(), Vector::<f64, 3>::zeros());
         scene.found(Level::new(), &solid, identity).remove(0)
     };
-    let near = ask(Some(0.2 - 1e-16), -f64::INFINITY).expect("that near");
+    let near = clip(Some(0.2 - 1e-16), -f64::INFINITY).expect("that near");
     assert_eq!((near.len(), near[0].distance), (4, 0.2 - 1e-16), "as it is known");
-    assert!(ask(Some(0.1), -f64::INFINITY).is_none(), "no point is that near");
-    assert_eq!(ask(None, 0.2).expect("all are").len(), 4, "none is nearer");
-    assert_eq!(ask(None, 0.3).expect("none is").len(), 0, "all are nearer than they can be");
+    assert!(clip(Some(0.1), -f64::INFINITY).is_none(), "no point is that near");
+    assert_eq!(clip(None, 0.2).expect("all are").len(), 4, "none is nearer");
+    assert_eq!(clip(None, 0.3).expect("none is").len(), 0, "all are nearer than they can be");
 }
 
 #[test]

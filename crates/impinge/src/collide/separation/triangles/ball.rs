@@ -110,10 +110,10 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         }
     }
     for (at, own) in features.iter().enumerate() {
-        let mut asked = own.sides;
-        while asked != 0 {
-            let lane = asked.trailing_zeros() as usize;
-            asked &= asked - 1;
+        let mut sides_left = own.sides;
+        while sides_left != 0 {
+            let lane = sides_left.trailing_zeros() as usize;
+            sides_left &= sides_left - 1;
             let around =
                 &features[at.saturating_sub(MAX_APART)..features.len().min(at + 1 + MAX_APART)];
             if is_hidden::<S, N, V>(simd, question, around, own, lane) {
