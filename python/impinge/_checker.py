@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import NativeChecker
-from impinge._poses import matrices
+from impinge._poses import DTypeName, matrices
+from impinge._results import Floats, Indices
 
 if TYPE_CHECKING:
     from impinge._native import PosesLike, Progress, Shape
@@ -28,7 +29,7 @@ class Frame(NamedTuple):
     """
 
     parent: int | None = None
-    origin: Any = None
+    origin: PosesLike = None
     joint: Literal["fixed", "revolute", "prismatic"] = "fixed"
     axis: ArrayLike | None = None
     column: int = 0
@@ -39,8 +40,8 @@ class Frame(NamedTuple):
 class NearestPairs(NamedTuple):
     """For each configuration the least distance (n,) and its pair (n, 2); infinite and `NO_BODY` beyond the limit."""
 
-    distance: NDArray[Any]
-    pair: NDArray[np.uint32]
+    distance: Floats
+    pair: Indices
 
 
 class Checker:
@@ -82,7 +83,7 @@ class Checker:
     ) -> None:
         bodies = list(shapes)
         self.dim = bodies[0].dim if bodies else 3
-        self.dtype = bodies[0].dtype if bodies else "float64"
+        self.dtype: DTypeName = bodies[0].dtype if bodies else "float64"
         self.columns = columns
         frame_of = [int(frame) for frame in on]
         if len(frame_of) != len(bodies):
@@ -105,15 +106,15 @@ class Checker:
         self._native.set_obstacles(obstacles, placed, may_touch)
         self._obstacles = (obstacles, placed.copy(), may_touch.copy())
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Pickles what it was made of, and its obstacles."""
         return (_unpickled, (self._made_of, self._obstacles))
 
-    def frames(self, configurations: ArrayLike) -> NDArray[Any]:
+    def frames(self, configurations: ArrayLike) -> Floats:
         """The poses of all frames: (n, frames, D+1, D+1), or (frames, D+1, D+1)."""
         return self._placed(configurations, False)
 
-    def poses(self, configurations: ArrayLike) -> NDArray[Any]:
+    def poses(self, configurations: ArrayLike) -> Floats:
         """The poses of all bodies: (n, b, D+1, D+1), or (b, D+1, D+1)."""
         return self._placed(configurations, True)
 
@@ -136,9 +137,9 @@ class Checker:
         *,
         threads: int | None = None,
         progress: Progress | None = None,
-    ) -> NDArray[np.uint32]:
+    ) -> Indices:
         """The first pair that is not farther apart than the clearance: (n, 2), `NO_BODY` twice where it is free."""
-        pair: NDArray[np.uint32] = self._ask("pair", configurations, clearance, threads, progress)[1].reshape(-1, 2)
+        pair: Indices = self._ask("pair", configurations, clearance, threads, progress)[1].reshape(-1, 2)
         return pair
 
     def nearest(
@@ -164,7 +165,7 @@ class Checker:
         rows = np.atleast_2d(self._rows(configurations))
         return self._native.ask(question, rows.reshape(-1), limit, len(rows), threads, progress)
 
-    def _placed(self, configurations: ArrayLike, of_bodies: bool) -> NDArray[Any]:
+    def _placed(self, configurations: ArrayLike, of_bodies: bool) -> Floats:
         rows = self._rows(configurations)
         size = self.dim + 1
         count = self._counts[of_bodies]
@@ -175,14 +176,14 @@ class Checker:
             poses = np.tile(self._native.place(rows.reshape(-1), of_bodies), (math.prod(rows.shape[:-1]), 1, 1))
         return poses.reshape(*rows.shape[:-1], count, size, size)
 
-    def _rows(self, configurations: ArrayLike) -> NDArray[Any]:
+    def _rows(self, configurations: ArrayLike) -> Floats:
         rows = np.require(configurations, dtype=self.dtype, requirements=["C", "A"])
         if rows.ndim not in (1, 2) or rows.shape[-1] != self.columns:
             need = f"({self.columns},) or (n, {self.columns})"
             raise ValueError(f"configurations has the shape {rows.shape}, where {need} is needed")
         return rows
 
-    def _poses(self, poses: PosesLike, count: int, name: str) -> NDArray[Any]:
+    def _poses(self, poses: PosesLike, count: int, name: str) -> Floats:
         size = self.dim + 1
         if poses is None:
             return np.tile(np.eye(size, dtype=self.dtype), (count, 1, 1))
@@ -200,7 +201,7 @@ def _unpickled(made_of: tuple[Any, ...], obstacles: tuple[Any, ...] | None) -> C
     return checker
 
 
-def _pairs(pairs: ArrayLike, name: str) -> NDArray[np.uint32]:
+def _pairs(pairs: ArrayLike, name: str) -> Indices:
     array = np.asarray(pairs)
     if array.size == 0:
         return np.zeros((0, 2), dtype=np.uint32)

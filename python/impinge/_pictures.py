@@ -7,9 +7,15 @@ from collections.abc import Sequence
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 from impinge import _native
+
+if TYPE_CHECKING:
+    from impinge._scene import Scene
+    from impinge._world import World
+
+    Drawable: TypeAlias = _native.Shape | Scene | World
 
 # Of more objects a notebook shows no picture unless it is asked for.
 MANY = 300
@@ -53,7 +59,7 @@ class View(NamedTuple):
 
 
 def picture(
-    of: Any,
+    of: Drawable,
     *,
     size: Sequence[int] = (480, 360),
     look: Sequence[float] = (-0.7, -0.6, -1.0),
@@ -83,15 +89,15 @@ def picture(
     return Picture(format_, data, view.title)
 
 
-def html_of(of: Any) -> str:
+def html_of(of: Drawable) -> str:
     """What a notebook shows: a picture and a line."""
     caption = escape(_title(of))
-    if hasattr(of, "__len__") and len(of) > MANY:
+    if not isinstance(of, _native.Shape) and len(of) > MANY:
         return f"<p>{caption} (impinge.picture shows them)</p>"
     return f"<figure>{picture(of)._repr_html_()}<figcaption>{caption}</figcaption></figure>"
 
 
-def _title(of: Any) -> str:
+def _title(of: object) -> str:
     return repr(of).strip("<>")
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -10,13 +11,18 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation  # type: ignore[import-untyped, unused-ignore]
 
-Array = NDArray[Any]
+Array: TypeAlias = NDArray[np.float64]
 
-DType: TypeAlias = Literal["float32", "float64"] | type[np.float32] | type[np.float64] | type[float] | np.dtype[Any]
+DTypeName: TypeAlias = Literal["float32", "float64"]
+
+DType: TypeAlias = DTypeName | type[np.float32] | type[np.float64] | type[float] | np.dtype[Any]
 """The scalar of shapes and answers: its name, or the type of NumPy."""
 
 Order: TypeAlias = Literal["xyzw", "wxyz"]
 """The order of the numbers of quaternions."""
+
+Index: TypeAlias = SupportsIndex | slice | Sequence[int] | NDArray[np.integer[Any]] | NDArray[np.bool_]
+"""What chooses poses of an array, as of the rows of a NumPy array."""
 
 
 class Poses:
@@ -60,7 +66,7 @@ class Poses:
             rotations = _of_angles(_finite(_floats(angles, "angles"), "angles"))
         else:
             rotations = np.eye(places.shape[-1])
-        self.matrices = _joined(rotations, places)
+        self.matrices: Array = _joined(rotations, places)
 
     @classmethod
     def from_rotation(cls, rotation: Rotation, translations: ArrayLike) -> Poses:
@@ -122,7 +128,7 @@ class Poses:
             raise TypeError("one pose has no length")
         return len(self.matrices)
 
-    def __getitem__(self, index: Any) -> Poses:
+    def __getitem__(self, index: Index) -> Poses:
         if self.matrices.ndim == 2:
             raise TypeError("one pose has no elements")
         return Poses.from_matrices(self.matrices[index])
@@ -131,7 +137,7 @@ class Poses:
         return f"<impinge.Poses {self.matrices.shape}>"
 
 
-def dtype_name(given: Any) -> Literal["float32", "float64"]:
+def dtype_name(given: Any) -> DTypeName:
     """The name of a scalar. ValueError for what is none that the library works in."""
     try:
         name = None if given is None else np.dtype(given).name
@@ -198,7 +204,7 @@ def _joined(rotations: Array, translations: Array) -> Array:
     return matrices
 
 
-def numbers(given: Any, dtype: DTypeLike, name: str, what: str) -> Array:
+def numbers(given: object, dtype: DTypeLike, name: str, what: str) -> NDArray[Any]:
     """An argument as an array of this type, aligned and in C order. TypeError for complex numbers, texts and ragged lists."""
     try:
         array = np.asarray(given)
@@ -209,7 +215,7 @@ def numbers(given: Any, dtype: DTypeLike, name: str, what: str) -> Array:
     raise TypeError(f"{name} is no array of {what}: {array.dtype}")
 
 
-def matrices(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
+def matrices(given: object, dim: int, dtype: DTypeLike, name: str) -> NDArray[Any]:
     """An argument as an array (dim+1, dim+1) or (n, dim+1, dim+1) in C order."""
     if isinstance(given, Poses):
         given = given.matrices
@@ -220,7 +226,7 @@ def matrices(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
     return array
 
 
-def vectors(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
+def vectors(given: object, dim: int, dtype: DTypeLike, name: str) -> NDArray[Any]:
     """An argument as an array (dim,) or (n, dim) in C order."""
     array = numbers(given, dtype, name, "vectors")
     if array.ndim not in (1, 2) or array.shape[-1] != dim:
@@ -228,7 +234,7 @@ def vectors(given: Any, dim: int, dtype: DTypeLike, name: str) -> Array:
     return array
 
 
-def angular_velocities(given: Any, dim: int, dtype: DTypeLike, name: str) -> tuple[Array, bool]:
+def angular_velocities(given: object, dim: int, dtype: DTypeLike, name: str) -> tuple[NDArray[Any], bool]:
     """An argument as rows of one number in 2D, of three in 3D, and whether it was one row alone."""
     need = "a number or (n,)" if dim == 2 else "(3,) or (n, 3)"
     array = numbers(given, dtype, name, "angular velocities")

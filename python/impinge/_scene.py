@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import hashlib
-from typing import TYPE_CHECKING, Any
-
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING
 
 from impinge import _native
 from impinge._native import Shape
 from impinge._pictures import View, html_of
-from impinge._poses import DType, dtype_name
+from impinge._poses import DType, DTypeName, dtype_name
+from impinge._results import Floats
 
 if TYPE_CHECKING:
-    from impinge._native import Shapes
+    from impinge._native import PosesLike, Shapes
 
 
 class Scene:
@@ -33,11 +32,12 @@ class Scene:
     [0.5, 0.5]
     """
 
-    def __init__(self, shapes: Shapes, poses: Any) -> None:
+    def __init__(self, shapes: Shapes, poses: PosesLike) -> None:
         self._take(_native.scene_bytes(shapes, poses))
 
     def _take(self, data: bytes) -> None:
-        self._shapes, self._poses, self.dim, self.dtype = _native.scene_of_bytes(data)
+        self._shapes, self._poses, self.dim, dtype = _native.scene_of_bytes(data)
+        self.dtype: DTypeName = dtype
         self._poses.flags.writeable = False
         self._bytes = data
 
@@ -73,7 +73,7 @@ class Scene:
         return list(self._shapes)
 
     @property
-    def poses(self) -> NDArray[Any]:
+    def poses(self) -> Floats:
         """The pose of each object: (n, D+1, D+1), read-only."""
         return self._poses
 
@@ -88,7 +88,7 @@ class Scene:
     def __hash__(self) -> int:
         return hash(self._bytes)
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         return (Scene.from_bytes, (self._bytes,))
 
     def _picture(self, view: View) -> tuple[str, bytes]:

@@ -8,13 +8,16 @@ kind and made of the same numbers. `vertices` and `faces` are read back. Refused
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import Shape
 from impinge._poses import DType, dtype_name, numbers
+
+if TYPE_CHECKING:
+    from impinge._native import PosesLike
 
 
 class Picked:
@@ -47,10 +50,10 @@ def _make(
     dim: int,
     dtype: DType,
     values: ArrayLike = (),
-    points: Any = None,
-    parts: Any = None,
+    points: NDArray[np.float64] | None = None,
+    parts: NDArray[np.uint32] | None = None,
     children: Sequence[Shape] = (),
-    poses: Any = None,
+    poses: PosesLike = None,
     one_sided: bool = False,
     keep_internal_edges: bool = False,
     solid: bool = False,
@@ -422,7 +425,7 @@ def _bools(given: ArrayLike, name: str) -> NDArray[np.bool_]:
     return array
 
 
-def Compound(shapes: Sequence[Shape], poses: Any) -> Shape:
+def Compound(shapes: Sequence[Shape], poses: PosesLike) -> Shape:
     """Shapes that move as one, each at its pose in the frame of the compound: as many poses (n, D+1, D+1) as shapes.
 
     The shapes may be compounds and other composites. ValueError if there is none, or a half-space among them.

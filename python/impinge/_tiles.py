@@ -8,14 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge import _native
-from impinge._poses import DType, dtype_name
+from impinge._poses import DType, DTypeName, dtype_name
+from impinge._results import Floats, Indices
 
 
 class TileRows(NamedTuple):
     """Lists of tiles: those of object i are `starts[i]` to `starts[i + 1]`."""
 
     starts: NDArray[np.int64]
-    tile: NDArray[np.uint32]
+    tile: Indices
 
 
 class Tiles:
@@ -33,9 +34,10 @@ class Tiles:
     def __init__(
         self, axes: ArrayLike, cuts: ArrayLike, *, clearance: float = 0.0, dim: int = 3, dtype: DType = "float64"
     ) -> None:
-        self.axes: NDArray[np.uint32] = _column(axes, np.uint32, "axes")
-        self.clearance, self.dim, self.dtype = float(clearance), dim, dtype_name(dtype)
-        self.cuts: NDArray[Any] = _column(cuts, self.dtype, "cuts")
+        self.axes: Indices = _column(axes, np.uint32, "axes")
+        self.clearance, self.dim = float(clearance), dim
+        self.dtype: DTypeName = dtype_name(dtype)
+        self.cuts: Floats = _column(cuts, self.dtype, "cuts")
         # The library refuses what are no tiles.
         self._bounds = _native.tile_bounds(self)
 
@@ -43,7 +45,7 @@ class Tiles:
         return len(self._bounds)
 
     @property
-    def bounds(self) -> NDArray[Any]:
+    def bounds(self) -> Floats:
         """The lower and the upper corner of each tile, infinite outwards: (t, 2, D)."""
         return self._bounds.copy()
 
@@ -58,7 +60,7 @@ class Tiles:
         """
         return TileRows(*_native.tiles_meeting(self, _boxes(boxes, self.dim, self.dtype)))
 
-    def owner(self, points: ArrayLike) -> NDArray[np.uint32]:
+    def owner(self, points: ArrayLike) -> Indices:
         """The tile that each point (n, D) lies in; on a cut it is the one above."""
         return _native.tile_owners(self, points)
 
@@ -74,7 +76,7 @@ class Tiles:
     def __hash__(self) -> int:
         return hash((self.dim, self.dtype, self.clearance, self.cuts.tobytes()))
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         # As plain numbers: arrays that a network brings need not be aligned in memory.
         return (_read, (self.axes.tolist(), self.cuts.tolist(), self.clearance, self.dim, self.dtype))
 
@@ -107,7 +109,7 @@ def tiles(boxes: ArrayLike, number: int, *, clearance: float = 0.0) -> Tiles:
     return Tiles(axes, cuts, clearance=clearance, dim=dim, dtype=dtype)
 
 
-def _boxes(given: ArrayLike, dim: int, dtype: DType) -> NDArray[Any]:
+def _boxes(given: ArrayLike, dim: int, dtype: DType) -> Floats:
     array = np.require(given, dtype=dtype, requirements=["C", "A"])
     if array.ndim != 3 or array.shape[1:] != (2, dim):
         raise ValueError(f"boxes has the shape {array.shape}, where (n, 2, {dim}) is needed in {dim}D")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge._native import Shape, contact_manifolds, project_points, witness
-from impinge._results import Witness
+from impinge._results import Floats, Witness
 from impinge._shapes import ConvexHull, TriMesh
 
 if TYPE_CHECKING:
@@ -27,10 +26,18 @@ SOLID_KEY = "impinge_solid_geometry"
 ROUNDING = 1e-6
 
 
+class ContactRow(TypedDict):
+    """A contact point as the library finds it."""
+
+    normal: Floats
+    point: Floats
+    depth: float
+
+
 class ContactData:
     """A contact point of two meshes."""
 
-    def __init__(self, names: tuple[str, str], faces: tuple[int, int], row: Mapping[str, Any]) -> None:
+    def __init__(self, names: tuple[str, str], faces: tuple[int, int], row: ContactRow) -> None:
         self.names = set(names)
         self._faces = dict(zip(names, faces, strict=True))
         self._normal, self._point, self._depth = row["normal"], row["point"], row["depth"]
@@ -38,12 +45,12 @@ class ContactData:
     @property
     def normal(self) -> NDArray[np.float64]:
         """The unit normal, from the first mesh to the second."""
-        return np.asarray(self._normal)
+        return np.asarray(self._normal, np.float64)
 
     @property
     def point(self) -> NDArray[np.float64]:
         """The point in the world, in the middle of the two surfaces."""
-        return np.asarray(self._point)
+        return np.asarray(self._point, np.float64)
 
     @property
     def depth(self) -> float:
@@ -75,7 +82,7 @@ class DistanceData:
 
     def point(self, name: str) -> NDArray[np.float64]:
         """The point on this mesh, in the world."""
-        return np.asarray(self._points[name])
+        return np.asarray(self._points[name], np.float64)
 
 
 class Geometry:
@@ -126,7 +133,7 @@ class Placed(NamedTuple):
     geometry: Geometry
     transform: Matrix
 
-    def faces(self, parts: Any, points: Any) -> NDArray[np.int64]:
+    def faces(self, parts: ArrayLike, points: ArrayLike) -> NDArray[np.int64]:
         """The faces that hold points: parts of the surface, of a solid the triangles that are nearest."""
         if not self.geometry.is_solid:
             return np.asarray(parts, dtype=np.int64)
@@ -179,7 +186,7 @@ def contacts(pairs: list[tuple[Placed, Placed]]) -> list[ContactData]:
         faces = zip(one.faces(found.part1, found.point1), other.faces(found.part2, found.point2), strict=True)
         for index, (face1, face2) in enumerate(faces):
             middle = (found.point1[index] + found.point2[index]) / 2
-            row = {"normal": found.normal[index], "point": middle, "depth": found.depth[index]}
+            row: ContactRow = {"normal": found.normal[index], "point": middle, "depth": found.depth[index]}
             data.append(ContactData((one.name, other.name), (int(face1), int(face2)), row))
     return data
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from impinge import _native
 from impinge._native import Shape
-from impinge._poses import DType, dtype_name
+from impinge._poses import DType, DTypeName, dtype_name
 from impinge._pictures import View, html_of
 from impinge._recording import Recording
+from impinge._results import Floats
 from impinge._world_arguments import Options, Query, groups_of, handles_of, structured
 from impinge._world_queries import WorldQueries
 from impinge._world_results import Handles
@@ -55,7 +56,7 @@ class World(WorldQueries):
         self._world = _native.World(self._margin, dim, dtype_name(dtype))
         self._recording: Recording | None = None
 
-    def __reduce__(self) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[object, ...]:
         """Pickles objects, handles, groups and query types; pairs, contacts and events begin anew at the next `update`."""
         if self._recording is not None:
             raise TypeError(f"the world is recorded: the recording {self._recording.title!r} has not stopped")
@@ -67,7 +68,7 @@ class World(WorldQueries):
         return self._world.dim
 
     @property
-    def dtype(self) -> Literal["float32", "float64"]:
+    def dtype(self) -> DTypeName:
         """ "float32" or "float64"."""
         return self._world.dtype
 
@@ -214,7 +215,7 @@ class World(WorldQueries):
         """The shapes of objects, without handles of all."""
         return self._world.shapes(self.handles() if handles is None else handles_of(handles))
 
-    def poses(self, handles: ArrayLike | None = None) -> NDArray[np.floating[Any]]:
+    def poses(self, handles: ArrayLike | None = None) -> Floats:
         """The poses of objects, without handles of all: (n, D+1, D+1)."""
         return self._world.poses(self.handles() if handles is None else handles_of(handles))
 

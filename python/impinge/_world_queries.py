@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -265,11 +266,11 @@ class WorldQueries:
     def _ask(
         self,
         question: Question,
-        given: list[Any],
+        given: Sequence[object],
         filter: Filter | None,
         threads: int | None,
         progress: Progress | None,
-    ) -> Any:
+    ) -> list[NDArray[Any]]:
         if filter is not None and not isinstance(filter, Filter):
             raise TypeError(f"filter is {type(filter).__name__}, where an impinge.Filter is needed")
         return self._world.ask(question, given, filter, threads, progress)

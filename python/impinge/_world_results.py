@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from impinge._results import Flags, Floats
+
 Handles: TypeAlias = NDArray[np.uint64]
-Floats: TypeAlias = NDArray[np.floating[Any]]
 
 NO_OBJECT = int(np.iinfo(np.uint64).max)
 """The handle of no object, where a query has no answer."""
@@ -36,7 +37,7 @@ class WorldProjection(NamedTuple):
     """The nearest points on objects: point (n, D), is_inside (n,), handle (n,); NaN and `NO_OBJECT` without one."""
 
     point: Floats
-    is_inside: NDArray[np.bool_]
+    is_inside: Flags
     handle: Handles
 
 

@@ -15,7 +15,7 @@ import uuid
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias, overload
 
 import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped, unused-ignore]
@@ -24,7 +24,7 @@ import pyarrow.dataset as ds  # type: ignore[import-untyped, unused-ignore]
 import pyarrow.parquet as pq  # type: ignore[import-untyped, unused-ignore]
 from dask.base import compute
 from dask.delayed import delayed
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from impinge._native import boxes, pairs_in_tile
 from impinge._poses import Poses
@@ -33,10 +33,23 @@ from impinge._shapes import Picked
 from impinge._tiles import Tiles, tiles as cut_tiles
 from impinge._world import World
 
-Question = Callable[[World, Any], NDArray[Any]]
+if TYPE_CHECKING:
+    from dask.array import Array
+    from dask.dataframe import DataFrame, Series
+
+    Source: TypeAlias = str | os.PathLike[str] | list[str]
+
+# The block is `Any`: rows of Dask do not say whether it is an array of which dtype or a DataFrame, but a question does.
+Question: TypeAlias = Callable[[World, Any], ArrayLike]
 
 
-def ask_scene(question: Question, scene: Scene, rows: Any, *, dtype: Any = "float64") -> Any:
+@overload
+def ask_scene(question: Question, scene: Scene, rows: Array, *, dtype: DTypeLike = "float64") -> Array: ...
+@overload
+def ask_scene(question: Question, scene: Scene, rows: DataFrame | Source, *, dtype: DTypeLike = "float64") -> Series: ...
+def ask_scene(
+    question: Question, scene: Scene, rows: Array | DataFrame | Source, *, dtype: DTypeLike = "float64"
+) -> Array | Series:
     """Asks a scene about many rows, such as poses or configurations of a robot, in blocks.
 
     rows: a Dask Array (n, ...), a Dask DataFrame, or a path or paths of Parquet. question(world, block): gets the scene as a
@@ -54,17 +67,23 @@ def ask_scene(question: Question, scene: Scene, rows: Any, *, dtype: Any = "floa
     [1.5, 1.0, 2.5]
     """
     shared = delayed(scene)
-    if isinstance(rows, (str, os.PathLike, list)):
+    # The methods of Dask are not typed.
+    given: Any = rows
+    if isinstance(given, (str, os.PathLike, list)):
         import dask.dataframe
 
-        rows = dask.dataframe.read_parquet(rows)
-    if hasattr(rows, "map_partitions"):
-        return rows.map_partitions(_ask_frame, question, shared, meta=(None, dtype))
-    if not hasattr(rows, "map_blocks"):
-        raise TypeError(f"rows is no Dask Array, Dask DataFrame or path: {type(rows).__name__}")
-    whole = rows.rechunk({axis: -1 for axis in range(1, rows.ndim)})
-    inner = list(range(1, rows.ndim))
-    return whole.map_blocks(_ask, question=question, scene=shared, dtype=dtype, drop_axis=inner, meta=np.empty(0, dtype))
+        given = dask.dataframe.read_parquet(given)
+    if hasattr(given, "map_partitions"):
+        series: Series = given.map_partitions(_ask_frame, question, shared, meta=(None, dtype))
+        return series
+    if not hasattr(given, "map_blocks"):
+        raise TypeError(f"rows is no Dask Array, Dask DataFrame or path: {type(given).__name__}")
+    whole = given.rechunk({axis: -1 for axis in range(1, given.ndim)})
+    inner = list(range(1, given.ndim))
+    array: Array = whole.map_blocks(
+        _ask, question=question, scene=shared, dtype=dtype, drop_axis=inner, meta=np.empty(0, dtype)
+    )
+    return array
 
 
 def self_join(
@@ -127,7 +146,7 @@ def _join(units: list[Any], shapes: Scene, scratch: Path, output: Path, options:
     return int(sum(found))
 
 
-def objects_table(ids: ArrayLike, picks: ArrayLike, poses: Any) -> Any:
+def objects_table(ids: ArrayLike, picks: ArrayLike, poses: ArrayLike | Poses) -> pa.Table:
     """Objects as a table of pyarrow, to be written as Parquet for `self_join`.
 
     ids: (n,) integers. picks: (n,) integers, the shape of each. poses: (n, D+1, D+1), or `Poses`.
@@ -145,7 +164,7 @@ def objects_table(ids: ArrayLike, picks: ArrayLike, poses: Any) -> Any:
 
 @lru_cache(maxsize=4)
 def _world(scene: Scene) -> World:
-    world = World(dim=scene.dim, dtype=scene.dtype)  # type: ignore[arg-type, unused-ignore]
+    world = World(dim=scene.dim, dtype=scene.dtype)
     world.add(scene.shapes, scene.poses)
     world.update()
     return world
@@ -191,7 +210,7 @@ def _row_groups(source: Any, dim: int) -> list[Any]:
     return [group for fragment in dataset.get_fragments() for group in fragment.split_by_row_group()]
 
 
-def _read(table: Any, shapes: Scene) -> tuple[NDArray[np.uint64], Picked, NDArray[Any]]:
+def _read(table: pa.Table, shapes: Scene) -> tuple[NDArray[np.uint64], Picked, NDArray[Any]]:
     """The ids, shapes and poses of a table."""
     for name in ("id", "shape", "pose"):
         if table[name].null_count:
@@ -276,12 +295,12 @@ def _merge(number: int, scratch: Path, output: Path) -> None:
     _write(_pairs_table(pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]), output / f"part-{number:05}.parquet")
 
 
-def _pairs_table(pairs: NDArray[np.uint64]) -> Any:
+def _pairs_table(pairs: NDArray[np.uint64]) -> pa.Table:
     return pa.table([pa.array(pairs[:, 0]), pa.array(pairs[:, 1])], ["id1", "id2"])
 
 
 def _write_parts(
-    take: Callable[[Any], Any], rows: NDArray[Any], counts: NDArray[Any], folder: Path, number: int
+    take: Callable[[NDArray[Any]], pa.Table], rows: NDArray[Any], counts: NDArray[Any], folder: Path, number: int
 ) -> None:
     """Writes `counts[k]` of the rows, one after the other, to the folder of each key k."""
     ends = np.cumsum(counts)
@@ -289,13 +308,13 @@ def _write_parts(
         _write(take(rows[ends[key] - counts[key] : ends[key]]), folder / f"key={key}" / f"part-{number:05}.parquet")
 
 
-def _read_parts(folder: Path, key: int) -> Any:
+def _read_parts(folder: Path, key: int) -> pa.Table | None:
     """What was written for a key, in the order of the parts; None for nothing."""
     paths = sorted((folder / f"key={key}").glob("part-*.parquet"))
     return pa.concat_tables([pq.read_table(path, partitioning=None) for path in paths]) if paths else None
 
 
-def _write(table: Any, path: Path) -> None:
+def _write(table: pa.Table, path: Path) -> None:
     """The file is there whole or not at all, also if the process dies or does it twice."""
     path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_name(f".{path.name}.{uuid.uuid4().hex}")

@@ -12,7 +12,7 @@ A manager keeps what it found: a question costs what changed since the last one,
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, overload
+from typing import TYPE_CHECKING, Literal, TypeAlias, TypeVar, overload
 
 from numpy.typing import ArrayLike
 
@@ -38,8 +38,15 @@ EXTERNAL = "__external"
 
 Contacts: TypeAlias = list[ContactData]
 Pairs: TypeAlias = set[tuple[str, str]]
+Nearest: TypeAlias = tuple[str, str]
 No: TypeAlias = Literal[False]
 Yes: TypeAlias = Literal[True]
+
+Found = TypeVar("Found")
+Names = TypeVar("Names")
+Data = TypeVar("Data")
+# An answer alone, or with what else was wanted: all forms, of which flags that are no literals choose one.
+Answer: TypeAlias = Found | tuple[Found, Names] | tuple[Found, Data] | tuple[Found, Names, Data]
 
 
 class CollisionManager:
@@ -87,7 +94,7 @@ class CollisionManager:
 
     @overload
     def in_collision_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: No = ..., return_data: No = ...
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_names: No = ..., return_data: No = ...
     ) -> bool: ...
     @overload
     def in_collision_single(
@@ -95,7 +102,7 @@ class CollisionManager:
     ) -> tuple[bool, set[str]]: ...
     @overload
     def in_collision_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_names: No = ..., return_data: Yes
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_names: No = ..., *, return_data: Yes
     ) -> tuple[bool, Contacts]: ...
     @overload
     def in_collision_single(
@@ -104,14 +111,14 @@ class CollisionManager:
     @overload
     def in_collision_single(
         self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[bool, set[str], Contacts]: ...
     def in_collision_single(
         self,
         mesh: trimesh.Trimesh,
         transform: ArrayLike | None = None,
         return_names: bool = False,
         return_data: bool = False,
-    ) -> Any:
+    ) -> Answer[bool, set[str], Contacts]:
         """Whether a mesh touches one of the manager: `bool`, and if wanted the names and the contacts."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         shape = external.geometry.shape
@@ -122,16 +129,20 @@ class CollisionManager:
         return _answer(bool(met), {self._meshes[index][0] for index in met}, data, return_names, return_data)
 
     @overload
-    def in_collision_internal(self, *, return_names: No = ..., return_data: No = ...) -> bool: ...
+    def in_collision_internal(self, return_names: No = ..., return_data: No = ...) -> bool: ...
     @overload
-    def in_collision_internal(self, *, return_names: Yes, return_data: No = ...) -> tuple[bool, Pairs]: ...
+    def in_collision_internal(self, return_names: Yes, return_data: No = ...) -> tuple[bool, Pairs]: ...
     @overload
-    def in_collision_internal(self, *, return_names: No = ..., return_data: Yes) -> tuple[bool, Contacts]: ...
+    def in_collision_internal(self, return_names: No = ..., *, return_data: Yes) -> tuple[bool, Contacts]: ...
     @overload
-    def in_collision_internal(self, *, return_names: Yes, return_data: Yes) -> tuple[bool, Pairs, Contacts]: ...
+    def in_collision_internal(self, return_names: Yes, return_data: Yes) -> tuple[bool, Pairs, Contacts]: ...
     @overload
-    def in_collision_internal(self, return_names: bool = ..., return_data: bool = ...) -> Any: ...
-    def in_collision_internal(self, return_names: bool = False, return_data: bool = False) -> Any:
+    def in_collision_internal(
+        self, return_names: bool = ..., return_data: bool = ...
+    ) -> Answer[bool, Pairs, Contacts]: ...
+    def in_collision_internal(
+        self, return_names: bool = False, return_data: bool = False
+    ) -> Answer[bool, Pairs, Contacts]:
         """Whether any two meshes touch; the names are pairs in ascending order."""
         if not (return_names or return_data):
             return self._engine.is_touching()
@@ -142,27 +153,27 @@ class CollisionManager:
 
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: No = ...
+        self, other_manager: CollisionManager, return_names: No = ..., return_data: No = ...
     ) -> bool: ...
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: No = ...
+        self, other_manager: CollisionManager, return_names: Yes, return_data: No = ...
     ) -> tuple[bool, Pairs]: ...
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: Yes
+        self, other_manager: CollisionManager, return_names: No = ..., *, return_data: Yes
     ) -> tuple[bool, Contacts]: ...
     @overload
     def in_collision_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: Yes
+        self, other_manager: CollisionManager, return_names: Yes, return_data: Yes
     ) -> tuple[bool, Pairs, Contacts]: ...
     @overload
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[bool, Pairs, Contacts]: ...
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
-    ) -> Any:
+    ) -> Answer[bool, Pairs, Contacts]:
         """Whether a mesh touches one of another manager; the names are pairs, the own first."""
         other = self._beside(other_manager)
         if not (return_names or return_data):
@@ -174,7 +185,7 @@ class CollisionManager:
 
     @overload
     def min_distance_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: No = ..., return_data: No = ...
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_name: No = ..., return_data: No = ...
     ) -> float: ...
     @overload
     def min_distance_single(
@@ -182,7 +193,7 @@ class CollisionManager:
     ) -> tuple[float, str]: ...
     @overload
     def min_distance_single(
-        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., *, return_name: No = ..., return_data: Yes
+        self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_name: No = ..., *, return_data: Yes
     ) -> tuple[float, DistanceData | None]: ...
     @overload
     def min_distance_single(
@@ -191,14 +202,14 @@ class CollisionManager:
     @overload
     def min_distance_single(
         self, mesh: trimesh.Trimesh, transform: ArrayLike | None = ..., return_name: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[float, str, DistanceData | None]: ...
     def min_distance_single(
         self,
         mesh: trimesh.Trimesh,
         transform: ArrayLike | None = None,
         return_name: bool = False,
         return_data: bool = False,
-    ) -> Any:
+    ) -> Answer[float, str, DistanceData | None]:
         """How far a mesh is from the nearest one of the manager."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         found = self._engine.nearest_to(external.geometry.shape, external.transform)
@@ -211,27 +222,27 @@ class CollisionManager:
 
     @overload
     def min_distance_internal(
-        self, name: str | None = ..., *, return_names: No = ..., return_data: No = ...
+        self, name: str | None = ..., return_names: No = ..., return_data: No = ...
     ) -> float: ...
     @overload
     def min_distance_internal(
         self, name: str | None = ..., *, return_names: Yes, return_data: No = ...
-    ) -> tuple[float, tuple[str, str]]: ...
+    ) -> tuple[float, Nearest]: ...
     @overload
     def min_distance_internal(
-        self, name: str | None = ..., *, return_names: No = ..., return_data: Yes
+        self, name: str | None = ..., return_names: No = ..., *, return_data: Yes
     ) -> tuple[float, DistanceData | None]: ...
     @overload
     def min_distance_internal(
         self, name: str | None = ..., *, return_names: Yes, return_data: Yes
-    ) -> tuple[float, tuple[str, str], DistanceData | None]: ...
+    ) -> tuple[float, Nearest, DistanceData | None]: ...
     @overload
     def min_distance_internal(
         self, name: str | None = ..., return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[float, Nearest, DistanceData | None]: ...
     def min_distance_internal(
         self, name: str | None = None, return_names: bool = False, return_data: bool = False
-    ) -> Any:
+    ) -> Answer[float, Nearest, DistanceData | None]:
         """How far the nearest two meshes are apart; with a name, those of which one is this mesh."""
         engine = self._engine
         found = engine.nearest() if name is None else engine.nearest_beside(self._known(name))
@@ -244,27 +255,27 @@ class CollisionManager:
 
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: No = ...
+        self, other_manager: CollisionManager, return_names: No = ..., return_data: No = ...
     ) -> float: ...
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: No = ...
-    ) -> tuple[float, tuple[str, str]]: ...
+        self, other_manager: CollisionManager, return_names: Yes, return_data: No = ...
+    ) -> tuple[float, Nearest]: ...
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: No = ..., return_data: Yes
+        self, other_manager: CollisionManager, return_names: No = ..., *, return_data: Yes
     ) -> tuple[float, DistanceData | None]: ...
     @overload
     def min_distance_other(
-        self, other_manager: CollisionManager, *, return_names: Yes, return_data: Yes
-    ) -> tuple[float, tuple[str, str], DistanceData | None]: ...
+        self, other_manager: CollisionManager, return_names: Yes, return_data: Yes
+    ) -> tuple[float, Nearest, DistanceData | None]: ...
     @overload
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = ..., return_data: bool = ...
-    ) -> Any: ...
+    ) -> Answer[float, Nearest, DistanceData | None]: ...
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
-    ) -> Any:
+    ) -> Answer[float, Nearest, DistanceData | None]:
         """How far the nearest meshes of two managers are apart; the own name is the first."""
         manager = self._beside(other_manager)
         found = self._engine.nearest_other(manager._engine)
@@ -351,7 +362,9 @@ def _by_name(pair: tuple[Placed, Placed]) -> tuple[Placed, Placed]:
     return pair if one.name <= other.name else (other, one)
 
 
-def _answer(found: Any, names: Any, data: Any, with_names: bool, with_data: bool) -> Any:
+def _answer(
+    found: Found, names: Names, data: Data, with_names: bool, with_data: bool
+) -> Answer[Found, Names, Data]:
     """The forms of trimesh's answers: alone, or a tuple with what else was wanted."""
     if with_names and with_data:
         return found, names, data

@@ -21,6 +21,8 @@ from impinge._shapes import Ball, ConvexHull, Cuboid, Cylinder, TriMesh
 if TYPE_CHECKING:
     import yourdfpy  # type: ignore[import-untyped, unused-ignore]
 
+    from impinge._native import PosesLike
+
 # Turns z into y: URDF lays cylinders along z, impinge along y.
 Z_TO_Y = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])
 
@@ -55,10 +57,10 @@ class Robot:
 
     def __init__(self, model: yourdfpy.URDF, meshes: Literal["hull", "surface"] = "hull") -> None:
         robot = model.robot
-        self.links = [link.name for link in robot.links]
+        self.links: list[str] = [link.name for link in robot.links]
         moving = [joint for joint in robot.joints if joint.type != "fixed" and joint.mimic is None]
-        self.joints = [joint.name for joint in moving]
-        self.limits = np.array([_limits(joint) for joint in moving]).reshape(-1, 2)
+        self.joints: list[str] = [joint.name for joint in moving]
+        self.limits: NDArray[np.float64] = np.array([_limits(joint) for joint in moving]).reshape(-1, 2)
         numbers = {name: number for number, name in enumerate(self.links)}
         self._frames = [Frame()] * len(self.links)
         for joint in robot.joints:
@@ -82,11 +84,11 @@ class Robot:
 
     def frames(self, configurations: ArrayLike) -> Frames:
         """The poses of all links: (n, links, 4, 4) of configurations (n, joints), (links, 4, 4) of one."""
-        return self._own().frames(self._checked(configurations))
+        return np.asarray(self._own().frames(self._checked(configurations)), np.float64)
 
     def poses(self, configurations: ArrayLike) -> Frames:
         """The poses of all bodies: (n, bodies, 4, 4), or (bodies, 4, 4)."""
-        return self._own().poses(self._checked(configurations))
+        return np.asarray(self._own().poses(self._checked(configurations)), np.float64)
 
     def checker(self, pairs: ArrayLike | None = None) -> Checker:
         """A checker of the robot with these pairs of bodies that must not touch, or with `pairs`; without obstacles."""
@@ -117,11 +119,11 @@ class Robot:
         """The nearest two bodies for each configuration (n, joints): zero if they touch; infinite and -1 without pairs."""
         return self._nearest(self._own(), configurations, 0)
 
-    def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NDArray[np.bool_]:
+    def collides(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: PosesLike) -> NDArray[np.bool_]:
         """Whether a body touches one of the shapes that stand at these poses (m, 4, 4)."""
         return ~self._among(shapes, obstacles).is_free(np.atleast_2d(self._checked(configurations)))
 
-    def distance(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: Any) -> NearestBodies:
+    def distance(self, configurations: ArrayLike, shapes: Sequence[Shape], obstacles: PosesLike) -> NearestBodies:
         """The body and the shape that are nearest for each configuration: zero if they touch."""
         return self._nearest(self._among(shapes, obstacles), configurations, len(self.bodies))
 
@@ -132,7 +134,7 @@ class Robot:
             kept = self._kept = np.array(self.pairs), self.checker()
         return kept[1]
 
-    def _among(self, shapes: Sequence[Shape], obstacles: Any) -> Checker:
+    def _among(self, shapes: Sequence[Shape], obstacles: PosesLike) -> Checker:
         """A checker with obstacles, and without pairs of bodies."""
         checker = self.checker([])
         checker.set_obstacles(shapes, obstacles)
@@ -143,7 +145,8 @@ class Robot:
         distance, pair = checker.nearest(np.atleast_2d(self._checked(configurations)))
         body1, body2 = pair.astype(np.int64).T
         is_none = np.isinf(distance)
-        return NearestBodies(distance, np.where(is_none, -1, body1), np.where(is_none, -1, body2 - first))
+        numbers = np.where(is_none, -1, body1), np.where(is_none, -1, body2 - first)
+        return NearestBodies(np.asarray(distance, np.float64), *numbers)
 
     def _checked(self, configurations: ArrayLike) -> NDArray[np.float64]:
         array = np.asarray(configurations, dtype=np.float64)
