@@ -102,7 +102,7 @@ fn each<'p, 'a: 'p, N: Real, T: Copy>(
     settle: impl Fn(&GapResult<N>, &Pair<'a, N, 3>) -> Option<T>,
 ) -> [Option<Option<T>>; LANES] {
     let mut settled = [None; LANES];
-    let Level::Wide(vectors) = Level::new() else { return settled };
+    let Some(vectors) = Level::new().vectors() else { return settled };
     if let Some(results) = packet::results(vectors, pairs.clone(), limit, with_overlap) {
         for ((settled, result), pair) in settled.iter_mut().zip(&results).zip(pairs) {
             *settled = Some(settle(result, pair));
