@@ -1,6 +1,5 @@
 //! Tells the library whether it is compiled without optimization: then a vector operation is a
 //! chain of calls, and kernels compute one lane (`Level::vectors`).
-#![expect(clippy::print_stdout, reason = "a build script speaks to Cargo by its output")]
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
