@@ -32,7 +32,6 @@
 //! updates that the narrow phase takes. "impinge reusing" is a world in which pairs keep their contacts while they have
 //! moved by less than a twentieth of the prediction (warm solids only), as those of parry do within a degree and a
 //! thousandth; "impinge alone reusing" is a `PairManifoldGenerator` that does so. All others recompute everything.
-//! everything anew.
 //!
 //! Manifolds are *cold* if no stored state is useful: alone, each call begins with a new generator (or an empty list of
 //! manifolds); in a world, all second solids jump between two unrelated sets of placements. *Warm* solids move by at
