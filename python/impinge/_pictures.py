@@ -1,4 +1,4 @@
-"""Small pictures of shapes, scenes and worlds: files, and what notebooks show."""
+"""Small pictures of shapes, scenes and worlds, for files and notebooks."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     Drawable: TypeAlias = _native.Shape | Scene | World
 
-# Of more objects a notebook shows no picture unless it is asked for.
+# For more objects than this a notebook shows no picture unless `picture` is called.
 MANY = 300
 
 
@@ -35,7 +35,7 @@ class Picture(NamedTuple):
     title: str
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes a file. ValueError if its name does not end in the format."""
+        """Writes a file. ValueError if its extension is not the format."""
         if Path(path).suffix != f".{self.format}":
             raise ValueError(f"path is {path}: the picture is {self.format}, in which the name of the file ends")
         Path(path).write_bytes(self.data)
@@ -50,7 +50,7 @@ class Picture(NamedTuple):
 
 
 class View(NamedTuple):
-    """How a picture is seen; the fields are those of `PictureView` in Rust."""
+    """The view of a picture; the fields are those of `PictureView` in Rust."""
 
     size: tuple[int, int]
     look: tuple[float, float, float]
@@ -67,11 +67,11 @@ def picture(
 ) -> Picture:
     """A picture of a `Shape`, a `Scene` or a `World`, made without a display or a GPU.
 
-    In 2D it is SVG of the width `size[0]`, x to the right and y upwards; in 3D PNG of the size (width, height) in pixels,
-    seen along the direction `look` with `up` above, so that everything fits. A world is drawn with the contacts and
-    proximities of its last update. The same things give the same bytes.
+    In 2D it is SVG of the width `size[0]`, x to the right and y upwards. In 3D it is PNG of the size (width, height) in pixels;
+    the view is along the direction `look` with `up` upwards, and frames all objects. A world is drawn with the contacts and
+    proximities of its last update. Equal input gives equal bytes.
 
-    Errors: TypeError if `of` is something else, ValueError if `size` has other than two numbers from 1 to 8192 or `look` or
+    Errors: TypeError if `of` has another type, ValueError if `size` is not two numbers from 1 to 8192 or `look` or
     `up` are not three finite numbers.
 
     >>> import impinge
@@ -90,7 +90,7 @@ def picture(
 
 
 def html_of(of: Drawable) -> str:
-    """What a notebook shows: a picture and a line."""
+    """Returns the HTML of a notebook: a picture and a line of text."""
     caption = escape(_title(of))
     if not isinstance(of, _native.Shape) and len(of) > MANY:
         return f"<p>{caption} (impinge.picture shows them)</p>"

@@ -1,6 +1,6 @@
-"""What the functions return: columns of arrays, or scalars where the question was about one pair.
+"""Results of the functions: columns of arrays, or scalars for a single pair.
 
-`_results.pyi` has the types for type checkers, with parameters that say which of both.
+`_results.pyi` has the types for type checkers, with parameters that tell arrays from scalars.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Indices: TypeAlias = NDArray[np.uint32]
 
 
 class Proximity(IntEnum):
-    """How two shapes lie to each other: the numbers that `proximity` returns."""
+    """The proximity of two shapes: the numbers that `proximity` returns."""
 
     INTERSECTING = 0
     WITHIN_MARGIN = 1
@@ -25,7 +25,7 @@ class Proximity(IntEnum):
 
 
 class ClosestPoints(NamedTuple):
-    """The nearest points of two shapes, in the world frame; (n,) and (n, D), or a float and (D,)."""
+    """The closest points of two shapes, in the world frame; (n,) and (n, D), or a float and (D,)."""
 
     distance: float | Floats
     point1: Floats
@@ -44,7 +44,7 @@ class Witness(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Where two shapes touch: depth (n,), positive where they overlap, normal and points (n, D), or scalars."""
+    """The contact of two shapes: depth (n,), positive where they overlap, normal and points (n, D), or scalars."""
 
     depth: float | Floats
     normal: Floats
@@ -53,7 +53,7 @@ class Contact(NamedTuple):
 
 
 class Impact(NamedTuple):
-    """When two moving shapes meet, and where: (n,) and (n, D), or scalars."""
+    """The impact of two moving shapes: time (n,), normal and points (n, D), or scalars."""
 
     time: float | Floats
     normal: Floats
@@ -63,7 +63,7 @@ class Impact(NamedTuple):
 
 
 class Nearest(NamedTuple):
-    """The nearest pair of a batch; -1 if none is near enough."""
+    """The nearest pair of a batch; -1 if none is within the limit."""
 
     pair: int
     distance: float
@@ -107,7 +107,7 @@ class Manifolds(NamedTuple):
 
 
 class Projection(NamedTuple):
-    """The points of shapes that are nearest to given ones: (n, D), (n,) and (n,), or scalars."""
+    """The points of shapes nearest to given points: (n, D), (n,) and (n,), or scalars."""
 
     point: Floats
     is_inside: bool | Flags
@@ -115,7 +115,7 @@ class Projection(NamedTuple):
 
 
 class RayHit(NamedTuple):
-    """Where rays meet shapes, (n,), (n, D) and (n,); the time is infinite without a hit."""
+    """The first hits of rays: (n,), (n, D) and (n,); the time is infinite without a hit."""
 
     time: float | Floats
     normal: Floats

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 class Scene:
-    """Shapes at poses that do not change: it compares, hashes and pickles by its bytes.
+    """Immutable shapes at poses, which compare, hash and pickle by their bytes.
 
-    shapes, poses: as of `impinge.distance`; at least one object. ValueError names the row of a pose that is none.
+    shapes, poses: as of `impinge.distance`; at least one object. ValueError names the row of an invalid pose.
 
-    The bytes are a recording of the calls that add the objects (the format of `impinge-record`): versioned, checksummed, the
-    same on every machine. Poses are kept as unit quaternions: `poses` has their matrices, which may differ in the last digits
-    from those given.
+    The bytes are a recording of the calls that add the objects (the format of `impinge-record`): versioned, with a checksum,
+    equal on every machine. Poses are stored as unit quaternions: `poses` has their matrices, which may differ in the last
+    digits from those given.
 
     >>> import impinge, pickle
     >>> scene = impinge.Scene([impinge.Ball(1), impinge.Cuboid([1, 2, 3])], impinge.Poses([[0, 0, 0], [5, 0, 0]]))
@@ -43,7 +43,7 @@ class Scene:
 
     @classmethod
     def from_bytes(cls, data: bytes, *, dim: int | None = None, dtype: DType | None = None) -> Scene:
-        """The scene of `to_bytes`. ValueError names the offset of what is damaged, or another dim or dtype than is asked for.
+        """Restores the scene of `to_bytes`. ValueError names the offset of damage, or a dim or dtype other than the requested one.
 
         >>> import impinge
         >>> data = impinge.Scene(impinge.Ball(1, dim=2), None).to_bytes()
@@ -64,7 +64,7 @@ class Scene:
 
     @property
     def checksum(self) -> str:
-        """SHA-256 of the bytes, in hexadecimal digits: a name for caches."""
+        """SHA-256 of the bytes, in hexadecimal digits, for instance as a cache key."""
         return hashlib.sha256(self._bytes).hexdigest()
 
     @property

@@ -1,4 +1,4 @@
-"""What queries of worlds return: columns of arrays, or rows of lists."""
+"""Results of queries of worlds: columns of arrays, or rows of lists."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NO_OBJECT = int(np.iinfo(np.uint64).max)
 
 
 class WorldHit(NamedTuple):
-    """What rays hit first: time (n,), normal (n, D) and handle (n,); infinite, NaN and `NO_OBJECT` without a hit."""
+    """The first hits of rays: time (n,), normal (n, D) and handle (n,); infinite, NaN and `NO_OBJECT` without a hit."""
 
     time: Floats
     normal: Floats
@@ -24,7 +24,7 @@ class WorldHit(NamedTuple):
 
 
 class WorldImpact(NamedTuple):
-    """What moving shapes meet first: time (n,), normal (n, D) from the shape to the object, handle (n,), points (n, D)."""
+    """The first hits of moving shapes: time (n,), normal (n, D) from the shape to the object, handle (n,), points (n, D)."""
 
     time: Floats
     normal: Floats
@@ -42,14 +42,14 @@ class WorldProjection(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Lists of objects: those of element i are `starts[i]` to `starts[i + 1]` of `handle`."""
+    """Lists of objects: the objects of element i are `starts[i]` to `starts[i + 1]` of `handle`."""
 
     starts: NDArray[np.int64]
     handle: Handles
 
 
 class HitRows(NamedTuple):
-    """Lists of objects that rays hit, in order of time."""
+    """Lists of objects that rays hit, sorted by time."""
 
     starts: NDArray[np.int64]
     handle: Handles
@@ -58,7 +58,7 @@ class HitRows(NamedTuple):
 
 
 class ImpactRows(NamedTuple):
-    """Lists of objects that moving shapes meet, in order of time."""
+    """Lists of objects that moving shapes hit, sorted by time."""
 
     starts: NDArray[np.int64]
     handle: Handles
@@ -69,7 +69,7 @@ class ImpactRows(NamedTuple):
 
 
 class NearRows(NamedTuple):
-    """Lists of objects with their distances, the nearest first, and the nearest points: NaN where they overlap."""
+    """Lists of objects with their distances, the nearest first, and the closest points: NaN where they overlap."""
 
     starts: NDArray[np.int64]
     handle: Handles

@@ -1,12 +1,13 @@
-"""The collision manager of trimesh, answered by impinge: the same interface, without FCL.
+"""The collision manager of trimesh on impinge: the same interface, without FCL.
 
     from impinge.trimesh import CollisionManager, scene_to_collision
 
-Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as they are in trimesh: what is inside a surface without
-touching it does not collide. With `solid=True` all meshes are solids, and have to be closed. Where meshes overlap, distances are negative: minus the depth, of surfaces that of the triangles
-that are deepest in each other. Of several pairs that overlap one is given.
+Convex meshes (`mesh.is_convex`) are solids and others are surfaces, as in trimesh: a mesh inside a surface that does not
+touch it does not collide. With `solid=True` all meshes are solids, and must be closed. Where meshes overlap, distances are
+negative: minus the depth; for surfaces that of the two triangles with the deepest overlap. Among several overlapping pairs one
+is returned.
 
-A manager keeps what it found: a question costs what changed since the last one, not what there is.
+A manager caches its results: the cost of a query depends on the changes since the last one, not on the number of meshes.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
 __all__ = ["CollisionManager", "ContactData", "DistanceData", "scene_to_collision"]
 
-# What trimesh calls a mesh that was given with a query.
+# The name that trimesh uses for the mesh of a query.
 EXTERNAL = "__external"
 
 Contacts: TypeAlias = list[ContactData]
@@ -50,9 +51,9 @@ Answer: TypeAlias = Found | tuple[Found, Names] | tuple[Found, Data] | tuple[Fou
 
 
 class CollisionManager:
-    """Meshes by name, each with a transform: who touches whom, and how far apart they are.
+    """Meshes by name, each with a transform, and queries of their contacts and distances.
 
-    solid: a mesh collides with what lies in it, though no faces touch. ValueError for a mesh that is not closed.
+    solid: a mesh collides with meshes inside it, even if no faces touch. ValueError for a mesh that is not closed.
 
     >>> import trimesh
     >>> manager = CollisionManager()
@@ -67,13 +68,13 @@ class CollisionManager:
     def __init__(self, solid: bool = False) -> None:
         self._engine = Manager()
         self._solid = solid
-        # The index of each name in the engine, which knows where they are; name and mesh of each index.
+        # The index of each name in the engine, which has the transforms; name and mesh of each index.
         self._indices: dict[str, int] = {}
         self._meshes: dict[int, tuple[str, Geometry]] = {}
 
     def add_object(self, name: str, mesh: trimesh.Trimesh, transform: ArrayLike | None = None) -> Shape:
         """Adds a mesh, or replaces the one of this name. ValueError for a transform that is no rotation and translation, and,
-        if meshes are to be solid, for one that is not closed or has its faces inside out."""
+        if meshes are solid, for a mesh that is not closed or is inside out."""
         return self._add(Placed(name, self._geometry(mesh, name), matrix_of(transform)))
 
     def remove_object(self, name: str) -> None:
@@ -119,7 +120,7 @@ class CollisionManager:
         return_names: bool = False,
         return_data: bool = False,
     ) -> Answer[bool, set[str], Contacts]:
-        """Whether a mesh touches one of the manager: `bool`, and if wanted the names and the contacts."""
+        """Whether a mesh touches one of the manager: `bool`, and optionally the names and the contacts."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         shape = external.geometry.shape
         if not (return_names or return_data):
@@ -174,7 +175,7 @@ class CollisionManager:
     def in_collision_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Answer[bool, Pairs, Contacts]:
-        """Whether a mesh touches one of another manager; the names are pairs, the own first."""
+        """Whether a mesh touches one of another manager; the names are pairs, the name of this manager first."""
         other = self._beside(other_manager)
         if not (return_names or return_data):
             return self._engine.is_touching_other(other._engine)
@@ -210,7 +211,7 @@ class CollisionManager:
         return_name: bool = False,
         return_data: bool = False,
     ) -> Answer[float, str, DistanceData | None]:
-        """How far a mesh is from the nearest one of the manager."""
+        """The distance of a mesh from the nearest one of the manager."""
         external = Placed(EXTERNAL, self._geometry(mesh, EXTERNAL), matrix_of(transform))
         found = self._engine.nearest_to(external.geometry.shape, external.transform)
         if found is None:
@@ -243,7 +244,7 @@ class CollisionManager:
     def min_distance_internal(
         self, name: str | None = None, return_names: bool = False, return_data: bool = False
     ) -> Answer[float, Nearest, DistanceData | None]:
-        """How far the nearest two meshes are apart; with a name, those of which one is this mesh."""
+        """The distance of the nearest two meshes; with a name, of the pairs with this mesh."""
         engine = self._engine
         found = engine.nearest() if name is None else engine.nearest_beside(self._known(name))
         if found is None:
@@ -276,7 +277,7 @@ class CollisionManager:
     def min_distance_other(
         self, other_manager: CollisionManager, return_names: bool = False, return_data: bool = False
     ) -> Answer[float, Nearest, DistanceData | None]:
-        """How far the nearest meshes of two managers are apart; the own name is the first."""
+        """The distance of the nearest meshes of two managers; the name of this manager is the first."""
         manager = self._beside(other_manager)
         found = self._engine.nearest_other(manager._engine)
         if found is None:
@@ -308,25 +309,26 @@ class CollisionManager:
         return self._indices[name]
 
     def _placed(self, indices: list[int]) -> list[Placed]:
-        """Meshes where they are."""
+        """Returns meshes with their transforms."""
         transforms = self._engine.transforms(indices)
         return [Placed(*self._meshes[index], matrix) for index, matrix in zip(indices, transforms, strict=True)]
 
     def _pairs(self, rows: list[tuple[int, int]], other: CollisionManager) -> list[tuple[Placed, Placed]]:
-        """Pairs of an own mesh and one of a manager."""
+        """Returns pairs of a mesh of this manager and one of another manager."""
         ones, others = self._placed([one for one, _ in rows]), other._placed([index for _, index in rows])
         return list(zip(ones, others, strict=True))
 
     def _beside(self, other: CollisionManager) -> CollisionManager:
-        """Another manager, of itself a copy."""
+        """Returns the other manager; a copy if it is this one."""
         return other if other is not self else _manager(self._placed(list(self._meshes)), self._solid)
 
 
 def scene_to_collision(scene: trimesh.Scene, solid: bool = False) -> tuple[CollisionManager, dict[str, Shape]]:
-    """A manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes; solid as of the manager.
+    """Returns a manager with the meshes of a scene of trimesh, by the names of its nodes, and their shapes; solid as of the
+    manager.
 
-    What a node scales, shears or mirrors is applied to the vertices of its shape; `set_transform` then places the shape as
-    it is here, by a rotation and a translation. ValueError names a node whose transform is no such map.
+    Scale, shear and reflection of a node are applied to the vertices of its shape; `set_transform` then places this shape
+    by a rotation and a translation. ValueError names a node whose transform is singular or not affine.
     """
     placed, known = [], {}
     for node in scene.graph.nodes_geometry:
@@ -365,7 +367,7 @@ def _by_name(pair: tuple[Placed, Placed]) -> tuple[Placed, Placed]:
 def _answer(
     found: Found, names: Names, data: Data, with_names: bool, with_data: bool
 ) -> Answer[Found, Names, Data]:
-    """The forms of trimesh's answers: alone, or a tuple with what else was wanted."""
+    """Returns a result in trimesh's form: alone, or a tuple with the requested extras."""
     if with_names and with_data:
         return found, names, data
     if with_names:
