@@ -29,7 +29,7 @@ def anchors(text):
 
 
 def source_findings(guide):
-    """Yields problems of the Markdown files: missing files, headings, definitions, descriptions of pictures, chapters."""
+    """Yields what the Markdown files lack: files, headings, definitions, descriptions of pictures, chapters."""
     texts = {page.name: FENCE.sub("", page.read_text()) for page in sorted(guide.glob("*.md"))}
     used = set()
     for name, text in texts.items():
