@@ -310,6 +310,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
                 None => left |= 1 << lane,
             }
         });
+        // Contacts keep their positions, which are sorted by part.
         for lane in Ones::<LANES>(left.into()) {
             let (contact, place) = &contacts[lane];
             match self.in_general(*place) {
@@ -332,6 +333,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         Some(found)
     }
 
+    /// Removes the contacts that the generic path did not confirm.
     fn drop_missing(&mut self) {
         if self.missing > 0 {
             self.contacts.retain(|contact| contact.distance.is_finite_number());

@@ -2,8 +2,8 @@
 //!
 //! 1. [`gather`] finds the parts within the prediction: those in [`part_cache`], while its box
 //!    suffices, without those that a lower bound culls ([`cull`]).
-//! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects normals
-//!    that a surface does not admit: at such a seam only contacts with the face count.
+//! 2. [`part_contact`] computes the contact of each pair of parts. [`normal_filter`] rejects
+//!    normals that a surface does not admit: at such a seam only contacts with the face count.
 //! 3. [`hidden`] drops contacts with faces that a neighbour hides, [`resolve`] those that another
 //!    contact explains. Solids that overlap always keep a contact.
 //! 4. [`inside`] adds the contacts of pieces that lie wholly inside a body and touch no part.

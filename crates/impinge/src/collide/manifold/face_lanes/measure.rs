@@ -28,7 +28,9 @@ const MAX: usize = FaceRing::<f32>::MAX;
 /// Distances of the corners of one outline from the sides of the other, by corner and side, and
 /// masks of the lanes in which they exceed the rounding error.
 pub(super) struct SideHeights<N, const CORNERS: usize, const SIDES: usize> {
+    /// Signed distances, positive on the inner side.
     inside: [[[N; LANES]; SIDES]; CORNERS],
+    /// The lanes in which `inside` is above the tolerance, and below its opposite. NaN is neither.
     within: [[u8; SIDES]; CORNERS],
     beyond: [[u8; SIDES]; CORNERS],
     /// The lanes in which a corner is beyond some side, and in which it is on the line of some
@@ -44,6 +46,7 @@ impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, 
         Self { inside, within: none, beyond: none, is_beyond: blank, is_on: blank }
     }
 
+    /// Stores the distances of one corner from one side. Side 0 resets the masks of the corner.
     #[inline(always)]
     fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
@@ -284,6 +287,7 @@ impl<V> SeenTriangles<V> {
         let across = cross(&sides[0], &sides[1]);
         let rise = dot(&across, normal);
         let one: V = lit(simd, 1.0);
+        // Seen from the back, the sides run clockwise.
         let turn = rise.simd_lt(V::all(simd, N::ZERO)).select(-one, one);
         let (mut inward, mut lengths) = (sides, squared);
         for (own, length) in inward.iter_mut().zip(&mut lengths) {
@@ -308,6 +312,8 @@ impl<V> SeenTriangles<V> {
         let (area, rise) = (dot(&self.across, &self.across), self.rise * self.rise);
         let is_wide = area.simd_gt(lit::<S, N, V>(simd, THIN_SQUARED) * longest * longest)
             & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
+        // A face is shown if the squared cosine of its tilt is above 1 - `FACING_SINE_SQUARED`.
+        // Close cases are neither `is_face` nor `is_steep`.
         let upright = lit::<S, N, V>(simd, 1.0 - FACING_SINE_SQUARED) * area;
         let is_face = is_wide & upright.simd_lt(rise * less);
         let is_steep = is_wide & rise.simd_lt(upright * less);
@@ -329,6 +335,7 @@ impl<V> SeenTriangles<V> {
         let at = |of: [V; 3]| tops[0].select(of[0], tops[1].select(of[1], of[2]));
         let (out, back) = (at(slopes), at([slopes[2], slopes[0], slopes[1]]));
         let is_back = back.simd_lt(out);
+        // The flatter of the two sides at the farthest corner is shown if it is flat enough.
         let (least, other) = (is_back.select(back, out), is_back.select(out, back));
         let is_corner = is_steep & limit.simd_lt(least * less);
         let is_side = is_steep & least.simd_lt(limit * less) & least.simd_lt(other * less);

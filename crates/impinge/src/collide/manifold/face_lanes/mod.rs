@@ -1,11 +1,12 @@
-//! Contacts of a face, an edge or a corner of one solid with up to eight triangles, each along a normal of its own.
+//! Contacts of a face, an edge or a corner of one solid with up to eight triangles, each along a
+//! normal of its own.
 //!
 //! ```text
-//!        v3────────────v2        The face of the solid, v, and a triangle, c, seen along the normal. The
-//!        │      c2     │         corners of their overlap are corners of the triangle in the face (c1),
-//!        │    ╱   ╲    │         corners of the face in the triangle (v0), and crossings of two sides
-//!        │  ╱  c1───╲──┼         (x). Each candidate is a point of the triangle, and how far along the
-//!   c0───x╱──────────╲x│         normal the face is from it.
+//!        v3────────────v2     The face of the solid, v, and a triangle, c, seen along the normal.
+//!        │      c2     │      Corners of their overlap are corners of the triangle in the face
+//!        │    ╱   ╲    │      (c1), corners of the face in the triangle (v0), and crossings of
+//!        │  ╱  c1───╲──┼      two sides (x). A candidate is a point of the triangle, with its
+//!   c0───x╱──────────╲x│      distance from the face along the normal.
 //!        v0────────────v1
 //! ```
 //!
@@ -99,6 +100,7 @@ impl<N: Real> FaceSolid<'_, N> {
             }
         }
         let mut left = u8::MAX >> (LANES - asked.len());
+        // Lanes in which the solid shows one feature share a ring.
         while left != 0 {
             let part = asked[left.trailing_zeros() as usize].part;
             let is_same = |lane: &usize| asked[*lane].part == part;
@@ -122,6 +124,7 @@ impl<N: Real> FaceSolid<'_, N> {
         }
     }
 
+    /// The bounding radius of the core of the solid around its origin.
     fn reach(&self) -> N {
         Geometry(self.solid).as_support_map().map_or(N::ZERO, SupportMap::reach)
     }

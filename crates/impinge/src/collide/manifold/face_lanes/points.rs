@@ -40,6 +40,7 @@ impl<N: Real> FaceClip<N> {
 /// The points of one triangle found so far.
 struct FoundPoints<'a, N: Real> {
     asked: &'a TriangleAsked<N>,
+    /// Points farther than this by more than the tolerance are dropped.
     prediction: N,
     tolerance: N,
     points: &'a mut RawPoints<N, 3>,
@@ -95,10 +96,12 @@ struct LaneClip<'a, N: Real> {
 }
 
 impl<N: Real> LaneClip<'_, N> {
+    /// Whether a mask has this lane.
     fn has(&self, bits: u8) -> bool {
         bits >> self.lane & 1 == 1
     }
 
+    /// A corner of the triangle, in the frame of the solid.
     fn corner(&self, corner: usize) -> Vector<N, 3> {
         let [x, y, z] = &self.clip.corners[corner];
         Vector::<N, 3>::new(x[self.lane], y[self.lane], z[self.lane])
@@ -170,8 +173,8 @@ impl<N: Real> LaneClip<'_, N> {
         self.part_with(at, sides, |side| [named(side), named((side + 1) % ring.count)])
     }
 
-    /// Adds the crossings of a side of the triangle and one of the ring. The ends of each are off the
-    /// line of the other by more than the tolerance.
+    /// Adds the crossings of a side of the triangle and one of the ring. The ends of each are off
+    /// the line of the other by more than the tolerance.
     fn crossings(&self, found: &mut FoundPoints<'_, N>) {
         let FaceClip { ring, in_face, in_triangle, crossed, .. } = self.clip;
         for side in 0..3 {
@@ -200,6 +203,7 @@ impl<N: Real> LaneClip<'_, N> {
         ends: impl Fn(usize) -> [(Vector<N, 3>, FeatureId, FeatureId); 2],
     ) -> Option<FeatureId> {
         let room = N::TWO * self.clip.tolerance[self.lane];
+        // Projects along the normal.
         let flat = |v: Vector<N, 3>| v - self.normal * self.normal.dot(&v);
         let mut part = None;
         for side in sides {
