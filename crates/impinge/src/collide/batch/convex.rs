@@ -122,7 +122,7 @@ fn lanes_for<N: Real>(
     is_one: fn(&Kind<'_, N, 3>) -> bool,
 ) -> Option<Vectors> {
     let Pair { first, second, .. } = &packet[0].pair;
-    let Level::Wide(vectors) = Level::new() else { return None };
+    let vectors = Level::new().vectors()?;
     (packet.len() >= LANES / 2 && is_one(first) && is_one(second)).then_some(vectors)
 }
 

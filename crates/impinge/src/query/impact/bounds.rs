@@ -223,8 +223,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// velocities. `rate` bounds the approach of any two points.
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
-    /// body, which rotates by `S`: a linear function of its position. Its derivative, `u'' - 2 S u'
-    /// + S² u`, bends the path.
+    /// body, which rotates by `S`: a linear function of its position. Its derivative,
+    /// `u'' - 2 S u' + S² u`, bends the path.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
         let travel = rate.travel(span);
         let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);

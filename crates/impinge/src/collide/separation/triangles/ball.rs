@@ -25,9 +25,8 @@ use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
 /// A triangle is thin if the squared ratio of its height to its longest side is at most this.
 const TALL: f64 = 1.0 / 1000.0;
-/// Squared distances differ if they do by more than this many epsilon of all squared lengths. A
-/// nearest feature is certain if the centre has to move by the root of that to make another the
-/// nearest.
+/// Squared distances count as different above this many epsilon of all squared lengths. A nearest
+/// feature is certain if the centre has to move by the root of that to make another the nearest.
 const CLEAR: f64 = 64.0;
 /// Kinds of corners follow those of sides.
 const CORNER: f64 = 3.0;
