@@ -4,7 +4,7 @@
 //! ```text
 //!    own frame            the other tree's frame
 //!   +--------+               /\_               along the axes of both frames ([`RotatedBox::bounds`], `slabs`)
-//!   |  box   |  -- Turn -->  \  \_   gap  [ ]  across the slab of what is in the box
+//!   |  box   |  -- pose -->  \  \_   gap  [ ]  across the slab of what is in the box
 //!   +--------+                \__/ ------>[ ]  along the line to the centre of each box ([`Extent`])
 //! ```
 //!

@@ -196,7 +196,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.tiles
     }
 
-    /// Gets the seams of triangles from the surface of the composite; `near` has a bit for each
+    /// Gets the seams of triangles from the surface of the composite; `masks` has a bit for each
     /// part of each packet that needs them.
     pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, masks: &[u8]) {
         let surface = composite.surface_access().filter(|_| self.has_triangles_alone());
