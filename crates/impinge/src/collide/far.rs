@@ -204,7 +204,7 @@ mod tests {
     /// A solid of any kind that has a ball, with sizes from zero to one.
     type Draw<N, const D: usize> = fn(&mut Random, usize) -> Box<dyn Shape<N, D>>;
 
-    fn of_plane<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
+    fn solid_2d<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
         let mut point = || Point::from(random.vector::<N>().xy());
         let [a, b, c] = [point(), point(), point()];
         let (one, other) = (a.x.abs(), a.y.abs());
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    fn of_space<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 3>> {
+    fn solid_3d<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 3>> {
         let mut point = || Point::from(random.vector::<N>());
         let [a, b, c] = [point(), point(), point()];
         let (one, other) = (a.x.abs(), a.y.abs());
@@ -321,10 +321,10 @@ mod tests {
 
     #[test]
     fn what_is_rejected_is_beyond_for_the_algorithms() {
-        rejects_no_more::<f32, 2>((of_plane, 9), turn2);
-        rejects_no_more::<f64, 2>((of_plane, 9), turn2);
-        rejects_no_more::<f32, 3>((of_space, 11), turn3);
-        rejects_no_more::<f64, 3>((of_space, 11), turn3);
+        rejects_no_more::<f32, 2>((solid_2d, 9), turn2);
+        rejects_no_more::<f64, 2>((solid_2d, 9), turn2);
+        rejects_no_more::<f32, 3>((solid_3d, 11), turn3);
+        rejects_no_more::<f64, 3>((solid_3d, 11), turn3);
     }
 
     #[test]

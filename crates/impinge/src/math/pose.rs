@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn quarter_turn_in_the_plane() {
+    fn quarter_turn_2d() {
         let iso = Isometry2::new(Vector::<f32, 2>::new(1.0, 0.0), std::f32::consts::FRAC_PI_2);
         let p = Pose::from_isometry(&iso).point(&Point::<f32, 2>::new(1.0, 0.0));
         assert!((p - Point::<f32, 2>::new(1.0, 1.0)).norm() < 1e-6, "{p}");

@@ -9,11 +9,11 @@ use crate::collide::mesh::{
 };
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::parts::{
-    AxisSlabs, Between, PairVerdicts, PartPairs, part_gaps2, part_gaps3, part_pairs2, part_pairs3,
+    AxisSlabs, Between, PairMasks, PartPairs, part_gaps2, part_gaps3, part_pairs2, part_pairs3,
 };
 use crate::collide::separation::{
-    Projection, distance_in_plane, distance_in_space, project_on_solid_2d, project_on_solid_3d,
-    separation_in_plane, separation_in_space,
+    Projection, distance_2d, distance_3d, project_on_solid_2d, project_on_solid_3d, separation_2d,
+    separation_3d,
 };
 use crate::collide::{
     ConvexPair, ManifoldRequest, OnFace, Pair, PairQuestion, RawManifold, Solid, between2, build3,
@@ -59,7 +59,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
 
     /// Classifies eight pairs of parts: beyond a limit, or within it.
-    fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairVerdicts;
+    fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairMasks;
 
     /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a surface (3D); `false` if
     /// the pair needs the generic path.
@@ -184,7 +184,7 @@ pub trait ByDimension<N: Real, const D: usize>:
 #[expect(private_interfaces, reason = "for this crate alone")]
 impl<N: Real> ByDimension<N, 2> for Here {
     fn separation(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
-        separation_in_plane(pair, limit)
+        separation_2d(pair, limit)
     }
 
     fn face_contacts(
@@ -202,7 +202,7 @@ impl<N: Real> ByDimension<N, 2> for Here {
         part_gaps2(slabs, tiles, limit)
     }
 
-    fn part_pairs(pairs: &PartPairs<N, 2>, limit: N) -> PairVerdicts {
+    fn part_pairs(pairs: &PartPairs<N, 2>, limit: N) -> PairMasks {
         part_pairs2(pairs, limit)
     }
 
@@ -215,7 +215,7 @@ impl<N: Real> ByDimension<N, 2> for Here {
     }
 
     fn distance(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
-        distance_in_plane(pair, limit)
+        distance_2d(pair, limit)
     }
 
     fn distances(pairs: &mut [ConvexPair<'_, N, 2>], limit: N, out: &mut [Option<N>]) {
@@ -330,7 +330,7 @@ impl<N: Real> ByDimension<N, 2> for Here {
 #[expect(private_interfaces, reason = "for this crate alone")]
 impl<N: Real> ByDimension<N, 3> for Here {
     fn separation(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-        separation_in_space(pair, limit)
+        separation_3d(pair, limit)
     }
 
     fn face_contacts(
@@ -348,7 +348,7 @@ impl<N: Real> ByDimension<N, 3> for Here {
         part_gaps3(slabs, tiles, limit)
     }
 
-    fn part_pairs(pairs: &PartPairs<N, 3>, limit: N) -> PairVerdicts {
+    fn part_pairs(pairs: &PartPairs<N, 3>, limit: N) -> PairMasks {
         part_pairs3(pairs, limit)
     }
 
@@ -361,7 +361,7 @@ impl<N: Real> ByDimension<N, 3> for Here {
     }
 
     fn distance(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
-        distance_in_space(pair, limit)
+        distance_3d(pair, limit)
     }
 
     fn distances(pairs: &mut [ConvexPair<'_, N, 3>], limit: N, out: &mut [Option<N>]) {

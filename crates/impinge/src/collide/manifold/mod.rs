@@ -42,7 +42,7 @@ pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
 };
-use super::separation::{separation_in_plane, separation_in_space};
+use super::separation::{separation_2d, separation_3d};
 use super::size::smaller_size;
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
@@ -61,7 +61,7 @@ pub(crate) fn build2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    build_in_plane(pair, separation, request, request.max_points.min(2), out);
+    build_2d(pair, separation, request, request.max_points.min(2), out);
 }
 
 /// Builds the manifold like [`build2`], with up to `request.max_points` points.
@@ -71,11 +71,11 @@ pub(crate) fn between2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    build_in_plane(pair, separation, request, request.max_points, out);
+    build_2d(pair, separation, request, request.max_points, out);
 }
 
 /// Builds the manifold in 2D with at most `limit` points.
-fn build_in_plane<N: Real>(
+fn build_2d<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
     request: &ManifoldRequest<N>,
@@ -173,7 +173,7 @@ pub(crate) fn contacts_of_separation3<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
-    match separation_in_space(pair, request.prediction) {
+    match separation_3d(pair, request.prediction) {
         Some(separation) => build3(pair, &separation, request, out),
         None => out.points.clear(),
     }
@@ -185,7 +185,7 @@ pub(crate) fn contacts_of_separation2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    match separation_in_plane(pair, request.prediction) {
+    match separation_2d(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
     }

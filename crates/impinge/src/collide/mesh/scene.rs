@@ -8,7 +8,7 @@ use super::patch::Piece;
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::parts::slabs::corners;
-use crate::collide::parts::{PairVerdicts, PartPairs};
+use crate::collide::parts::{PairMasks, PartPairs};
 use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
@@ -431,7 +431,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
                 pairs.others.put(lane, &other.mapped(|corner| Point::from(corner + translation)));
             }
             pairs.count = translations.len();
-            let PairVerdicts { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
+            let PairMasks { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
             // Few pairs are so close to the limit that the lanes leave them undecided.
             let is_open = |lane: usize| (beyond | within) >> lane & 1 == 0;
             let mut open = translations.iter().enumerate().filter(|(lane, _)| is_open(*lane));
