@@ -277,12 +277,12 @@ fn grown_box<N: Space<D>, const D: usize>(
     if !pose.is_finite() || !aabb.holds_finite_point() {
         return None;
     }
-    let mut reach = N::ZERO;
+    let mut farthest = N::ZERO;
     for axis in 0..D {
         for face in [aabb.mins()[axis], aabb.maxs()[axis]] {
             let away = (face - pose.translation[axis]).abs();
-            reach = if away.is_finite_number() { max(away, reach) } else { reach };
+            farthest = if away.is_finite_number() { max(away, farthest) } else { farthest };
         }
     }
-    Some(enclosing(&aabb, &pose).loosened(reach * N::lit(ROUNDING_ERRORS) * N::EPSILON))
+    Some(enclosing(&aabb, &pose).loosened(farthest * N::lit(ROUNDING_ERRORS) * N::EPSILON))
 }

@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_around_a_way() {
+    fn boxes_around_a_path() {
         let swept = unit_box().swept(&Vector::<f64, 2>::new(-2.0, 0.0), 1.5);
         assert_eq!(swept, Aabb::new(P::new(-3.0, 0.0), P::new(1.0, 1.0)), "three to the left");
         let swept = unit_box().swept(&Vector::<f64, 2>::new(0.0, 1.0), f64::INFINITY);

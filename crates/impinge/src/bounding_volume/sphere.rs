@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn spheres_around_a_way() {
+    fn spheres_around_a_path() {
         let sphere = BoundingSphere::new(P::new(1.0, 0.0, 0.0), 1.0);
         let swept = sphere.swept(&Vector::<f64, 3>::new(0.0, 2.0, 0.0), 3.0);
         assert!((swept.center().y - 3.0).abs() < 1e-14, "{swept:?}");

@@ -145,12 +145,12 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
             }
         }
         let (around, mut gaps) = (self.tree.slab_box(layer, block), [-N::INFINITY; LANES]);
-        if let Some((along, reach)) = self.question.toward(&around.bounds.as_aabb()) {
-            let Some(first) = self.first(entry, -around.reach(&-along) - reach, limit) else {
+        if let Some((along, extent)) = self.question.toward(&around.bounds.as_aabb()) {
+            let Some(first) = self.first(entry, -around.extent(&-along) - extent, limit) else {
                 return;
             };
             entry = first;
-            gaps = self.gaps_along(layer, block, &along, reach);
+            gaps = self.gaps_along(layer, block, &along, extent);
         }
         self.push_all(&entry, open, &gaps, limit);
     }
@@ -167,13 +167,13 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
     }
 
     /// Returns lower bounds of the gaps along a direction between the query's solid and the children of a block.
-    fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, reach: N) -> [N; LANES] {
+    fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, extent: N) -> [N; LANES] {
         let along = filled(|axis| along[axis].as_f32());
-        let reach = reach + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
+        let extent = extent + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
         let block = &self.tree.layers[layer].blocks[block as usize];
         block.lowest_along(&along).mapped(|lowest| {
             let is_known = lowest.is_finite();
-            if is_known { N::lit(lowest.into()) - reach } else { -N::INFINITY }
+            if is_known { N::lit(lowest.into()) - extent } else { -N::INFINITY }
         })
     }
 

@@ -14,21 +14,21 @@ const KEPT_LEAVES: usize = 256;
 
 /// One layer: blocks, and for each block its bounds and the mask of changed lanes.
 ///
-/// A join searches old and present overlaps, so each block also has a `reach`: the union of its
+/// A join searches old and present overlaps, so each block also has a `swept`: the union of its
 /// boxes now and before. Where nothing changed, bounds and reach are equal.
 #[derive(Debug)]
 pub(super) struct Layer<const D: usize> {
     pub(super) blocks: Vec<Block<D>>,
     pub(super) bounds: Vec<Bounds<D>>,
     /// By block: union of its boxes now and before.
-    pub(super) reach: Vec<Bounds<D>>,
+    pub(super) swept: Vec<Bounds<D>>,
     /// Above the lowest layer: the reach of the blocks below, as blocks.
-    pub(super) reaches: Vec<Block<D>>,
+    pub(super) swept_blocks: Vec<Block<D>>,
     /// By block: the lanes with a change in or below them.
     pub(super) changed: Vec<u16>,
 }
 
-clone_fields!([const D: usize] Layer<D> { blocks, bounds, reach, reaches, changed });
+clone_fields!([const D: usize] Layer<D> { blocks, bounds, swept, swept_blocks, changed });
 
 impl<const D: usize> Layer<D> {
     /// Creates a layer without blocks.
@@ -36,8 +36,8 @@ impl<const D: usize> Layer<D> {
         Self {
             blocks: Vec::new(),
             bounds: Vec::new(),
-            reach: Vec::new(),
-            reaches: Vec::new(),
+            swept: Vec::new(),
+            swept_blocks: Vec::new(),
             changed: Vec::new(),
         }
     }
@@ -46,7 +46,7 @@ impl<const D: usize> Layer<D> {
     pub(super) fn resize(&mut self, blocks: usize) {
         self.blocks.resize(blocks, Block::EMPTY);
         self.bounds.resize(blocks, Bounds::EMPTY);
-        self.reach.resize(blocks, Bounds::EMPTY);
+        self.swept.resize(blocks, Bounds::EMPTY);
         self.changed.resize(blocks, 0);
     }
 
@@ -55,11 +55,11 @@ impl<const D: usize> Layer<D> {
     pub(super) fn fit_above(&mut self, children: usize) {
         let blocks = children.div_ceil(LANES);
         self.resize(blocks);
-        self.reaches.resize(blocks, Block::EMPTY);
+        self.swept_blocks.resize(blocks, Block::EMPTY);
         let (last, used) = (blocks - 1, children - (blocks - 1) * LANES);
         for lane in used..LANES {
             self.blocks[last].set_lane(lane, &Bounds::EMPTY);
-            self.reaches[last].set_lane(lane, &Bounds::EMPTY);
+            self.swept_blocks[last].set_lane(lane, &Bounds::EMPTY);
             self.changed[last] &= !(1 << lane);
         }
     }
@@ -429,10 +429,10 @@ impl<const D: usize> Tree<D> {
 
     /// Releases surplus memory of a tree that has stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
-        let Layer { blocks, bounds, reach, changed, .. } = &mut self.layers[0];
+        let Layer { blocks, bounds, swept, changed, .. } = &mut self.layers[0];
         look.fit(blocks);
         look.fit(bounds);
-        look.fit(reach);
+        look.fit(swept);
         look.fit(changed);
         look.fit(&mut self.before);
         look.fit(&mut self.ids);

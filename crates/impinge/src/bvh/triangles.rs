@@ -93,14 +93,14 @@ impl ShearedLine {
         let unit = max_component(&ray.dir).power_of_two_below();
         let origin = axes.mapped(|axis| ray.origin[axis].as_f32());
         let share = |axis: usize| (ray.dir[axis] / ray.dir[along]).as_f32();
-        let reach = max_component(&ray.origin.coords).as_f32();
+        let farthest = max_component(&ray.origin.coords).as_f32();
         let blur = max_component(&(around.maxs() - around.mins())).as_f32();
         Self {
             axes,
             origin,
             shear: [share(axes[0]), share(axes[1])],
             inverse: (unit / ray.dir[along]).as_f32(),
-            slack: FAR * f32::EPSILON * if reach > size { reach } else { size } + blur,
+            slack: FAR * f32::EPSILON * if farthest > size { farthest } else { size } + blur,
         }
     }
 }

@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_kinds_come_by_place_then_size() {
+    fn equal_kinds_come_by_position_then_size() {
         let (small, large) = (Ball::new(1.0_f32), Ball::new(2.0_f32));
         let geometry = |ball| Shape::<f32, 2>::geometry(ball);
         let order = |pose1, ball1, pose2, ball2| {

@@ -47,13 +47,13 @@ fn stride<N: Simplicial<D>, const D: usize>(
     step: &Vector<N, D>,
     trial: impl Fn(Vector<N, D>) -> SupportCandidate<N, D>,
 ) -> bool {
-    let (start, mut stretch) = (best.normal, N::ONE);
+    let (start, mut factor) = (best.normal, N::ONE);
     for round in 0..DOUBLINGS {
-        let normal = unit_or(&(start + step * stretch), start);
+        let normal = unit_or(&(start + step * factor), start);
         if !best.improve(&trial(normal)) {
             return round > 0;
         }
-        stretch *= N::TWO;
+        factor *= N::TWO;
     }
     true
 }

@@ -25,7 +25,7 @@ const TOPS: usize = 3;
 /// Largest difference between the components along the axis of a normal and of the side's normals.
 const NEAR: f64 = 1.0 / 16.0;
 /// Largest difference of heights in a ring of about equal ones, for solids of about size 1.
-const LEVEL: f64 = 1.0 / 8.0;
+const MAX_UNEVENNESS: f64 = 1.0 / 8.0;
 /// Share of an interval that a step of the golden section leaves.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// Cap on these steps, which shrink an interval to 1e-9 of its length.
@@ -50,7 +50,7 @@ pub(super) fn better<N: Real>(
     for (axis, rise) in difference.round_sides().into_iter().flatten() {
         let least = found.as_ref().map_or(height, |found| found.best.height) + rounding_error();
         let ring =
-            NormalRing::near(axis, rise, normal).filter(|ring| ring.is_level(difference, height));
+            NormalRing::near(axis, rise, normal).filter(|ring| ring.is_even(difference, height));
         let top = ring.and_then(|ring| ring.best(difference, least));
         found = top.map(|(ring, start)| ring.polished(difference, start)).or(found);
     }
@@ -94,8 +94,8 @@ impl<N: Real> NormalRing<N> {
 
     /// Returns whether the opposite normal is about as good as `height`, that of the normal at
     /// angle zero. Otherwise heights vary enough to find the best normal without the ring.
-    fn is_level(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
-        height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(LEVEL)
+    fn is_even(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
+        height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(MAX_UNEVENNESS)
     }
 
     /// Returns the best normal, if it is higher than `least`, and the ring with angles from it.

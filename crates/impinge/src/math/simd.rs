@@ -91,14 +91,25 @@ impl Level {
         best
     }
 
+    /// The vectors for kernels with independent lanes; `None` where they compute one lane instead.
+    ///
+    /// Without optimization every operation on a vector is a chain of calls, dearer than the same
+    /// operation on each of its numbers: a debug build computes a pile of boxes 2.5 times as fast in
+    /// single lanes. The bits are the same.
+    #[inline]
+    pub(crate) fn vectors(self) -> Option<Vectors> {
+        match self {
+            Self::Wide(vectors) if !cfg!(unoptimized) => Some(vectors),
+            _ => None,
+        }
+    }
+
     /// The runs in which a kernel processes the first `lanes` lanes of a packet: all at once, or
     /// one after the other.
     #[inline]
     pub(crate) fn runs(self, lanes: usize) -> impl Iterator<Item = Run> {
-        let (step, vectors) = match self {
-            Self::Wide(vectors) => (lanes.max(1), Some(vectors)),
-            _ => (1, None),
-        };
+        let vectors = self.vectors();
+        let step = if vectors.is_some() { lanes.max(1) } else { 1 };
         (0..lanes).step_by(step).map(move |first| Run { vectors, first, end: first + step })
     }
 

@@ -350,7 +350,8 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
         *self.rule.get_or_insert_with(|| {
             let (tilt1, tilt2) = (side1.tilt(), side2.tilt());
             let has_face = min(tilt1, tilt2) <= least_angle();
-            let edges = if has_face { None } else { level_edges(side1, side2, self.pose12) };
+            let edges =
+                if has_face { None } else { perpendicular_edges(side1, side2, self.pose12) };
             match edges {
                 Some((edge1, edge2)) => NormalRule::Edges(edge1, edge2),
                 None if tilt2 < tilt1 => NormalRule::Second,
@@ -361,12 +362,12 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
 }
 
 /// Edges of the two solids, each in its own frame, whose crossing defines the manifold's normal.
-fn level_edges<N: Real, const D: usize>(
+fn perpendicular_edges<N: Real, const D: usize>(
     side1: &KinematicSide<N, D>,
     side2: &KinematicSide<N, D>,
     pose12: &Pose<N, D>,
 ) -> Option<(Vector<N, D>, Vector<N, D>)> {
-    let (edge1, edge2) = (side1.level_edge()?, side2.level_edge()?);
+    let (edge1, edge2) = (side1.perpendicular_edge()?, side2.perpendicular_edge()?);
     let across = edge1.dot(&pose12.vector(&edge2));
     (across * across < N::ONE - N::lit(MIN_SINE_SQUARED)).then_some((edge1, edge2))
 }

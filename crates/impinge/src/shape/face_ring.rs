@@ -60,7 +60,7 @@ impl<N: Real> Cuboid<N, 3> {
     /// volume.
     #[inline]
     pub(crate) fn supporting_part(direction: &Vector<N, 3>) -> FeatureId {
-        CuboidPart::<3>::facing(direction, Tilt::default_limit()).id()
+        CuboidPart::<3>::toward(direction, Tilt::default_limit()).id()
     }
 
     /// Fills a blank ring with face `index`. Returns false, with the ring unchanged, if the face

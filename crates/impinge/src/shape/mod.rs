@@ -57,7 +57,7 @@ pub use solids::ball::Ball;
 pub use solids::capsule::Capsule;
 pub use solids::cone::Cone;
 pub use solids::cuboid::Cuboid;
-pub(crate) use solids::cuboid::FacingPart;
+pub(crate) use solids::cuboid::SupportPart;
 pub use solids::cylinder::Cylinder;
 pub use solids::ellipsoid::Ellipsoid;
 pub use solids::plane::{HalfSpace, Plane};

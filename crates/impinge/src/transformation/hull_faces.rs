@@ -291,9 +291,9 @@ impl<'a> Merger<'a> {
         // back.
         let far = facet.corners[(shared + 1) % 3];
         let Scaled { points, .. } = self.scaled;
-        let is_level = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();
+        let is_coplanar = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();
         let is_free = self.in_face_of[at(far)] != seed + 1;
-        if !(is_free && is_level() && self.stays_convex(seed, position, far)) {
+        if !(is_free && is_coplanar() && self.stays_convex(seed, position, far)) {
             return false;
         }
         self.is_taken[at(beyond)] = true;

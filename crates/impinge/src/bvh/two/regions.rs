@@ -4,7 +4,7 @@
 //! ```text
 //!    own frame            the other tree's frame
 //!   +--------+               /\_               along the axes of both frames ([`RotatedBox::bounds`], `slabs`)
-//!   |  box   |  -- Turn -->  \  \_   gap  [ ]  across the slab of what is in the box
+//!   |  box   |  -- pose -->  \  \_   gap  [ ]  across the slab of what is in the box
 //!   +--------+                \__/ ------>[ ]  along the line to the centre of each box ([`Extent`])
 //! ```
 //!
@@ -24,7 +24,7 @@ const HALF: usize = LANES / 2;
 
 /// The pose of one tree in the frame of the other.
 #[derive(Clone, Copy)]
-pub(super) struct Turn<const D: usize> {
+pub(super) struct TreePose<const D: usize> {
     /// Columns of the rotation.
     axes: [[f32; D]; D],
     pub(super) shift: [f32; D],
@@ -57,7 +57,7 @@ pub(super) struct Held {
     pub(super) gaps: [f32; LANES],
 }
 
-impl<const D: usize> Turn<D> {
+impl<const D: usize> TreePose<D> {
     /// Rounds a pose to `f32`.
     pub(super) fn of<N: Real>(pose: &Pose<N, D>) -> Self {
         let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));

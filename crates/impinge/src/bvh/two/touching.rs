@@ -19,7 +19,7 @@ use smallvec::SmallVec;
 
 use super::agenda::{Agenda, OpenPair, STACK};
 use super::near_pairs::Toward;
-use super::regions::{Held, RotatedBox, Turn};
+use super::regions::{Held, RotatedBox, TreePose};
 use crate::bounding_volume::Aabb;
 use crate::bvh::tree::small;
 use crate::bvh::{Bounds, LANES, NONE, Tree};
@@ -39,7 +39,7 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
     fn pose(&self, which: usize) -> &Pose<N, D>;
 
     /// The largest distance of pairs to visit; it never grows, and `None` ends the search.
-    fn reach(&self) -> Option<N>;
+    fn max_distance(&self) -> Option<N>;
 
     /// Whether the reach shrinks to the best distance. If so, pairs of blocks come by their gaps,
     /// not the deepest first.
@@ -74,7 +74,7 @@ pub(crate) trait TouchQuery<N: Real, const D: usize> {
 /// A depth-first search of two trees, best first if it is for the nearest pair.
 struct TouchSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
-    turns: [Turn<D>; 2],
+    tree_poses: [TreePose<D>; 2],
     level: Level,
     /// Bound of the rounding error of a gap in `f32`.
     margin: f32,
@@ -94,7 +94,7 @@ pub(crate) fn visit_touching<N: Real, const D: usize>(
         return;
     }
     debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
-    let turns = [0, 1].mapped(|which| Turn::of(question.pose(which)));
+    let tree_poses = [0, 1].mapped(|which| TreePose::of(question.pose(which)));
     let distances = max_component(&question.pose(0).translation).as_f32()
         + max_component(&question.pose(1).translation).as_f32();
     let size = trees[0].size() + trees[1].size() + distances;
@@ -103,7 +103,8 @@ pub(crate) fn visit_touching<N: Real, const D: usize>(
     let whole = OpenPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
     let slack = N::lit(f64::from(ROUNDING) * f64::from(size)) * N::EPSILON;
     let (level, is_for_nearest) = (Level::new(), question.is_for_nearest());
-    let mut search = TouchSearch { trees, turns, level, margin, slack, is_for_nearest, question };
+    let mut search =
+        TouchSearch { trees, tree_poses, level, margin, slack, is_for_nearest, question };
     if is_for_nearest {
         search.guess(whole);
         search.run(whole, BinaryHeap::new());
@@ -139,10 +140,11 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     /// objects so far, or along that between the centres of their boxes. Computed in the scalar
     /// type, which resolves more than `f32` between distant blocks.
     fn is_beyond(&self, pair: &OpenPair) -> bool {
-        let Some((best, reach)) = self.question.best().zip(self.question.reach()) else {
+        let Some((best, max_distance)) = self.question.best().zip(self.question.max_distance())
+        else {
             return false;
         };
-        let limit = reach + self.slack;
+        let limit = max_distance + self.slack;
         if self.gap_along(&best, pair) > limit {
             return true;
         }
@@ -156,16 +158,16 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     /// Returns the gap along a direction, given as a unit vector toward the other tree in the frame
     /// of each.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &OpenPair) -> N {
-        let reaches = [0, 1].mapped(|which| {
+        let extents = [0, 1].mapped(|which| {
             let block = self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which]);
-            block.reach(&toward[which])
+            block.extent(&toward[which])
         });
-        toward[0].dot(&self.question.pose(1).translation) - reaches[0] - reaches[1]
+        toward[0].dot(&self.question.pose(1).translation) - extents[0] - extents[1]
     }
 
     /// The reach plus the rounding error; `None` to end the search.
     fn margin(&self) -> Option<f32> {
-        self.question.reach().map(|reach| self.margin + reach.as_f32_above())
+        self.question.max_distance().map(|max_distance| self.margin + max_distance.as_f32_above())
     }
 
     /// Hands out one object of each tree. Each is the end of a descent towards the centre of the
@@ -173,7 +175,7 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     fn guess(&mut self, whole: OpenPair) {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
-            let turn = &self.turns[1 - which];
+            let turn = &self.tree_poses[1 - which];
             let center = turn.vector(&self.bounds(1 - which, &pair).center());
             let middle = filled(|row| center[row] + turn.shift[row]);
             let Some(slot) = self.trees[which].slot_near(&middle) else { return };
@@ -196,7 +198,7 @@ impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
         let region =
-            self.turns[1 - which].region_of(own.bounds, own.slab, margin, self.is_for_nearest);
+            self.tree_poses[1 - which].region_of(own.bounds, own.slab, margin, self.is_for_nearest);
         let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
         region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
@@ -269,7 +271,7 @@ mod tests {
     struct RotatedPairs<'a> {
         segments: &'a [Segments; 2],
         poses: [Pose<f64, 3>; 2],
-        reach: f64,
+        max_distance: f64,
         found: Vec<[u32; 2]>,
         is_first_enough: bool,
         is_for_nearest: bool,
@@ -282,8 +284,8 @@ mod tests {
             &self.poses[which]
         }
 
-        fn reach(&self) -> Option<f64> {
-            (self.found.is_empty() || !self.is_first_enough).then_some(self.reach)
+        fn max_distance(&self) -> Option<f64> {
+            (self.found.is_empty() || !self.is_first_enough).then_some(self.max_distance)
         }
 
         fn is_for_nearest(&self) -> bool {
@@ -330,7 +332,7 @@ mod tests {
     #[test]
     fn no_near_pair_is_missed() {
         let random = &mut Xorshift(9);
-        for (count1, count2, reach) in
+        for (count1, count2, max_distance) in
             [(0, 9, 1.0), (1, 1, 60.0), (5, 300, 2.0), (700, 12, 1.0), (400, 900, 0.5)]
         {
             let all = [segments(random, count1), segments(random, count2)];
@@ -345,7 +347,7 @@ mod tests {
             let mut pairs = RotatedPairs {
                 segments: &all,
                 poses,
-                reach,
+                max_distance,
                 found: Vec::new(),
                 is_first_enough: false,
                 is_for_nearest: false,
@@ -366,7 +368,7 @@ mod tests {
                     let distance = distance(one, &other.map(|end| pose.point(&end)));
                     let is_found =
                         results.iter().all(|result| result.binary_search(&[id1, id2]).is_ok());
-                    assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
+                    assert!(is_found || distance > max_distance, "{id1} and {id2}: {distance}");
                 }
             }
             let most = count1 * count2;

@@ -18,8 +18,7 @@ use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::core;
 use crate::collide::separation::segments::segment_segment::of_points;
 use crate::collide::separation::{
-    apart, distance_in_plane, distance_in_space, is_square_in_range, separation_in_plane,
-    separation_in_space,
+    apart, distance_2d, distance_3d, is_square_in_range, separation_2d, separation_3d,
 };
 use crate::convex::Separation;
 use crate::math::lanes::{load, with_vectors};
@@ -51,7 +50,7 @@ pub(crate) fn distances2<N: Real>(
     out: &mut [Option<N>],
 ) {
     for ConvexPair { slot, pair, .. } in pairs {
-        out[*slot] = distance_in_plane(pair, limit);
+        out[*slot] = distance_2d(pair, limit);
     }
 }
 
@@ -62,7 +61,7 @@ pub(crate) fn separations2<N: Real>(
     out: &mut [Option<Separation<N, 2>>],
 ) {
     for ConvexPair { slot, pair, .. } in pairs {
-        out[*slot] = separation_in_plane(pair, limit);
+        out[*slot] = separation_2d(pair, limit);
     }
 }
 
@@ -80,7 +79,7 @@ pub(crate) fn distances3<N: Real>(
         } else {
             [None; LANES]
         };
-        fill(packet, out, found, |pair| distance_in_space(pair, limit));
+        fill(packet, out, found, |pair| distance_3d(pair, limit));
     });
 }
 
@@ -98,7 +97,7 @@ pub(crate) fn separations3<N: Real>(
         } else {
             [None; LANES]
         };
-        fill(packet, out, found, |pair| separation_in_space(pair, limit));
+        fill(packet, out, found, |pair| separation_3d(pair, limit));
     });
 }
 
@@ -122,7 +121,7 @@ fn lanes_for<N: Real>(
     is_one: fn(&Kind<'_, N, 3>) -> bool,
 ) -> Option<Vectors> {
     let Pair { first, second, .. } = &packet[0].pair;
-    let Level::Wide(vectors) = Level::new() else { return None };
+    let vectors = Level::new().vectors()?;
     (packet.len() >= LANES / 2 && is_one(first) && is_one(second)).then_some(vectors)
 }
 

@@ -249,9 +249,9 @@ struct Many<'a, P> {
 
 impl<N: Space<D>, P: KeptPairs<N, D>, const D: usize> Task<N, D> for Many<'_, P> {
     fn run<B: Batch<N, D>>(self) -> bool {
-        match self.level {
-            Level::Wide(vectors) => update::<B, _, _, D, LANES>(VectorLanes(vectors), self.pairs),
-            _ => update::<B, _, _, D, 1>(LonePair, self.pairs),
+        match self.level.vectors() {
+            Some(vectors) => update::<B, _, _, D, LANES>(VectorLanes(vectors), self.pairs),
+            None => update::<B, _, _, D, 1>(LonePair, self.pairs),
         }
         true
     }

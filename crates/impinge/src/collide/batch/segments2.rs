@@ -1,5 +1,5 @@
 //! Segments and capsules in 2D: the overlap interval of their cores along the tangent, as
-//! `stretch.rs` computes it for all flat-sided solids, in lanes.
+//! `interval.rs` computes it for all flat-sided solids, in lanes.
 //!
 //! ```text
 //!      normal

@@ -241,8 +241,8 @@ fn drawn<N: Scene<D>, const D: usize>(
     let mut draws: Vec<_> = snaps.map(|snap| Draw::new(&mut random, sorts, snap)).collect();
     let mut steps = Vec::new();
     for (step, by) in [0.002, 0.002, 0.4, 0.0].into_iter().enumerate() {
-        let asked = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
-        let mut cases: Vec<_> = draws.iter().map(|draw| draw.case(unit, asked)).collect();
+        let scaled = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
+        let mut cases: Vec<_> = draws.iter().map(|draw| draw.case(unit, scaled)).collect();
         let rests = |index: usize| (index * 7 + step) % 11 == 3;
         cases.iter_mut().enumerate().for_each(|(index, case)| case.is_pending = !rests(index));
         steps.push(cases);

@@ -258,7 +258,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     fn candidates(&self, out: &mut Candidates<N, 3>) {
         let [first, second] = &self.rings;
         if first.is_segment() && second.is_segment() && self.are_parallel() {
-            return self.common_stretch(out);
+            return self.common_interval(out);
         }
         if first.is_point() && second.is_point() {
             let [corner1, corner2] = [first.corner(0), second.corner(0)];
@@ -354,7 +354,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     /// Adds the ends of the overlap interval of two nearly parallel segments: each is an end of one
     /// of them and the point beside it on the other, both moved halfway, where they meet after the
     /// turn. The points are off their segments by at most half the lever arm times the sine.
-    fn common_stretch(&self, out: &mut Candidates<N, 3>) {
+    fn common_interval(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
             for corner in [ring.corner(0), ring.corner(1)] {

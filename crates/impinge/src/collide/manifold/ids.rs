@@ -278,10 +278,10 @@ pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     // Nearly always there are four at most, and mostly none.
     let mut order = SmallVec::<[(N, usize); 8]>::new();
     for (number, point) in points {
-        let reach = askew(&point.coords);
+        let coordinate = askew(&point.coords);
         let mut at = order.len();
-        order.push((reach, number));
-        while at > 0 && order[at - 1].0 > reach {
+        order.push((coordinate, number));
+        while at > 0 && order[at - 1].0 > coordinate {
             order.swap(at - 1, at);
             at -= 1;
         }

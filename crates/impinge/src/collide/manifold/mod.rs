@@ -3,14 +3,14 @@
 //! ```text
 //!   separation   `frame`           supporting features           candidates      points and ids
 //!   (witness) -> ContactFrame  ->  3D: `ring`, `clip`        ->  corners of  ->  `reduce`
-//!                                  2D: `stretch`                 the common      `ids`, `matching`
+//!                                  2D: `interval`                the common      `ids`, `matching`
 //!                                  half-space: `half_space`      area
 //! ```
 //!
 //! The separation provides the normal and the witness, its nearest pair of points. The supporting
 //! features of both solids, projected along the normal, are points, segments and convex polygons
 //! ([`ring`]), and the corners of their intersection ([`clip`]) are the candidates. In 2D the
-//! intersection is an interval ([`stretch`]); over a [`half_space`] every corner counts. [`reduce`]
+//! intersection is an interval ([`interval`]); over a [`half_space`] every corner counts. [`reduce`]
 //! chooses a few candidates and [`ids`] numbers them.
 //!
 //! The witness is always represented, so the smallest distance of a manifold is exactly that of the
@@ -23,10 +23,10 @@ pub(in crate::collide) mod face_lanes;
 pub(in crate::collide) mod frame;
 mod half_space;
 pub(in crate::collide) mod ids;
+mod interval;
 pub(in crate::collide) mod matching;
 pub(in crate::collide) mod reduce;
 mod ring;
-mod stretch;
 mod supporting;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -42,7 +42,7 @@ pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
 };
-use super::separation::{separation_in_plane, separation_in_space};
+use super::separation::{separation_2d, separation_3d};
 use super::size::smaller_size;
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
@@ -61,7 +61,7 @@ pub(crate) fn build2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    build_in_plane(pair, separation, request, request.max_points.min(2), out);
+    build_2d(pair, separation, request, request.max_points.min(2), out);
 }
 
 /// Builds the manifold like [`build2`], with up to `request.max_points` points.
@@ -71,11 +71,11 @@ pub(crate) fn between2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    build_in_plane(pair, separation, request, request.max_points, out);
+    build_2d(pair, separation, request, request.max_points, out);
 }
 
 /// Builds the manifold in 2D with at most `limit` points.
-fn build_in_plane<N: Real>(
+fn build_2d<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
     request: &ManifoldRequest<N>,
@@ -86,7 +86,7 @@ fn build_in_plane<N: Real>(
         return;
     }
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
-    if !stretch::build(pair, &frame, limit, out) {
+    if !interval::build(pair, &frame, limit, out) {
         // A user's solid whose supporting feature is neither a point nor a side.
         build_witness_manifold(pair, separation, out);
     }
@@ -173,7 +173,7 @@ pub(crate) fn contacts_of_separation3<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
-    match separation_in_space(pair, request.prediction) {
+    match separation_3d(pair, request.prediction) {
         Some(separation) => build3(pair, &separation, request, out),
         None => out.points.clear(),
     }
@@ -185,7 +185,7 @@ pub(crate) fn contacts_of_separation2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    match separation_in_plane(pair, request.prediction) {
+    match separation_2d(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
     }

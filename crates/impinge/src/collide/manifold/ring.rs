@@ -407,7 +407,7 @@ pub(super) fn part_of<N: Real, const D: usize>(
 ) -> Option<FeatureId> {
     let along = segment.b() - segment.a();
     let (squared, reached) = (along.norm_squared(), (point - segment.a()).dot(&along));
-    let is_near = |reach: N| reach <= tolerance * squared.sqrt();
+    let is_near = |distance: N| distance <= tolerance * squared.sqrt();
     match (is_near(reached), is_near(squared - reached)) {
         (true, true) => None,
         (true, false) => Some(FeatureId::Vertex(0)),

@@ -1,8 +1,8 @@
 //! Features that the nearest points of two convex solids lie on.
 
 use super::frame::{ContactFrame, Which, rounding};
+use super::interval::FeatureInterval;
 use super::ring::part_of;
-use super::stretch::Stretch;
 use super::{ManifoldRequest, Pair, clip, tangents2, tangents3};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector};
@@ -196,7 +196,7 @@ fn supporting_part2<N: Real>(
 ) -> FeatureId {
     let frame = frame(pair, separation, tangents2(&separation.normal));
     let (which, kind, pose) = solid(pair, is_second);
-    let side = Stretch::of(which, kind, pose, &frame);
+    let side = FeatureInterval::of(which, kind, pose, &frame);
     side.map_or(FeatureId::Face(0), |side| side.at_witness(&frame))
 }
 

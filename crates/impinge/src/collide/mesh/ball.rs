@@ -16,7 +16,9 @@ use crate::bounding_volume::Aabb;
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::enclosing;
-use crate::collide::separation::{BallQuestion, NearTriangles, ball_triangle, near_triangles};
+use crate::collide::separation::{
+    BallQuestion, CandidateTriangles, ball_triangle, candidate_triangles,
+};
 use crate::collide::{ManifoldRequest, Pair};
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
@@ -91,9 +93,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     /// Returns a box around everything within reach of the ball, with all its parts in the cache;
     /// `None` if the cache cannot hold them by corners, or if they are not triangles.
     fn box_within(&self, around: &mut PartCache<N, 3>) -> Option<Aabb<N, 3>> {
-        let reach = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
-        let aabb = enclosing(&Aabb::around(self.center, reach), &self.between.pose21);
-        let is_kept = around.reaches_with(self.parts, &aabb, MAX_ROOMY);
+        let half_extents = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
+        let aabb = enclosing(&Aabb::around(self.center, half_extents), &self.between.pose21);
+        let is_kept = around.covers_with(self.parts, &aabb, MAX_ROOMY);
         (is_kept && around.has_triangles_alone()).then_some(aabb)
     }
 
@@ -114,10 +116,10 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             limit: self.request.prediction,
             within,
         };
-        let candidates = near_triangles(&question, self.surface.has_regular_seams());
+        let candidates = candidate_triangles(&question, self.surface.has_regular_seams());
         // Everything outside the box is beyond reach.
-        let reach = self.ball.radius() + self.request.prediction;
-        let clearance = min(reach, candidates.from_middle);
+        let max_distance = self.ball.radius() + self.request.prediction;
+        let clearance = min(max_distance, candidates.from_middle);
         let travelled = Travelled { old: contacts.reference, clearance };
         self.from = advanced(self.between, &travelled, self.center);
         let around = &contacts.around;
@@ -137,7 +139,7 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     /// `None` if one of them may be the nearest of all that can be touched.
     fn rounding_of_hidden(
         &self,
-        candidates: &NearTriangles<N>,
+        candidates: &CandidateTriangles<N>,
         around: &PartCache<N, 3>,
         part_contacts: &[PartContact<N, 3>],
     ) -> Option<N> {
@@ -269,11 +271,11 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
 /// Visits the indices of some triangles in order; `bits` selects those of a packet from its masks.
 /// Stops with `None` if `visit` returns it.
 fn each_lane<N>(
-    candidates: &NearTriangles<N>,
+    candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,
     mut visit: impl FnMut(usize) -> Option<()>,
 ) -> Option<()> {
-    for &(block, near) in &candidates.near {
+    for &(block, near) in &candidates.masks {
         let mut left = bits(near);
         while left != 0 {
             visit(block * LANES + left.trailing_zeros() as usize)?;

@@ -181,16 +181,16 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
     /// Returns a box around everything within reach of the solid, with all its parts in the cache;
     /// `None` if the cache cannot hold them by corners, or if they are not segments.
     fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
-        let reach = self.size + self.request.prediction;
-        let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(reach));
+        let max_distance = self.size + self.request.prediction;
+        let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(max_distance));
         let whole = enclosing(&whole, &self.between.pose21);
         if around.holds(&whole) {
             return around.has_segments_alone().then_some(whole);
         }
         let exact = search_box(self.between, self.request.prediction);
         let most = exact.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let aabb = if reach <= N::TWO * most { whole } else { exact };
-        (around.reaches(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
+        let aabb = if max_distance <= N::TWO * most { whole } else { exact };
+        (around.covers(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
     }
 
     /// Finds the contacts of the segments within reach; `None` if the generic path must do it.

@@ -1,24 +1,24 @@
 //! Contacts of a box or a hull with the triangles of a surface in 3D.
 //!
 //! ```text
-//!   near triangles ──> separating axes ──> what the surface says ──> points along the normal
-//!                      eight lanes         one by one, from what     eight lanes
-//!                                          the pair keeps
+//!   near triangles ──> separating axes ──> normal filter ───────> points along the normal
+//!                      `gaps3`,            one by one, from the   `FaceClip::each_clip`,
+//!                      eight lanes         cached `FaceSeams`     eight lanes
 //! ```
 //!
-//! Triangles whose separation is not plain, and those that the lanes leave, go through
-//! [`part_contact`] like those of any solid.
+//! A triangle whose gap is not plain, or that a kernel leaves undecided, falls back to
+//! [`part_contact`], the path of any two parts.
 
 use smallvec::SmallVec;
 
-use super::gather::Nearby;
+use super::gather::CulledParts;
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::part_cache::PartCache;
 use super::part_contact::{self, Arena, PartContact, PartStatus, overlooks};
 use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
 use super::{PartContacts, Query};
-use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
+use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::{TiledTriangles, TriangleGap, gaps3};
@@ -27,21 +27,22 @@ use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, max};
 use crate::shape::{FaceSeams, FeatureId, Geometry, Kind, SurfaceAccess};
 use core::cell::Cell;
 
-/// Appends the contacts of a box or a hull and the triangles of a surface that are kept and near; answers false of
-/// others. Contacts within the `prediction` are asked for, of parts perhaps more.
+/// Appends the contacts of a box or a hull with the nearby triangles of a surface. Returns `false`
+/// for other solids and composites. `prediction` is that of the whole shapes; the request for parts
+/// in `query` may have a larger one.
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
     scene: &Scene<'_, N, 3>,
-    nearby: &Nearby<N>,
+    culled: &CulledParts<N>,
     prediction: N,
     contacts: &mut PartContacts<N, 3>,
     arena: &mut Arena<N, 3>,
 ) -> bool {
-    let Some(configuration) = FaceConfiguration::new(query, scene, nearby) else { return false };
+    let Some(configuration) = FaceConfiguration::new(query, scene, culled) else { return false };
     arena.are_fronts = true;
-    let (tiles, near, origin) =
-        (configuration.around.tiles(), nearby.near.as_slice(), configuration.origin);
-    let parts = TiledTriangles { tiles, near, origin };
+    let (tiles, masks, origin) =
+        (configuration.around.tiles(), culled.masks.as_slice(), configuration.origin);
+    let parts = TiledTriangles { tiles, masks, origin };
     let pose12 = Pose { rotation: configuration.turn, translation: Vector::<N, 3>::zeros() };
     let limit = query.request.prediction;
     let (slot, pending, clip) = (None, PendingClips::default(), FaceClip::blank());
@@ -63,67 +64,69 @@ pub(crate) fn face_contacts<N: Real>(
     is_served
 }
 
-/// A solid among the triangles of a surface.
+/// A box or hull and the nearby triangles of a surface.
 struct FaceConfiguration<'a, N: Real> {
     query: &'a Query<'a, N, 3>,
     scene: &'a Scene<'a, N, 3>,
     surface: SurfaceAccess<'a, N, 3>,
     around: &'a PartCache<N, 3>,
     solid: Kind<'a, N, 3>,
-    /// The solid's axes in the frame of the surface, as columns, and its origin there.
+    /// The rotation from the frame of the solid to that of the surface, whose columns are the axes
+    /// of the solid, and the origin of the solid in the frame of the surface.
     turn: Matrix<N, 3>,
     origin: Vector<N, 3>,
-    /// Where the solid comes from, in the frame of the surface.
+    /// The reference point of the solid, which decides sides, in the frame of the surface.
     from: Point<N, 3>,
     reach: N,
-    /// Of each near triangle its place among those that are kept.
+    /// The index in the cache of each near triangle, in the order in which `gaps3` counts them.
     cache_indices: SmallVec<[usize; 24]>,
 }
 
-/// A triangle in the frame of its surface.
+/// A cached triangle, in the frame of its surface.
 struct KeptTriangle<'a, N: Real> {
     part: u32,
     corners: [Point<N, 3>; 3],
     seams: &'a FaceSeams<N>,
-    /// Lengths below this are rounding errors of it and the solid.
+    /// Bound of the rounding errors of lengths of the triangle and the solid.
     tolerance: N,
 }
 
-/// A contact that the surface has, in the frame of the surface.
+/// A contact that the surface admits, in the frame of the surface.
 struct FaceContact<N: Real> {
     /// Unit, from the triangle to the solid.
     normal: Vector<N, 3>,
     status: PartStatus,
-    /// The normal of the face, if that is touched.
+    /// The normal of the face in contact; `None` for a side or corner, and for a dropped contact.
     face: Option<Vector<N, 3>>,
 }
 
-/// What a surface says of a triangle.
+/// The result of the normal filter for one triangle.
 enum SurfaceAnswer<N: Real> {
     Nothing,
     Contact(FaceContact<N>),
-    /// The nearest points are needed.
+    /// The filter needs the touched feature, which the gap does not name.
     Unclear,
 }
 
 impl<'a, N: Real> FaceConfiguration<'a, N> {
-    /// `None` of other solids and composites, and of bodies, whose insides count as well.
+    /// `None` unless a box or hull meets a surface whose cached parts are all triangles. Also
+    /// `None` for bodies: a solid inside them has contacts too.
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
     ) -> Option<Self> {
         let (between, around, surface) = (query.between, query.around, scene.surfaces[1]?);
         let solid = between.pair.first;
         let is_served = has_faces(solid)
-            && nearby.near.len() == around.tiles().len()
+            && culled.masks.len() == around.tiles().len()
             && around.has_triangles_alone()
             && !between.has_bodies();
         let map = Geometry(solid).as_support_map().filter(|_| is_served)?;
         let from = query.reference.unwrap_or_else(|| between.pose21.point(&map.center()));
-        let near = nearby.near.iter().enumerate();
-        let cache_indices = near.flat_map(|(block, near)| {
-            Ones::<LANES>((*near).into()).map(move |lane| block * LANES + lane)
+        let masks = culled.masks.iter().enumerate();
+        let cache_indices = masks.flat_map(|(block, mask)| {
+            Ones::<LANES>((*mask).into()).map(move |lane| block * LANES + lane)
         });
         Some(Self {
             query,
@@ -139,7 +142,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         })
     }
 
-    /// One of the triangles that are kept; `None` where nothing is known of its seams.
+    /// Returns a cached triangle; `None` if its seams are unknown.
     fn triangle(&self, cache_index: usize) -> Option<KeptTriangle<'a, N>> {
         let seams = self.around.seams(cache_index)?;
         let corners = self.around.tiles()[cache_index / LANES].corners(cache_index % LANES);
@@ -150,7 +153,7 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         Some(KeptTriangle { part: self.around.parts()[cache_index], corners, seams, tolerance })
     }
 
-    /// What the surface says of a triangle, given how near the solid is.
+    /// Filters the normal of a gap by the surface.
     fn answer(&self, triangle: &KeptTriangle<'_, N>, gap: &TriangleGap<N>) -> SurfaceAnswer<N> {
         let known = triangle.seams.in_surface(self.surface, &triangle.corners[0]);
         let surface = Some(SurfaceAccess::of_own(&known));
@@ -184,44 +187,46 @@ impl<'a, N: Real> FaceConfiguration<'a, N> {
         SurfaceAnswer::Contact(FaceContact { normal, status, face })
     }
 
-    /// What is asked of the clip for a contact; `None` where the nearest points are needed, or the solid shows no face.
-    fn asked(
+    /// Returns the input of the clip for a contact. `None` for a flat box, and for an `Own` contact
+    /// beyond the prediction of the parts: both fall back to the generic path.
+    fn clip_request(
         &self,
         contact: &FaceContact<N>,
         distance: N,
         tolerance: N,
-    ) -> Option<TriangleAsked<N>> {
+    ) -> Option<ClipRequest<N>> {
         let is_own = contact.status == PartStatus::Own;
         if is_own && distance > self.query.request.prediction {
             return None;
         }
-        // What touches but for rounding does not reach below the face.
+        // If the parts overlap by no more than rounding, no point is deeper than that.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
-        TriangleAsked::new(self.solid, normal, is_own.then_some(distance), least)
+        ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)
     }
 }
 
-/// A solid whose faces are clipped in lanes.
+/// Whether the faces of a solid are clipped in lanes.
 pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) -> bool {
     matches!(solid, Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Triangles that are to be clipped together, each with the number of its contact and its place.
+/// Triangles waiting for the clip, up to eight, each with the index of its contact and its index in
+/// the cache.
 struct PendingClips<N: Real> {
     triangles: PartPacket<N, 3>,
-    asked: SmallVec<[TriangleAsked<N>; LANES]>,
+    requests: SmallVec<[ClipRequest<N>; LANES]>,
     contacts: SmallVec<[(usize, usize); LANES]>,
 }
 
 impl<N: Real> Default for PendingClips<N> {
     fn default() -> Self {
         let triangles = PartPacket::blank();
-        Self { triangles, asked: SmallVec::new(), contacts: SmallVec::new() }
+        Self { triangles, requests: SmallVec::new(), contacts: SmallVec::new() }
     }
 }
 
-/// The contacts as they are found.
+/// The contacts found so far.
 struct FaceContacts<'s, 'a, N: Real> {
     configuration: &'s FaceConfiguration<'a, N>,
     contacts: &'s mut PartContacts<N, 3>,
@@ -229,23 +234,25 @@ struct FaceContacts<'s, 'a, N: Real> {
     slot: Option<PlacedPair<'a, N, 3>>,
     pending: PendingClips<N>,
     clip: FaceClip<N>,
-    /// So many contacts turned out to be none; they have no distance.
+    /// Number of contacts that the generic path did not confirm; their distance is infinite.
     missing: usize,
 }
 
 impl<N: Real> FaceContacts<'_, '_, N> {
-    /// Adds the contact of a triangle, of which it may be known how near it is.
+    /// Adds the contact of a triangle, if it has one. Without a gap it falls back to the generic
+    /// path.
     fn add(&mut self, cache_index: usize, gap: Option<&TriangleGap<N>>) {
         if gap.is_none_or(|gap| self.add_certain(cache_index, gap).is_none()) {
             let found = self.in_general(cache_index);
             self.contacts.extend(found);
         }
-        if self.pending.asked.len() == LANES {
+        if self.pending.requests.len() == LANES {
             self.clip();
         }
     }
 
-    /// Adds the contact of a triangle with a plain gap, if there is one; `None` where the general way finds it.
+    /// Adds the contact of a triangle with a plain gap, if it has one. `None` if the generic path
+    /// has to decide.
     fn add_certain(&mut self, cache_index: usize, gap: &TriangleGap<N>) -> Option<()> {
         let triangle = self.configuration.triangle(cache_index)?;
         let contact = match self.configuration.answer(&triangle, gap) {
@@ -254,9 +261,10 @@ impl<N: Real> FaceContacts<'_, '_, N> {
             SurfaceAnswer::Unclear => return None,
         };
         if contact.status != PartStatus::Left {
-            let asked = self.configuration.asked(&contact, gap.distance, triangle.tolerance)?;
-            self.pending.triangles.put(self.pending.asked.len(), &triangle.corners);
-            self.pending.asked.push(asked);
+            let request =
+                self.configuration.clip_request(&contact, gap.distance, triangle.tolerance)?;
+            self.pending.triangles.put(self.pending.requests.len(), &triangle.corners);
+            self.pending.requests.push(request);
             self.pending.contacts.push((self.contacts.len(), cache_index));
         }
         self.note_face(cache_index, contact.face.as_ref());
@@ -274,18 +282,19 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         Some(())
     }
 
-    /// Notes whether a face that is touched is a front.
+    /// Clears `are_fronts` if a face in contact is not a front.
     fn note_face(&mut self, cache_index: usize, face: Option<&Vector<N, 3>>) {
         let seams = self.configuration.around.seams(cache_index);
         let is_front = |face| seams.is_some_and(|seams: &FaceSeams<N>| seams.is_front(face));
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
 
-    /// Finds the points of the triangles that are due.
+    /// Clips the waiting triangles. Those that the lanes leave undecided are computed by the
+    /// generic path.
     fn clip(&mut self) {
-        let (PendingClips { triangles, asked, contacts }, configuration) =
+        let (PendingClips { triangles, requests, contacts }, configuration) =
             (core::mem::take(&mut self.pending), self.configuration);
-        if asked.is_empty() {
+        if requests.is_empty() {
             return;
         }
         let solid = FaceSolid {
@@ -297,7 +306,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         let (mut start, mut left) = (self.arena.points.len(), 0_u8);
         let all = &mut *self.contacts;
         let (clip, points) = (&mut self.clip, &mut self.arena.points);
-        solid.each_clip(&triangles, &asked, clip, points, |lane, lowest, points| {
+        solid.each_clip(&triangles, &requests, clip, points, |lane, lowest, points| {
             let contact = &mut all[contacts[lane].0];
             match lowest {
                 Some(lowest) => {
@@ -311,6 +320,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
                 None => left |= 1 << lane,
             }
         });
+        // Contacts keep their positions, which are sorted by part.
         for lane in Ones::<LANES>(left.into()) {
             let (contact, cache_index) = &contacts[lane];
             match self.in_general(*cache_index) {
@@ -323,7 +333,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         }
     }
 
-    /// The contact of a triangle as of any two parts.
+    /// Computes the contact of a triangle by the generic path.
     fn in_general(&mut self, cache_index: usize) -> Option<PartContact<N, 3>> {
         let FaceConfiguration { query, scene, around, .. } = *self.configuration;
         let parts = [0, around.parts()[cache_index]];
@@ -333,6 +343,7 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         Some(found)
     }
 
+    /// Removes the contacts that the generic path did not confirm.
     fn drop_missing(&mut self) {
         if self.missing > 0 {
             self.contacts.retain(|contact| contact.distance.is_finite_number());

@@ -1,4 +1,4 @@
-//! Which parts may touch.
+//! Finds the pairs of parts that may touch.
 
 use smallvec::SmallVec;
 
@@ -14,64 +14,64 @@ use crate::math::ones::Ones;
 use crate::math::{Point, Pose, Real, Space, min};
 use crate::shape::{CompositeShape, Part};
 
-/// Pairs of parts, by their numbers; 0 stands for a shape that is not a composite.
+/// Pairs of part indices; 0 stands for a convex shape.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
-/// A bit for each part of tiles.
-pub(super) type NearBits = SmallVec<[u8; 8]>;
+/// For each tile a byte with a bit for each of its eight parts.
+pub(super) type CandidateMasks = SmallVec<[u8; 8]>;
 
-/// What of two shapes may be within reach of each other.
-pub(crate) struct Nearby<N: Real> {
-    /// In order.
+/// The pairs of parts that may be within a distance.
+pub(crate) struct CulledParts<N: Real> {
+    /// Sorted.
     pub(super) parts: PartPairs,
-    /// The same as bits for each of the tiles that are kept; empty if there are none.
-    pub(super) near: NearBits,
-    /// No part of the second shape is nearer to the middle of the first, if that is convex; zero if
-    /// nothing is known.
+    /// The parts of the second shape in `parts`, as bits of the cached tiles; empty without tiles.
+    pub(super) masks: CandidateMasks,
+    /// Lower bound of the distance from the centre of a convex first shape to the second shape;
+    /// zero if unknown.
     pub(super) clearance: N,
 }
 
-/// What of a convex solid and a composite, or of two composites, may be within `reach`: of the
-/// candidates those that no plane proves to be farther.
+/// Finds the parts of a convex solid and a composite, or of two composites, that may be within
+/// `max_distance`. Parts that a separating plane proves to be farther are culled.
 ///
-/// What is kept `around` must be of the same composite.
-pub(super) fn nearby<N: Space<D>, const D: usize>(
+/// `around` must belong to the same composite. It is refilled if its box is too small.
+pub(super) fn culled<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
-    reach: N,
+    max_distance: N,
     around: &mut PartCache<N, D>,
-) -> Nearby<N> {
+) -> CulledParts<N> {
     if let [None, Some(parts2)] = between.composites() {
-        let aabb = search_box(between, reach);
-        if around.reaches(parts2, &aabb)
-            && let Some(query) = LowerBoundQuery::new(between, reach, around, &aabb)
+        let aabb = search_box(between, max_distance);
+        if around.covers(parts2, &aabb)
+            && let Some(query) = LowerBoundQuery::new(between, max_distance, around, &aabb)
         {
-            let nearby = near_kept(&query, parts2, around, &aabb);
+            let culled = cull_kept(&query, parts2, around, &aabb);
             if has_faces(between.pair.first) {
-                around.learn_seams(parts2, &nearby.near);
+                around.learn_seams(parts2, &culled.masks);
             }
-            return nearby;
+            return culled;
         }
     }
-    let parts = candidates(between, is_self, reach);
-    Nearby { parts, near: NearBits::new(), clearance: N::ZERO }
+    let parts = candidates(between, is_self, max_distance);
+    CulledParts { parts, masks: CandidateMasks::new(), clearance: N::ZERO }
 }
 
-/// Of the parts that are kept those that may be within reach; of parts without corners those whose boxes may be.
-fn near_kept<N: Space<D>, const D: usize>(
+/// Culls the cached parts by lower bounds, or by their boxes if parts have no cached corners.
+fn cull_kept<N: Space<D>, const D: usize>(
     query: &LowerBoundQuery<N, D>,
     composite: &dyn CompositeShape<N, D>,
     around: &PartCache<N, D>,
     aabb: &Aabb<N, D>,
-) -> Nearby<N> {
-    let (mut parts, mut near) = (PartPairs::new(), NearBits::new());
+) -> CulledParts<N> {
+    let (mut parts, mut masks) = (PartPairs::new(), CandidateMasks::new());
     let mut clearance = depth_in(aabb, &query.middle());
     for (kept, tiles) in around.parts().chunks(LANES).zip(around.tiles()) {
         let bounds = query.bounds(tiles);
         clearance = min(clearance, bounds.from_middle);
-        // Beyond the last part are copies of it.
-        let bits = bounds.near & (u8::MAX >> (LANES - kept.len()));
-        near.push(bits);
+        // The lanes beyond the last part hold copies of it.
+        let bits = bounds.mask & (u8::MAX >> (LANES - kept.len()));
+        masks.push(bits);
         parts.extend(Ones::<LANES>(bits.into()).map(|lane| [0, kept[lane]]));
     }
     if around.tiles().is_empty() {
@@ -81,19 +81,20 @@ fn near_kept<N: Space<D>, const D: usize>(
             aabb.intersects(&solid.as_shape().aabb(&pose)).then_some([0, part2])
         }));
     }
-    Nearby { parts, near, clearance }
+    CulledParts { parts, masks, clearance }
 }
 
-/// A box in the frame of the second shape around all that is within `reach` of the first.
+/// Returns a box in the frame of the second shape that encloses all points within `max_distance` of the
+/// first.
 pub(super) fn search_box<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    reach: N,
+    max_distance: N,
 ) -> Aabb<N, D> {
-    let aabb = aabb_of(between.pair.first, &between.pose21).loosened(reach);
+    let aabb = aabb_of(between.pair.first, &between.pose21).loosened(max_distance);
     enclosing(&aabb, &between.pose21)
 }
 
-/// How far a point is from the outside of a box that holds it.
+/// The distance of a point from the boundary of a box that holds it; negative outside.
 pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point<N, D>) -> N {
     let mut least = N::INFINITY;
     for axis in 0..D {
@@ -103,81 +104,82 @@ pub(super) fn depth_in<N: Real, const D: usize>(aabb: &Aabb<N, D>, point: &Point
     least
 }
 
-/// The pairs of parts whose boxes are within `reach` of each other, in order; 0 stands for a shape
-/// that is not a composite.
+/// Returns the pairs of parts whose boxes are within `max_distance` of each other, sorted; 0 stands for a
+/// convex shape.
 ///
-/// Of a shape with itself: the pairs of parts that do not hang together, each once.
+/// For a shape with itself: the pairs of parts that are not adjacent, each once.
 pub(super) fn candidates<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     is_self: bool,
-    reach: N,
+    max_distance: N,
 ) -> PartPairs {
     let mut found = PartPairs::new();
     match between.composites() {
-        [Some(parts), Some(_)] if is_self => of_one(parts, reach, &mut found),
-        [Some(parts1), Some(parts2)] => of_two(between, parts1, parts2, reach, &mut found),
+        [Some(parts), Some(_)] if is_self => of_one(parts, max_distance, &mut found),
+        [Some(parts1), Some(parts2)] => of_two(between, parts1, parts2, max_distance, &mut found),
         [None, Some(parts2)] => {
-            let aabb = search_box(between, reach);
+            let aabb = search_box(between, max_distance);
             parts2.search().overlapping(&aabb, &mut |part2| found.push([0, part2]));
         }
-        // Composites come last among the kinds.
+        // In the order of kinds, composites come last.
         [_, None] => {}
     }
     found.sort_unstable();
     found
 }
 
-/// Keeps all pairs.
-struct NearPairs<'a, N> {
-    reach: N,
+/// Collects all pairs, with a constant limit.
+struct FoundPairs<'a, N> {
+    max_distance: N,
     found: &'a mut PartPairs,
 }
 
-impl<N: Real, const D: usize> TouchingVisitor<N, D> for NearPairs<'_, N> {
+impl<N: Real, const D: usize> TouchingVisitor<N, D> for FoundPairs<'_, N> {
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         self.found.push(parts);
-        Some(self.reach)
+        Some(self.max_distance)
     }
 }
 
-/// The parts of two composites that may be within `reach`: by their trees, which tell by the parts as well. Where they
-/// have none, the parts of one are looked up in the other: of the one with fewer parts those that are near the other.
+/// Finds the parts of two composites that may be within `max_distance`: by their trees, which test the
+/// parts too. Without trees, each part of the composite with fewer parts that is near the other
+/// composite is looked up there.
 fn of_two<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     parts1: &dyn CompositeShape<N, D>,
     parts2: &dyn CompositeShape<N, D>,
-    reach: N,
+    max_distance: N,
     found: &mut PartPairs,
 ) {
-    if between.are_boxes_beyond(loosened(reach)) {
+    if between.are_boxes_beyond(loosened(max_distance)) {
         return;
     }
-    let mut near = NearPairs { reach, found };
-    if each_touching(between, reach, Touching::Each, &mut near) {
+    let mut found_pairs = FoundPairs { max_distance, found };
+    if each_touching(between, max_distance, Touching::Each, &mut found_pairs) {
         return;
     }
-    let NearPairs { found, .. } = near;
+    let FoundPairs { found, .. } = found_pairs;
     let poses = [&between.pose21, &between.pair.pose12];
     let is_first = parts1.num_parts() <= parts2.num_parts();
     let (fewer, more) = if is_first { (parts1, parts2) } else { (parts2, parts1) };
     let (to_more, to_fewer) = if is_first { (poses[0], poses[1]) } else { (poses[1], poses[0]) };
-    let whole = more.search().bounds().transformed_by(to_fewer).loosened(reach);
+    let whole = more.search().bounds().transformed_by(to_fewer).loosened(max_distance);
     fewer.search().overlapping(&enclosing(&whole, to_fewer), &mut |part| {
-        let aabb = box_of_part(fewer, part, to_more, reach);
+        let aabb = box_of_part(fewer, part, to_more, max_distance);
         more.search().overlapping(&aabb, &mut |other| {
             found.push(if is_first { [part, other] } else { [other, part] });
         });
     });
 }
 
-/// The parts of one composite, each with those of larger numbers.
+/// Finds the pairs of parts of one composite, the smaller index first.
 fn of_one<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
-    reach: N,
+    max_distance: N,
     found: &mut PartPairs,
 ) {
     for part1 in 0..parts.num_parts() {
-        let aabb = box_of_part(parts, part1, &Pose::identity(), reach);
+        let aabb = box_of_part(parts, part1, &Pose::identity(), max_distance);
         parts.search().overlapping(&aabb, &mut |part2| {
             if part1 < part2 && !parts.are_adjacent(part1, part2) {
                 found.push([part1, part2]);
@@ -186,13 +188,13 @@ fn of_one<N: Space<D>, const D: usize>(
     }
 }
 
-/// The box of a part and of what is within `reach` of it, seen from the frame that `pose` leads to.
+/// The box of a part, loosened by `max_distance`, in the frame that `pose` maps to.
 fn box_of_part<N: Space<D>, const D: usize>(
     parts: &dyn CompositeShape<N, D>,
     index: u32,
     pose: &Pose<N, D>,
-    reach: N,
+    max_distance: N,
 ) -> Aabb<N, D> {
     let part = parts.part(index);
-    enclosing(&part.solid.as_shape().aabb(&pose.compose(&part.pose)).loosened(reach), pose)
+    enclosing(&part.solid.as_shape().aabb(&pose.compose(&part.pose)).loosened(max_distance), pose)
 }

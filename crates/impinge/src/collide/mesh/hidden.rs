@@ -142,17 +142,17 @@ fn side_of<N: Real, const D: usize>(
     plane: &TouchedFace<N, D>,
 ) -> PlaneSide {
     let origin = plane.corners[0];
-    let (mut low, mut high, mut level) = (N::INFINITY, -N::INFINITY, -N::INFINITY);
+    let (mut low, mut high, mut plane_height) = (N::INFINITY, -N::INFINITY, -N::INFINITY);
     let mut size = N::ZERO;
     for (corner, own) in part.corners.iter().zip(&plane.corners) {
         let (arm, own) = (corner - origin, own - origin);
         let rise = plane.normal.dot(&arm);
         (low, high) = (min(low, rise), max(high, rise));
-        level = max(level, plane.normal.dot(&own));
+        plane_height = max(plane_height, plane.normal.dot(&own));
         size = max(size, arm.norm_squared() + own.norm_squared());
     }
     let tolerance = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
-    match (low - level < -tolerance, high - level > tolerance) {
+    match (low - plane_height < -tolerance, high - plane_height > tolerance) {
         (true, false) => PlaneSide::Back,
         (false, true) => PlaneSide::Front,
         _ => PlaneSide::Across,

@@ -91,16 +91,16 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 
 impl<N: Space<D>, const D: usize> PartCache<N, D> {
     /// Makes sure that the cache holds all parts that overlap a box; false if the box is unbounded.
-    pub(super) fn reaches(
+    pub(super) fn covers(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
         aabb: &Aabb<N, D>,
     ) -> bool {
-        self.reaches_with(composite, aabb, LANES)
+        self.covers_with(composite, aabb, LANES)
     }
 
-    /// [`Self::reaches`], with the large margin as long as this holds at most `most` parts.
-    pub(super) fn reaches_with(
+    /// [`Self::covers`], with the large margin as long as this holds at most `most` parts.
+    pub(super) fn covers_with(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
         aabb: &Aabb<N, D>,
@@ -196,14 +196,14 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.tiles
     }
 
-    /// Gets the seams of triangles from the surface of the composite; `near` has a bit for each
+    /// Gets the seams of triangles from the surface of the composite; `masks` has a bit for each
     /// part of each packet that needs them.
-    pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, near: &[u8]) {
+    pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, masks: &[u8]) {
         let surface = composite.surface_access().filter(|_| self.has_triangles_alone());
         let Some(surface) = surface else { return };
         self.seams.resize(self.parts.len(), KeptSeams::Unasked);
-        for (block, near) in near.iter().enumerate() {
-            for lane in Ones::<LANES>((*near).into()) {
+        for (block, mask) in masks.iter().enumerate() {
+            for lane in Ones::<LANES>((*mask).into()) {
                 let index = block * LANES + lane;
                 if let KeptSeams::Unasked = self.seams[index] {
                     let found = surface.face_seams(self.parts[index]);
@@ -236,12 +236,12 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         *self.half.get_or_insert_with(|| {
             let center = map.center();
             Vector::<N, D>::from_fn(|axis, _| {
-                let reach = |sign| {
+                let extent = |sign| {
                     let mut direction = Vector::<N, D>::zeros();
                     direction[axis] = sign;
                     (map.core_support(&direction) - center)[axis].abs()
                 };
-                max(reach(N::ONE), reach(-N::ONE))
+                max(extent(N::ONE), extent(-N::ONE))
             })
         })
     }

@@ -97,7 +97,7 @@ impl Groups {
         let mut all = if cells.have_own_normals(pieces) {
             Self::of_one_each(merging, &leads)
         } else {
-            Self::of_level(merging, &leads, &mut cells)
+            Self::of_coplanar(merging, &leads, &mut cells)
         };
         let is_near =
             |lead: &Lead| merging.points[lead.deepest].distance <= merging.request.prediction;
@@ -118,7 +118,7 @@ impl Groups {
 
     /// Adds the pieces, deepest first, to the group whose lead they are coplanar with, or to a new
     /// one.
-    fn of_level<N: Real, const D: usize>(
+    fn of_coplanar<N: Real, const D: usize>(
         merging: &Merging<'_, N, D>,
         leads: &[Lead],
         cells: &mut NormalCells,
@@ -131,11 +131,11 @@ impl Groups {
         let mut group_of = SmallVec::<[usize; 16]>::with_capacity(leads.len());
         for &(_, lead) in &by_depth {
             let lead = &leads[lead as usize];
-            let is_level = |&group: &usize| are_level(merging, &groups[group].lead, lead);
+            let is_coplanar = |&group: &usize| are_coplanar(merging, &groups[group].lead, lead);
             let known = if cells.is_one() {
-                (0..groups.len()).find(is_level)
+                (0..groups.len()).find(is_coplanar)
             } else {
-                cells.near(lead.piece).find(is_level)
+                cells.near(lead.piece).find(is_coplanar)
             };
             let (group, parts) = (known.unwrap_or(groups.len()), merging.pieces[lead.piece].parts);
             if known.is_none() {
@@ -160,7 +160,7 @@ impl Groups {
 
 /// Whether two pieces, the first the deeper, have one normal and lie in one plane: on the surface
 /// of the first shape or on that of the second.
-fn are_level<N: Real, const D: usize>(
+fn are_coplanar<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     lead1: &Lead,
     lead2: &Lead,

@@ -161,8 +161,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
                 let arm = points[point].point1 - origin;
                 let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
                 let is_turning = request.sine > N::ZERO;
-                let reach = if is_turning { request.sine * flat.norm() } else { N::ZERO };
-                if points[point].distance <= request.prediction + reach {
+                let swing = if is_turning { request.sine * flat.norm() } else { N::ZERO };
+                if points[point].distance <= request.prediction + swing {
                     members.push(Member { flat, piece, point });
                 }
             }
@@ -181,8 +181,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             let member = members[next];
             let flat = member.flat;
             // Sorted along the first tangent: only the last few can be at the same position.
-            let in_reach = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
-            let mut last = (0..count).rev().take_while(in_reach);
+            let is_close = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
+            let mut last = (0..count).rev().take_while(is_close);
             match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {
                 Some(at) if self.is_better(&member, &members[at]) => {
                     (members[at], is_exchanged) = (member, true);

@@ -41,10 +41,10 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     if !arena.are_fronts {
         super::hidden::drop_hidden(scene, contacts);
     }
-    let is_asked = |contact: &PartContact<N, D>| {
+    let has_other_normal = |contact: &PartContact<N, D>| {
         matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond)
     };
-    if contacts.iter().any(is_asked) {
+    if contacts.iter().any(has_other_normal) {
         leave_explained(scene, contacts, arena);
     }
     keep_one(scene, contacts, arena);
@@ -60,10 +60,10 @@ fn leave_explained<N: Space<D>, const D: usize>(
     arena: &Arena<N, D>,
 ) {
     use PartStatus::{Beyond, Own, Snapped};
-    for (explaining, asked) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
+    for (explaining, explained) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
         let known = shallowest_first(contacts, |status| explaining.contains(&status));
         let (mut known, mut escapes) = (known.into_iter().peekable(), Escapes(SmallVec::new()));
-        for (shallowness, index) in shallowest_first(contacts, |status| status == asked) {
+        for (shallowness, index) in shallowest_first(contacts, |status| status == explained) {
             while let Some((_, other)) = known.next_if(|&(other, _)| other <= shallowness) {
                 escapes.add(&contacts[other as usize]);
             }
@@ -131,25 +131,25 @@ fn is_explained<N: Space<D>, const D: usize>(
     let is_beyond = contact.status == PartStatus::Beyond;
     // A way shorter than the depth of the parts does not separate them.
     let least = -contact.distance - contact.tolerance;
-    let is_asked = |escape: &&Escape<N, D>| {
+    let is_relevant = |escape: &&Escape<N, D>| {
         escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
     };
     // The known separating plane of the parts may suffice after the motion.
     let rest = |escape: &Escape<N, D>| {
         contact.distance + contact.normal.dot(&escape.normal) * escape.depth
     };
-    let (mut asked, limit): (SmallVec<[&Escape<N, D>; 16]>, N) =
+    let (mut relevant, limit): (SmallVec<[&Escape<N, D>; 16]>, N) =
         (SmallVec::new(), -contact.tolerance);
-    for escape in escapes.0.iter().filter(is_asked) {
+    for escape in escapes.0.iter().filter(is_relevant) {
         if rest(escape) > limit {
             return true;
         }
-        asked.push(escape);
+        relevant.push(escape);
     }
     // If a point of the part stays well inside the solid, they are not separated.
     let points = &arena.points[contact.piece.points.clone()];
     let mut shifts = SmallVec::<[Vector<N, D>; 16]>::new();
-    for escape in asked {
+    for escape in relevant {
         let shift = escape.normal * escape.depth;
         let is_held = points.iter().any(|point| {
             let moved = point.point1 + normal * point.distance + shift;
@@ -201,7 +201,7 @@ fn least_of<N: Real, const D: usize>(
     value: impl Fn(&PartContact<N, D>) -> Option<N>,
 ) -> Option<usize> {
     let all = contacts.iter().enumerate();
-    let said = all.filter_map(|(index, contact)| Some((index, value(contact)?)));
-    let least = said.reduce(|best, next| if next.1 < best.1 { next } else { best });
+    let values = all.filter_map(|(index, contact)| Some((index, value(contact)?)));
+    let least = values.reduce(|best, next| if next.1 < best.1 { next } else { best });
     least.map(|(index, _)| index)
 }

@@ -8,7 +8,7 @@ use super::patch::Piece;
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::parts::slabs::corners;
-use crate::collide::parts::{PairVerdicts, PartPairs};
+use crate::collide::parts::{PairMasks, PartPairs};
 use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
@@ -35,12 +35,12 @@ struct SharedPlacement<N: Real, const D: usize> {
     local: Vector<N, D>,
     /// The anchor in the frames of the two shapes.
     origins: [Point<N, D>; 2],
-    lying: Lying<N, D>,
+    relative: RelativePose<N, D>,
 }
 
 /// The relative pose of two bodies.
 #[derive(Clone, Copy)]
-struct Lying<N: Real, const D: usize> {
+struct RelativePose<N: Real, const D: usize> {
     /// The pose of the second body in the frame of the first, in the order of kinds.
     pose12: Pose<N, D>,
     /// Whether the first body is the part of the second shape.
@@ -72,7 +72,7 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// In the order of kinds.
     bodies: [PlacedPart<'a, N, D>; 2],
-    lying: Lying<N, D>,
+    relative: RelativePose<N, D>,
     /// The anchor in the frames of the two shapes.
     origins: [Point<N, D>; 2],
     /// Whether the part of the second shape has the usual placement of its [`Scene`].
@@ -278,7 +278,10 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let whole = WholeOrPart::Whole(self.between.pair.first);
         let bodies =
             [PlacedPart { pose: Pose::identity(), solid: whole }, PlacedPart { pose, solid }];
-        Some(PlacedPair { is_shared: true, ..PlacedPair::of(bodies, shared.lying, shared.origins) })
+        Some(PlacedPair {
+            is_shared: true,
+            ..PlacedPair::of(bodies, shared.relative, shared.origins)
+        })
     }
 
     /// Returns the placement of a part, which serves all parts with the same pose and kind.
@@ -293,7 +296,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
             is_segment: matches!(part.solid, PartSolid::Segment(_)),
             local: part.pose.inverse_point(&origins[1]).coords,
             origins,
-            lying: Lying::new([&Pose::identity(), &pose], self.turn(), is_swapped),
+            relative: RelativePose::new([&Pose::identity(), &pose], self.turn(), is_swapped),
         }
     }
 }
@@ -307,7 +310,7 @@ impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> Lying<N, D> {
+impl<N: Space<D>, const D: usize> RelativePose<N, D> {
     /// Takes the poses of a part of the first shape and one of the second, relative to the anchor.
     fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_swapped: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
@@ -324,25 +327,25 @@ impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
     fn new(bodies: [PlacedPart<'a, N, D>; 2], turn: Pose<N, D>, origins: [Point<N, D>; 2]) -> Self {
         let kind = |body: &PlacedPart<'_, N, D>| Geometry(body.kind()).kind();
         let is_swapped = kind(&bodies[0]) > kind(&bodies[1]);
-        let lying = Lying::new([&bodies[0].pose, &bodies[1].pose], turn, is_swapped);
-        Self::of(bodies, lying, origins)
+        let relative = RelativePose::new([&bodies[0].pose, &bodies[1].pose], turn, is_swapped);
+        Self::of(bodies, relative, origins)
     }
 
     /// Takes a part of the first shape and one of the second.
     fn of(
         [body1, body2]: [PlacedPart<'a, N, D>; 2],
-        lying: Lying<N, D>,
+        relative: RelativePose<N, D>,
         origins: [Point<N, D>; 2],
     ) -> Self {
-        let bodies = if lying.is_swapped { [body2, body1] } else { [body1, body2] };
-        Self { bodies, lying, origins, is_shared: false }
+        let bodies = if relative.is_swapped { [body2, body1] } else { [body1, body2] };
+        Self { bodies, relative, origins, is_shared: false }
     }
 
     /// Replaces the part of the second shape; returns false, without a change, if the new part does
     /// not have the usual placement.
     fn exchange(&mut self, shared: &SharedPlacement<N, D>, part: &Part<'a, N, D>) -> bool {
         let Some(solid) = shared.recentred(part) else { return false };
-        let at = usize::from(!self.lying.is_swapped);
+        let at = usize::from(!self.relative.is_swapped);
         self.bodies[at].solid = WholeOrPart::Part(solid);
         true
     }
@@ -352,7 +355,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// The two parts in the order of their kinds.
     pub(super) fn pair(&self) -> Pair<'_, N, D> {
         let [first, second] = &self.bodies;
-        Pair { first: first.kind(), second: second.kind(), pose12: self.lying.pose12 }
+        Pair { first: first.kind(), second: second.kind(), pose12: self.relative.pose12 }
     }
 
     /// Whether neither is a half-space.
@@ -365,19 +368,20 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
         let [center1, center2] = self.swapped([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
-        let [in1, in2] = [self.lying.turn.inverse_point(&center1), self.lying.turn.point(&center2)];
+        let [in1, in2] =
+            [self.relative.turn.inverse_point(&center1), self.relative.turn.point(&center2)];
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
     /// For a convex first shape: the centre of that, or `from` instead, and the centre of the part
     /// of the second, in the frame of the second; `None` if one is a half-space.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
-        let [first, second] = if self.lying.is_swapped { [1, 0] } else { [0, 1] };
+        let [first, second] = if self.relative.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;
         let own = self.bodies[second].center()? + origin;
         let other = match from {
             Some(from) => *from,
-            None => self.lying.turn.inverse_point(&self.bodies[first].center()?) + origin,
+            None => self.relative.turn.inverse_point(&self.bodies[first].center()?) + origin,
         };
         Some([other, own])
     }
@@ -389,35 +393,35 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
             map.map_or(N::ZERO, |map| map.reach() + map.rounding())
         };
         let lengths = size(&self.bodies[0]) + size(&self.bodies[1]);
-        N::lit(16.0) * N::EPSILON * (lengths + self.lying.pose12.translation.norm())
+        N::lit(16.0) * N::EPSILON * (lengths + self.relative.pose12.translation.norm())
     }
 
     /// Converts a pair of values from the order of shapes to the order of kinds, or back.
     pub(super) fn swapped<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
-        if self.lying.is_swapped { [b, a] } else { [a, b] }
+        if self.relative.is_swapped { [b, a] } else { [a, b] }
     }
 
     /// Rotates a direction from the frame of the second shape to that of the first.
     pub(super) fn in_first_frame(&self, direction: &Vector<N, D>) -> Vector<N, D> {
-        self.lying.turn.vector(direction)
+        self.relative.turn.vector(direction)
     }
 
     /// Rotates a direction from the frame of the first shape to that of the second.
     pub(super) fn in_second_frame(&self, direction: &Vector<N, D>) -> Vector<N, D> {
-        self.lying.turn.inverse_vector(direction)
+        self.relative.turn.inverse_vector(direction)
     }
 
     /// Converts a direction from the first body to the second into one from the first shape to the
     /// second.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
-        let normal = self.lying.frame.vector(normal);
-        if self.lying.is_swapped { -normal } else { normal }
+        let normal = self.relative.frame.vector(normal);
+        if self.relative.is_swapped { -normal } else { normal }
     }
 
     /// The inverse of [`Self::outward`].
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
-        let normal = self.lying.frame.inverse_vector(normal);
-        if self.lying.is_swapped { -normal } else { normal }
+        let normal = self.relative.frame.inverse_vector(normal);
+        if self.relative.is_swapped { -normal } else { normal }
     }
 
     /// Whether the two parts are separated, within `tolerance`, once the second shape moves by one
@@ -433,7 +437,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
                 pairs.others.put(lane, &other.mapped(|corner| Point::from(corner + translation)));
             }
             pairs.count = translations.len();
-            let PairVerdicts { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
+            let PairMasks { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
             // Few pairs are so close to the limit that the lanes leave them undecided.
             let is_open = |lane: usize| (beyond | within) >> lane & 1 == 0;
             let mut open = translations.iter().enumerate().filter(|(lane, _)| is_open(*lane));
@@ -446,7 +450,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     fn corners(&self) -> Option<[[Vector<N, D>; 3]; 2]> {
         let [first, second] = self.swapped([&self.bodies[0], &self.bodies[1]]);
         let second = second.corners()?;
-        Some([first.corners()?, second.mapped(|corner| self.lying.turn.vector(&corner))])
+        Some([first.corners()?, second.mapped(|corner| self.relative.turn.vector(&corner))])
     }
 
     /// Whether the two parts are separated, within `tolerance`, once the second shape moves by
@@ -468,8 +472,8 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         let start = points.len();
         for point in &raw.points {
             let mut placed = *point;
-            let across = if self.lying.is_swapped { point.distance } else { N::ZERO };
-            let foot = self.lying.frame.point(&(point.point1 + raw.normal * across));
+            let across = if self.relative.is_swapped { point.distance } else { N::ZERO };
+            let foot = self.relative.frame.point(&(point.point1 + raw.normal * across));
             placed.point1 = self.origins[0] + foot.coords;
             [placed.feature1, placed.feature2] = self.swapped([point.feature1, point.feature2]);
             points.push(placed);

@@ -24,7 +24,7 @@ mod touching;
 pub(crate) use between::{Between, PartPair};
 pub(crate) use inside::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
 pub(crate) use nearest::{Wanted, nearest_between};
-pub(crate) use pair_lanes::{PairVerdicts, PartPairs, part_pairs2, part_pairs3};
+pub(crate) use pair_lanes::{PairMasks, PartPairs, part_pairs2, part_pairs3};
 pub(crate) use separation::{PairVisitor, PartSeparation, separation, visit_near_pairs};
 pub(crate) use slab_lanes::{part_gaps2, part_gaps3};
 pub(crate) use slabs::AxisSlabs;

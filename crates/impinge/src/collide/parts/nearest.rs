@@ -53,18 +53,18 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns true if
     /// the search is settled: there is a contact, or `limit` admits nothing else.
     fn finds_touching(&mut self) -> bool {
-        let (between, reach) = (self.between, min(self.limit, N::ZERO));
-        let mut touching = TouchingPart { nearest: self, reach };
-        let is_searched = each_touching(between, reach, Touching::Any, &mut touching);
+        let (between, max_distance) = (self.between, min(self.limit, N::ZERO));
+        let mut touching = TouchingPart { nearest: self, max_distance };
+        let is_searched = each_touching(between, max_distance, Touching::Any, &mut touching);
         is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
     }
 
     /// Searches two composites for their nearest parts. Returns true if these are apart, so that
     /// they are the wanted pair; parts that overlap need the search by depth.
     fn finds_apart(&mut self) -> bool {
-        let (between, reach) = (self.between, self.limit());
-        reach > N::ZERO
-            && each_touching(between, reach, Touching::Nearest, self)
+        let (between, max_distance) = (self.between, self.limit());
+        max_distance > N::ZERO
+            && each_touching(between, max_distance, Touching::Nearest, self)
             && self.limit() > N::ZERO
     }
 }
@@ -72,13 +72,13 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
 /// The search for any pair that touches.
 struct TouchingPart<'a, 'q, N: Real, const D: usize> {
     nearest: &'q mut NearestPart<'a, N, D>,
-    reach: N,
+    max_distance: N,
 }
 
 impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for TouchingPart<'_, '_, N, D> {
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self.nearest, parts);
-        (self.nearest.bound() >= N::ZERO).then_some(self.reach)
+        (self.nearest.bound() >= N::ZERO).then_some(self.max_distance)
     }
 }
 
@@ -86,7 +86,7 @@ impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for NearestPart<'_, N, D
     /// Ends the search at contact: overlaps need the search by depth.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);
-        Some(self.limit()).filter(|reach| *reach > N::ZERO)
+        Some(self.limit()).filter(|max_distance| *max_distance > N::ZERO)
     }
 
     fn normal(&self) -> Option<Vector<N, D>> {

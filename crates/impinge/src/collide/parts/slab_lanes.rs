@@ -25,7 +25,7 @@ pub(crate) fn part_gaps2<N: Real>(
     let mut gaps = [N::ZERO; LANES];
     for run in Level::new().runs(LANES) {
         let found =
-            in_lanes!(run, simd => in_plane::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
+            in_lanes!(run, simd => in_lanes_2d::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
         gaps[run.lanes()].copy_from_slice(&found[run.lanes()]);
     }
     gaps
@@ -40,7 +40,7 @@ pub(crate) fn part_gaps3<N: Real>(
     let mut gaps = [N::ZERO; LANES];
     for run in Level::new().runs(LANES) {
         let found =
-            in_lanes!(run, simd => in_space::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
+            in_lanes!(run, simd => in_lanes_3d::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
         gaps[run.lanes()].copy_from_slice(&found[run.lanes()]);
     }
     gaps
@@ -48,7 +48,7 @@ pub(crate) fn part_gaps3<N: Real>(
 
 /// Gaps in 2D: along the slabs, then across the sides of the other parts.
 #[inline(always)]
-fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn in_lanes_2d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     slabs: &AxisSlabs<N, 2>,
     tiles: &PartPacket<N, 2>,
@@ -69,7 +69,7 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// Gaps in 3D: along the slabs, then across the planes of the other parts, then perpendicular to a
 /// side of each.
 #[inline(always)]
-fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     slabs: &AxisSlabs<N, 3>,
     tiles: &PartPacket<N, 3>,

@@ -92,8 +92,8 @@ fn searches<N: Space<D>, const D: usize>(
     let (first, parts) = (mesh.geometry().0, mesh.num_parts());
     let mut overlaps = [0; 2];
     for round in 0..48 {
-        let reach = N::lit([0.3, 1.0, 2.0, 8.0][round % 4]);
-        let pose12 = Pose { translation: vector(random) * reach, ..turn(random) };
+        let distance = N::lit([0.3, 1.0, 2.0, 8.0][round % 4]);
+        let pose12 = Pose { translation: vector(random) * distance, ..turn(random) };
         let second = other.geometry().0;
         let distance = check(&Pair { first, second, pose12 }, [parts, other.num_parts()]);
         overlaps[usize::from(distance > N::ZERO)] += 1;
@@ -115,15 +115,15 @@ fn searches_of_surface<N: Space<3>>() {
     let mesh = TriMesh::new(surface.vertices, surface.triangles);
     let (first, parts, random) = (mesh.geometry().0, mesh.num_parts(), &mut Random(5));
     let mut overlaps = [0; 2];
-    for reach in [0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 4.0, 1e4] {
-        let along = Vector::<N, 3>::new(N::lit(reach), N::ZERO, N::ZERO);
-        let aside = random.vector::<N>() * N::lit(reach);
+    for distance in [0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 4.0, 1e4] {
+        let along = Vector::<N, 3>::new(N::lit(distance), N::ZERO, N::ZERO);
+        let aside = random.vector::<N>() * N::lit(distance);
         for pose12 in [
             Pose::from_translation(along),
             Pose { translation: along, ..random.turn() },
             Pose { translation: aside, ..random.turn() },
         ] {
-            for solid in in_space() {
+            for solid in solids_3d() {
                 let pair = Pair { first, second: solid.geometry().0, pose12 };
                 overlaps[usize::from(check(&pair, [parts, 1]) > N::ZERO)] += 1;
             }
@@ -161,7 +161,7 @@ fn bounds<N: Space<D>, const D: usize>(
     }
 }
 
-fn in_space<N: Space<3>>() -> Solids<N, 3> {
+fn solids_3d<N: Space<3>>() -> Solids<N, 3> {
     let half = Vector::<N, 3>::new(N::lit(0.5), N::lit(0.3), N::lit(0.2));
     let random = &mut Random(8);
     let points: Vec<_> =
@@ -180,7 +180,7 @@ fn in_space<N: Space<3>>() -> Solids<N, 3> {
     ]
 }
 
-fn in_plane<N: Space<2>>() -> Solids<N, 2> {
+fn solids_2d<N: Space<2>>() -> Solids<N, 2> {
     let half = Vector::<N, 2>::new(N::lit(0.5), N::lit(0.2));
     let random = &mut Random(8);
     let points: Vec<_> =
@@ -206,14 +206,14 @@ fn random_rotation<N: Real>(random: &mut Random) -> Pose<N, 2> {
 
 #[test]
 fn no_part_is_nearer_than_the_one_that_is_found() {
-    searches::<f32, 3>(&in_space(), Random::vector, Random::turn);
-    searches::<f32, 2>(&in_plane(), |random| random.vector().xy(), random_rotation);
+    searches::<f32, 3>(&solids_3d(), Random::vector, Random::turn);
+    searches::<f32, 2>(&solids_2d(), |random| random.vector().xy(), random_rotation);
     searches_of_surface::<f32>();
 }
 
 #[test]
 fn no_part_is_nearer_in_double_precision() {
-    searches::<f64, 3>(&in_space(), Random::vector, Random::turn);
-    searches::<f64, 2>(&in_plane(), |random| random.vector().xy(), random_rotation);
+    searches::<f64, 3>(&solids_3d(), Random::vector, Random::turn);
+    searches::<f64, 2>(&solids_2d(), |random| random.vector().xy(), random_rotation);
     searches_of_surface::<f64>();
 }

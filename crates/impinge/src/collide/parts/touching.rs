@@ -43,14 +43,14 @@ pub(crate) enum Touching {
     Nearest,
 }
 
-/// Visits the pairs of parts that may be within `reach`. Returns false, without a visit, for
+/// Visits the pairs of parts that may be within `max_distance`. Returns false, without a visit, for
 /// composites that are not searched by trees or are too far away for boxes of `f32`.
 ///
 /// Cost: O(n + k) for k pairs with boxes within reach in n blocks within reach, as long as the
 /// boxes fit tightly.
 pub(crate) fn each_touching<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    reach: N,
+    max_distance: N,
     wanted: Touching,
     visitor: &mut dyn TouchingVisitor<N, D>,
 ) -> bool {
@@ -69,7 +69,7 @@ pub(crate) fn each_touching<N: Space<D>, const D: usize>(
         between,
         parts: [parts1, parts2],
         meshes: [parts1.as_mesh(), parts2.as_mesh()],
-        reach: Some(reach),
+        max_distance: Some(max_distance),
         slack: if wanted == Touching::Nearest { gap_slack(size) } else { N::ZERO },
         wanted,
         own: None,
@@ -88,7 +88,7 @@ struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
     parts: [&'a dyn CompositeShape<N, D>; 2],
     /// The composites that are meshes, for quicker access to corners.
     meshes: [Option<&'a TriMesh<N, D>>; 2],
-    reach: Option<N>,
+    max_distance: Option<N>,
     /// Boxes may be farther apart than the nearest parts by this rounding error.
     slack: N,
     wanted: Touching,
@@ -115,27 +115,28 @@ impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
     /// Whether two parts are beyond reach along the line through their centroids; this rejects most
     /// pairs that boxes do not.
     fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
-        let Some(reach) = self.reach.filter(|_| self.wanted == Touching::Nearest) else {
+        let Some(max_distance) = self.max_distance.filter(|_| self.wanted == Touching::Nearest)
+        else {
             return false;
         };
         let axis = (other[0] + other[1] + other[2]) - (one[0] + one[1] + one[2]);
         let [gap1, gap2] = [range(one, &axis)[1], range(other, &axis)[0]];
-        gap2 - gap1 > (reach + self.slack) * axis.norm()
+        gap2 - gap1 > (max_distance + self.slack) * axis.norm()
     }
 
     /// Passes a pair to the visitor, which returns the new reach.
     fn found(&mut self, pair: [u32; 2]) {
-        self.reach = self.reach.and_then(|_| self.visitor.visit(pair));
+        self.max_distance = self.max_distance.and_then(|_| self.visitor.visit(pair));
     }
 
     /// Tests the waiting pairs in lanes and visits those not certainly beyond reach.
     fn flush(&mut self) {
         let (mut looked_at, mut within) = (0, None);
-        while let Some(reach) = self.reach.filter(|_| looked_at < self.pairs.count) {
+        while let Some(max_distance) = self.max_distance.filter(|_| looked_at < self.pairs.count) {
             // The lanes are tested again only after the reach has shrunk.
-            if within.is_none_or(|(known, _)| reach < known) {
-                let beyond = <N::Algorithms>::part_pairs(&self.pairs, reach).beyond;
-                within = Some((reach, !beyond));
+            if within.is_none_or(|(known, _)| max_distance < known) {
+                let beyond = <N::Algorithms>::part_pairs(&self.pairs, max_distance).beyond;
+                within = Some((max_distance, !beyond));
             }
             if within.is_some_and(|(_, lanes)| lanes >> looked_at & 1 == 1) {
                 self.found(self.kept[looked_at]);
@@ -163,8 +164,8 @@ impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N,
         self.between.in_frame_of_other(which).1
     }
 
-    fn reach(&self) -> Option<N> {
-        self.reach.map(|reach| reach + self.slack)
+    fn max_distance(&self) -> Option<N> {
+        self.max_distance.map(|max_distance| max_distance + self.slack)
     }
 
     fn is_for_nearest(&self) -> bool {

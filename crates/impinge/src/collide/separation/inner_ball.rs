@@ -13,8 +13,8 @@ pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -
     else {
         return false;
     };
-    let reach = (radius1 + radius2) * N::lit(SHARE);
-    (pair.pose12.point(&center2) - center1).norm_squared() < reach * reach
+    let max_distance = (radius1 + radius2) * N::lit(SHARE);
+    (pair.pose12.point(&center2) - center1).norm_squared() < max_distance * max_distance
 }
 
 /// Returns a ball inside a solid, about its centre; `None` for kinds without one. The ball of a

@@ -40,8 +40,8 @@ enum DistanceMethod {
 /// If they overlap and `limit` is zero or more, any number that is not positive may stand for it,
 /// so clear overlaps are not measured. Otherwise it is the distance of the separation, to the bit.
 /// Pairs that are not in the order of kinds go to the separation, which orders them.
-pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
-    if let Some(known) = known_in_space(pair) {
+pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    if let Some(known) = known_3d(pair) {
         return (known <= limit).then_some(known);
     }
     if limit >= N::ZERO && inner_balls_meet(pair) {
@@ -57,9 +57,9 @@ pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: 
     distance(pair, limit, method)
 }
 
-/// Returns the signed distance of two solids in 2D, with the rule of [`distance_in_space`].
-pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
-    if let Some(known) = known(pair, beside_ball_in_plane) {
+/// Returns the signed distance of two solids in 2D, with the rule of [`distance_3d`].
+pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
+    if let Some(known) = known(pair, beside_ball_2d) {
         return (known <= limit).then_some(known);
     }
     if limit >= N::ZERO && inner_balls_meet(pair) {
@@ -69,17 +69,17 @@ pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: 
 }
 
 /// Returns the signed distance where its formula is a part of the formula for the separation.
-fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
+fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {
         (Segment(_), Segment(_) | Capsule(_)) | (Capsule(_), Capsule(_)) => {
             Some(segment_segment::distance(pair))
         }
-        _ => known(pair, beside_ball_in_space),
+        _ => known(pair, beside_ball_3d),
     }
 }
 
-/// Computes [`known_in_space`] for the kinds that do not depend on the dimension; balls by the
+/// Computes [`known_3d`] for the kinds that do not depend on the dimension; balls by the
 /// projection of their centre (`beside_ball`).
 #[inline(always)]
 fn known<N: Real, const D: usize>(
@@ -102,18 +102,14 @@ fn known<N: Real, const D: usize>(
 /// Returns the signed distance of a ball from a solid in 3D, in the frame of the solid: the
 /// projection of its centre without the direction. Radii are subtracted in the order of the
 /// separation.
-fn beside_ball_in_space<N: Real>(
-    radius: N,
-    kind: Kind<'_, N, 3>,
-    center: &Point<N, 3>,
-) -> Option<N> {
+fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle::distance_from(triangle.corners(), center),
         Kind::Polytope(hull) => ball_polytope::project(hull, center).distance,
         Kind::Cylinder(cylinder, _) => ball_cylinder::project(cylinder, center).distance,
         Kind::Cone(cone, _) => ball_cone::project(cone, center).distance,
         Kind::Rounded(solid) => {
-            let core = beside_ball_in_space(radius, solid.inner().0, center)?;
+            let core = beside_ball_3d(radius, solid.inner().0, center)?;
             return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
@@ -121,17 +117,13 @@ fn beside_ball_in_space<N: Real>(
     Some(apart - radius)
 }
 
-/// Computes [`beside_ball_in_space`] in 2D.
-fn beside_ball_in_plane<N: Real>(
-    radius: N,
-    kind: Kind<'_, N, 2>,
-    center: &Point<N, 2>,
-) -> Option<N> {
+/// Computes [`beside_ball_3d`] in 2D.
+fn beside_ball_2d<N: Real>(radius: N, kind: Kind<'_, N, 2>, center: &Point<N, 2>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), center)?.distance,
         Kind::Polytope(polygon) => ball_polygon::project(polygon, center).distance,
         Kind::Rounded(solid) => {
-            let core = beside_ball_in_plane(radius, solid.inner().0, center)?;
+            let core = beside_ball_2d(radius, solid.inner().0, center)?;
             return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
@@ -405,10 +397,10 @@ mod tests {
         };
         let ball: [Box<dyn Shape<f32, 3>>; 1] = [Box::new(Ball::new(0.3))];
         let pose_of = |random: &mut Random| random.turn::<f32>();
-        are_parts(&ball, &solids(), pose_of, known_in_space);
+        are_parts(&ball, &solids(), pose_of, known_3d);
         let plane: [Box<dyn Shape<f32, 3>>; 1] =
             [Box::new(Plane::new(-Vector::<f32, 3>::x_axis()))];
-        are_parts(&solids()[..9], &plane, pose_of, known_in_space);
+        are_parts(&solids()[..9], &plane, pose_of, known_3d);
         let flat: [Box<dyn Shape<f32, 2>>; 4] = [
             Box::new(Triangle::new(corners[0].xy(), corners[1].xy(), corners[3].xy())),
             Box::new(ConvexPolygon::from_points(&corners.map(|corner| corner.xy()))),
@@ -417,7 +409,7 @@ mod tests {
         ];
         let ball: [Box<dyn Shape<f32, 2>>; 1] = [Box::new(Ball::new(0.3))];
         let pose_of = |random: &mut Random| Pose::from_translation(random.vector::<f32>().xy());
-        are_parts(&ball, &flat, pose_of, |pair| known(pair, beside_ball_in_plane));
+        are_parts(&ball, &flat, pose_of, |pair| known(pair, beside_ball_2d));
     }
 
     #[test]
@@ -437,6 +429,6 @@ mod tests {
         let (first, second) = (cone.geometry().0, cone.geometry().0);
         let pair = Pair { first, second, pose12 };
         assert!(!certainly_overlap(&pair, DistanceMethod::Features), "not a number");
-        assert_eq!(distance_in_space(&pair, f32::INFINITY), None, "not a number");
+        assert_eq!(distance_3d(&pair, f32::INFINITY), None, "not a number");
     }
 }

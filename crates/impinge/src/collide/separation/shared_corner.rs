@@ -94,11 +94,11 @@ fn is_between<N: Real, const D: usize>(
         let (low, high) = (min(a[axis], b[axis]), max(a[axis], b[axis]));
         low <= point[axis] && point[axis] <= high
     };
-    let is_level = |one: usize, other: usize| {
+    let is_collinear = |one: usize, other: usize| {
         let project = |p: &Point<N, D>| Point::<f64, 2>::new(p[one].as_f64(), p[other].as_f64());
         exact::area(&project(a), &project(b), &project(point)) == 0.0
     };
-    (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_level(one, other)))
+    (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_collinear(one, other)))
 }
 
 /// Visits the corners of a flat-sided solid, in its own frame; none for other solids.

@@ -223,9 +223,9 @@ fn check_together<N: Real>(
     for lane in 0..tiles.len() * LANES {
         tiles[lane / LANES].put(lane % LANES, triangles[lane.min(count - 1)].corners());
     }
-    let mut near = vec![u8::MAX; tiles.len()];
-    *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
-    let parts = TiledTriangles { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
+    let mut masks = vec![u8::MAX; tiles.len()];
+    *masks.last_mut().expect("one") >>= tiles.len() * LANES - count;
+    let parts = TiledTriangles { tiles: &tiles, masks: &masks, origin: Vector::<N, 3>::zeros() };
     let (mut touching, mut certain) = (0, vec![false; count]);
     let mut is_met = vec![false; count];
     let is_known = gaps3(&parts, solid, pose12, limit, limit, &mut |at, gap| {

@@ -200,7 +200,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     fn begin_in_contact(&mut self, tolerance: N) {
         if self.start == WholeContact::Unknown {
             let whole = WholeQuestion { between: *self.between, path: self.path, along: N::ZERO };
-            let (start, hit) = whole.ask(tolerance, &mut |_| {});
+            let (start, hit) = whole.contacts_within(tolerance, &mut |_| {});
             self.start = start;
             self.first = hit.or(self.first);
         }
@@ -221,7 +221,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let pair = path.moved(&self.between.pair, *along);
         let whole = WholeQuestion { between: Between::of_pair(&pair), path, along: *along };
         let (own, mut is_same) = (placed.in_first(separation).normal, false);
-        let (contact, hit) = whole.ask(rounding(placed), &mut |normal| {
+        let (contact, hit) = whole.contacts_within(rounding(placed), &mut |normal| {
             is_same |= (normal - own).norm() <= N::lit(SAME);
         });
         match contact {
@@ -265,7 +265,7 @@ struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
 impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
     /// Returns the result of the contacts within the target distance plus `tolerance`, and the
     /// deepest that counts. Calls `visit` with the normals of those that count.
-    fn ask(
+    fn contacts_within(
         &self,
         tolerance: N,
         visit: &mut dyn FnMut(&Vector<N, D>),

@@ -66,11 +66,11 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
         }
         for along in across(&relative.mapped(|at| at - relative[0])) {
             let local = self.pose.inverse_vector(&along);
-            let reach = |direction: &Vector<N, D>| {
+            let extent = |direction: &Vector<N, D>| {
                 self.map.core_support(direction).coords.dot(direction) + self.map.rounding()
             };
             span.cut(
-                [-reach(&-local), reach(&local)],
+                [-extent(&-local), extent(&local)],
                 range(&relative, &along),
                 self.velocity.dot(&along),
             );

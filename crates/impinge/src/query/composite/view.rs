@@ -168,8 +168,8 @@ fn is_face_normal<N: Space<D>, const D: usize>(
 ) -> bool {
     let Some(composite) = Geometry(kind).as_composite() else { return false };
     let face = composite.surface().and_then(|surface| surface.snapped(part, outward));
-    let is_in_space = <N::Algorithms>::tangents(outward)[1] != Vector::<N, D>::zeros();
-    let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_in_space;
+    let is_3d = <N::Algorithms>::tangents(outward)[1] != Vector::<N, D>::zeros();
+    let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_3d;
     let tolerance = N::lit(ROUNDING) * N::EPSILON;
     face.is_some_and(|face| !is_line && (face - outward).norm() <= tolerance)
 }

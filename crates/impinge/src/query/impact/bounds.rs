@@ -141,8 +141,8 @@ impl<N: Real> Rate<N> {
             return N::ZERO;
         }
         // The product may overflow where its factors do not.
-        let reach = N::TWO * self.bend.sqrt() * gap.sqrt();
-        let root = length(&Vector::<N, 2>::new(self.speed, reach));
+        let gained_speed = N::TWO * self.bend.sqrt() * gap.sqrt();
+        let root = length(&Vector::<N, 2>::new(self.speed, gained_speed));
         if self.speed > N::ZERO {
             // The usual formula would cancel.
             N::TWO * gap / (self.speed + root)
@@ -223,8 +223,8 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// velocities. `rate` bounds the approach of any two points.
     ///
     /// A point at `u` from the other body's centre has the velocity `u' - S u` in the frame of that
-    /// body, which rotates by `S`: a linear function of its position. Its derivative, `u'' - 2 S u'
-    /// + S² u`, bends the path.
+    /// body, which rotates by `S`: a linear function of its position. Its derivative,
+    /// `u'' - 2 S u' + S² u`, bends the path.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
         let travel = rate.travel(span);
         let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);
@@ -257,7 +257,7 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
 
     /// Whether the parts of the bodies can be advanced separately: one is a composite, and both
     /// have constant velocities.
-    pub(super) fn has_parts_on_known_ways(&self) -> bool {
+    pub(super) fn has_parts_on_known_paths(&self) -> bool {
         let is_known = self.bodies.iter().all(|body| body.constant().is_some());
         is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
     }

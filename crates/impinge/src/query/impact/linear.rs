@@ -214,13 +214,15 @@ fn arrival_of_balls<N: Space<D>, const D: usize>(
     tolerance: N,
 ) -> Option<Arrival<N, D>> {
     let (Kind::Ball(ball1), Kind::Ball(ball2)) = (start.first, start.second) else { return None };
-    let (velocity, reach) = (&path.velocity, ball1.radius() + ball2.radius() + path.target);
-    let scale = max(max_component(&start.pose12.translation), reach).power_of_two_below();
-    let (middle, reach) = (start.pose12.translation / scale, reach / scale);
+    let (velocity, contact_distance) =
+        (&path.velocity, ball1.radius() + ball2.radius() + path.target);
+    let scale =
+        max(max_component(&start.pose12.translation), contact_distance).power_of_two_below();
+    let (middle, contact_distance) = (start.pose12.translation / scale, contact_distance / scale);
     let squared = velocity.norm_squared();
     let foot = -middle.dot(velocity) / squared;
     let across = middle + velocity * foot;
-    let leg = ((reach * reach - across.norm_squared()) / squared).sqrt();
+    let leg = ((contact_distance * contact_distance - across.norm_squared()) / squared).sqrt();
     let along = (foot - leg) * scale;
     // Written so that NaN, from balls that pass each other, is left to the steps too.
     let is_in_time = along > N::ZERO && along <= path.end;
@@ -282,11 +284,11 @@ fn touching<N: Space<D>, const D: usize>(
 
 /// The length that tolerances are proportional to: the sizes of the solids plus their distance.
 pub(crate) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
-    let reach = |geometry: Geometry<'_, N, D>| {
+    let bounding_radius = |geometry: Geometry<'_, N, D>| {
         geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
     };
     let apart = max_component(&pair.pose12.translation);
-    apart + reach(Geometry(pair.first)) + reach(Geometry(pair.second))
+    apart + bounding_radius(Geometry(pair.first)) + bounding_radius(Geometry(pair.second))
 }
 
 #[cfg(test)]

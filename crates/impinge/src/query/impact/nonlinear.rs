@@ -267,7 +267,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         let whole = moment.safe_time(excess, apart, self.end - moment.time);
         let whole = Step { time: whole, near_steps: 0 };
         let size = self.bodies[0].size() + self.bodies[1].size();
-        if excess >= N::lit(PARTS_WITHIN) * size || !moment.has_parts_on_known_ways() {
+        if excess >= N::lit(PARTS_WITHIN) * size || !moment.has_parts_on_known_paths() {
             return whole;
         }
         let rate = moment.first_order(self.end);

@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn isometries_compose_in_the_plane() {
+    fn isometries_compose_2d() {
         let rotated = |x: f64| Isometry2::new(Vector::<f64, 2>::new(x, -1.0), 3.0 * x);
         let motion = ConstantVelocities::<f64, 2>::new(rotated(0.3), [0.5, 2.0].into(), -1.5)
             .with_local_center(Point::<f64, 2>::new(0.25, 1.5))

@@ -49,7 +49,7 @@ struct Case<'a, const D: usize> {
     pose12: Pose<f64, D>,
     followed: [FeatureId; 2],
     /// The weight of errors of the position, besides those of distance and normal.
-    place_weight: f64,
+    position_weight: f64,
 }
 
 impl<const D: usize> Case<'_, D>
@@ -75,7 +75,7 @@ where
         let moved = f64::pose(motion.shift * step, turn).compose(&self.pose12);
         let (_, raw) = manifold(&self.pair(moved), &request(0.1, 0.0));
         let (predicted, point) = (kinematic.predicted(&moved), &raw.points[self.followed(&raw)]);
-        (predicted.point1 - point.point1).norm() * self.place_weight
+        (predicted.point1 - point.point1).norm() * self.position_weight
             + (predicted.distance - point.distance).abs()
             + (predicted.normal - raw.normal).norm()
     }
@@ -130,7 +130,7 @@ fn follow<const D: usize>(
     f64: Scene<D>,
 {
     let followed = first_features(solids, pose12, is_it);
-    Case { solids, pose12, followed, place_weight: 1.0 }.check();
+    Case { solids, pose12, followed, position_weight: 1.0 }.check();
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn capsules_segments_and_cylinders() {
     let (solids, pose12) = ([&ground as &dyn Shape<f64, 3>, &cylinder], below.inverse());
     let followed = first_features(solids, pose12, |a, _| matches!(a, Face(_)));
     assert!(matches!(followed[1], Edge(_)), "a rim: {followed:?}");
-    Case { solids, pose12, followed, place_weight: 0.0 }.check();
+    Case { solids, pose12, followed, position_weight: 0.0 }.check();
 }
 
 /// After a common motion of both solids, the contact has moved with them.

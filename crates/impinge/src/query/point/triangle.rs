@@ -15,9 +15,9 @@ pub(super) struct OnTriangle<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> OnTriangle<N, D> {
-    /// The one nearer to `asked`, the first if equal.
-    fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
-        if self.found.is_beaten_by(&other.found, asked) { other } else { self }
+    /// The one nearer to `query`, the first if equal.
+    fn nearer(self, other: Self, query: &Point<N, D>) -> Self {
+        if self.found.is_beaten_by(&other.found, query) { other } else { self }
     }
 }
 

@@ -176,13 +176,13 @@ impl<N: Real> Shape<N, 3> for Cone<N> {
     }
 
     fn local_aabb(&self) -> Aabb<N, 3> {
-        let reach = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
-        Aabb::around(Point::origin(), reach)
+        let extents = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
+        Aabb::around(Point::origin(), extents)
     }
 
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
-        let (apex, disk) = (axis * self.half_height, self.base().reach(&pose.rotation));
+        let (apex, disk) = (axis * self.half_height, self.base().extents(&pose.rotation));
         let (low, high) = (apex.zip_map(&(-apex - disk), min), apex.zip_map(&(-apex + disk), max));
         Aabb::of_rotated(low, high, self.reach(), pose)
     }

@@ -80,7 +80,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(CuboidPart::facing(direction, Tilt::default_limit()), out);
+        self.fill(CuboidPart::toward(direction, Tilt::default_limit()), out);
     }
 }
 
@@ -118,13 +118,13 @@ pub(in crate::shape) struct CuboidPart<const D: usize> {
 
 /// The supporting feature of a box: a point, a segment or a face with sides.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FacingPart<N: Real, const D: usize> {
+pub(crate) struct SupportPart<N: Real, const D: usize> {
     part: CuboidPart<D>,
     /// The outward normal; `None` if the part is no face.
     pub(crate) normal: Option<Vector<N, D>>,
 }
 
-impl<N: Real, const D: usize> FacingPart<N, D> {
+impl<N: Real, const D: usize> SupportPart<N, D> {
     /// The direction of edge `index` of a box in 3D.
     pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
         axis_vector((index / 4) as usize)
@@ -132,13 +132,13 @@ impl<N: Real, const D: usize> FacingPart<N, D> {
 
     /// The direction of the side of the part that is most nearly perpendicular to a vector, the
     /// first of equals; `None` for a point.
-    pub(crate) fn most_level_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
+    pub(crate) fn flattest_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
         let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
         let axes =
             (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.part.free, axis));
         let tilt = |axis: usize| vector[axis].abs();
-        let level = axes.reduce(|best, axis| if tilt(axis) < tilt(best) { axis } else { best })?;
-        Some(axis_vector(level))
+        let axis = axes.reduce(|best, axis| if tilt(axis) < tilt(best) { axis } else { best })?;
+        Some(axis_vector(axis))
     }
 }
 
@@ -170,9 +170,9 @@ impl<const D: usize> CuboidPart<D> {
     };
 
     /// The supporting feature for a unit vector. Frees axes, the smallest component first, while
-    /// the tilt admits the sum of their squares; equals the rule for the flattest edge and its most
+    /// the tilt admits the sum of their squares; equals the rule for the axis edge and its most
     /// aligned face.
-    pub(in crate::shape) fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
+    pub(in crate::shape) fn toward<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
         let (mut free, mut sine_squared) = (0, N::ZERO);
         for _ in 1..D {
             let Some(axis) = weakest(direction, free) else { break };
@@ -186,7 +186,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// The face whose normal is most aligned with a direction.
-    fn face_facing<N: Real>(direction: &Vector<N, D>) -> Self {
+    fn face_toward<N: Real>(direction: &Vector<N, D>) -> Self {
         let mut strongest = 0;
         for axis in 1..D {
             if direction[axis].abs() > direction[strongest].abs() {
@@ -385,14 +385,14 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
     }
 
     /// The [`SupportMap::core_feature`] without corners; `None` if it is flat along a free axis.
-    pub(crate) fn facing_part(&self, direction: &Vector<N, D>) -> Option<FacingPart<N, D>> {
-        let part = CuboidPart::<D>::facing(direction, Tilt::default_limit());
+    pub(crate) fn part_toward(&self, direction: &Vector<N, D>) -> Option<SupportPart<N, D>> {
+        let part = CuboidPart::<D>::toward(direction, Tilt::default_limit());
         let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
         if (0..D).any(is_flat) {
             return None;
         }
         let is_face = part.dimension() + 1 == D;
-        Some(FacingPart { part, normal: is_face.then(|| part.normal()) })
+        Some(SupportPart { part, normal: is_face.then(|| part.normal()) })
     }
 
     fn fill(&self, part: CuboidPart<D>, out: &mut Feature<N, D>) {
@@ -427,7 +427,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 impl<N: Real> Cuboid<N, 2> {
     /// See [`SideOrVertex::of`]; `None` if the side has no length.
     pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> Option<SideOrVertex<N>> {
-        let part = CuboidPart::<2>::facing(direction, Tilt::default_limit());
+        let part = CuboidPart::<2>::toward(direction, Tilt::default_limit());
         let with_id = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
         let FeatureId::Face(index) = part.id() else {
             let (id, point) = with_id(part.corner);
@@ -468,15 +468,15 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(CuboidPart::face_facing(direction), out);
+        self.fill(CuboidPart::face_toward(direction), out);
     }
 
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>) {
-        self.fill(CuboidPart::facing(direction, Tilt::of_angle(angle)), out);
+        self.fill(CuboidPart::toward(direction, Tilt::of_angle(angle)), out);
     }
 
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
-        CuboidPart::facing(direction, Tilt::least()).id()
+        CuboidPart::toward(direction, Tilt::least()).id()
     }
 }
 

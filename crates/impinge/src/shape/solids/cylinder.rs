@@ -167,13 +167,13 @@ impl<N: Real> Shape<N, 3> for Cylinder<N> {
     }
 
     fn local_aabb(&self) -> Aabb<N, 3> {
-        let reach = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
-        Aabb::around(Point::origin(), reach)
+        let extents = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
+        Aabb::around(Point::origin(), extents)
     }
 
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
-        let disk = self.disk(N::ZERO).reach(&pose.rotation);
+        let disk = self.disk(N::ZERO).extents(&pose.rotation);
         Aabb::around_rotated(pose, axis.abs() * self.half_height + disk)
     }
 

@@ -104,10 +104,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        let reach = Vector::<N, D>::from_fn(|axis, _| {
+        let extents = Vector::<N, D>::from_fn(|axis, _| {
             length_of(&pose.rotation.row(axis).transpose().component_mul(&self.half_axes))
         });
-        Aabb::around_rotated(pose, reach)
+        Aabb::around_rotated(pose, extents)
     }
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {

@@ -80,7 +80,7 @@ impl<N: Real> Disk<N> {
     /// The extents, along each outer axis, of the disk about the origin under a rotation. Computed
     /// from the columns that span the disk: from its axis alone a small tilt would lose half of all
     /// digits.
-    pub(in crate::shape) fn reach(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
+    pub(in crate::shape) fn extents(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
         Vector::<N, 3>::from_fn(|axis, _| {
             let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);
             length_of(&spans) * self.radius

@@ -182,8 +182,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
 
     fn reach(&self) -> N {
         let [radius1, radius2] = self.core_radii();
-        let reach = |end: &Point<N, D>, radius| length_of(&end.coords) + radius;
-        max(reach(self.segment.a(), radius1), reach(self.segment.b(), radius2))
+        let distance = |end: &Point<N, D>, radius| length_of(&end.coords) + radius;
+        max(distance(self.segment.a(), radius1), distance(self.segment.b(), radius2))
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {

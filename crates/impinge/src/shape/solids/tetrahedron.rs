@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn either_orientation_is_outward_and_named_alike() {
+    fn either_orientation_is_outward_with_the_same_ids() {
         let [a, b, c, d] = corners([[0.0; 3], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]]);
         for given in [[a, b, c, d], [b, a, c, d], [d, c, b, a], [c, d, a, b]] {
             let solid = Tetrahedron::new(given);

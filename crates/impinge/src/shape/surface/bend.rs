@@ -77,9 +77,9 @@ impl<N: Real> Bend<N> {
                 // the edge or across it alone exceeds the limit; in between the rule of seams
                 // decides.
                 let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
-                let is_level = squared_sine < N::lit(1.0 - CLOSE);
+                let is_face_normal = squared_sine < N::lit(1.0 - CLOSE);
                 let is_tilted = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
-                (is_level || is_tilted).then_some(false)
+                (is_face_normal || is_tilted).then_some(false)
             }
             (BendShape::Hollow, true) | (BendShape::Ridge, false) => Some(false),
             (BendShape::Ridge, true) => self.is_between(normal, [along1, along2]),

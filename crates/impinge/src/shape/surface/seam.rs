@@ -39,7 +39,7 @@ pub(in crate::shape) fn is_flat<N: Real>(sine: N) -> bool {
 }
 
 /// Whether two lines count as parallel, by the scalar product of unit vectors along them.
-fn is_level<N: Real>(cosine: N) -> bool {
+fn are_parallel<N: Real>(cosine: N) -> bool {
     N::ONE - cosine * cosine <= N::lit(FLAT_SINE * FLAT_SINE)
 }
 
@@ -63,12 +63,12 @@ pub(in crate::shape) struct CornerEdges<'a, N: Real, const D: usize> {
     /// A side rises clearly along the normal.
     has_rising: bool,
     /// A side is perpendicular to the normal, within rounding.
-    has_level: bool,
+    has_perpendicular: bool,
 }
 
 impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
     pub(in crate::shape) const fn new(normal: &'a Vector<N, D>) -> Self {
-        Self { normal, has_rising: false, has_level: false }
+        Self { normal, has_rising: false, has_perpendicular: false }
     }
 
     /// Adds a side of any length, as a vector away from the corner.
@@ -77,7 +77,7 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         let (rise, margin) = (edge.dot(self.normal), N::lit(CLEAR) * slack());
         let is_clear = rise * rise > margin * margin * edge.norm_squared();
         self.has_rising |= is_clear && rise > N::ZERO;
-        self.has_level |= !is_clear;
+        self.has_perpendicular |= !is_clear;
     }
 
     /// Whether a side rises, so that more sides cannot change the answer.
@@ -98,7 +98,7 @@ impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
         }
         let cosine = own.dot(self.normal);
         let is_tilted = N::ONE - cosine * cosine > N::lit(2.0 * FLAT_SINE * FLAT_SINE);
-        ((is_tilted || is_bent) && !self.has_level && !is_one_sided).then_some(true)
+        ((is_tilted || is_bent) && !self.has_perpendicular && !is_one_sided).then_some(true)
     }
 }
 
@@ -133,7 +133,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
     /// Starts a seam between faces, for the face with the unit normal `own`.
     pub(in crate::shape) fn of_faces(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
         let along = own.dot(normal);
-        Self::new(own, normal, normal - own * along, is_level(along))
+        Self::new(own, normal, normal - own * along, are_parallel(along))
     }
 
     /// Marks the seam as an edge. A normal that tilts more along the edge than across it is not one
@@ -191,7 +191,7 @@ impl<N: Real, const D: usize> Seam<N, D> {
     fn add(&mut self, rise: impl Fn(&Vector<N, D>) -> N, line: &Vector<N, D>, front: N) {
         let (own, flatness) = (rise(&self.normal), front.abs());
         self.is_in_cone &= own <= slack();
-        self.is_flat &= is_level(line.dot(&self.own));
+        self.is_flat &= are_parallel(line.dot(&self.own));
         self.is_hemmed |= self.is_flat && rise(&self.tilt) > self.margin;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
@@ -238,18 +238,18 @@ mod tests {
         }
         let other_order = [left, (left.0, -left.1)];
         assert!(admits(&outward, &other_order), "one of the two has its front up");
-        let almost_level = [left, (v(-1.0, -0.004), v(-0.004, 1.0))];
-        assert!(admits(&outward, &almost_level), "on one side");
+        let almost_coplanar = [left, (v(-1.0, -0.004), v(-0.004, 1.0))];
+        assert!(admits(&outward, &almost_coplanar), "on one side");
     }
 
     #[test]
-    fn between_faces_that_are_almost_level_only_their_normals_count() {
+    fn between_almost_coplanar_faces_only_their_normals_count() {
         let ridge = [(v(-1.0, -0.003), v(-0.003, 1.0)), (v(1.0, -0.003), v(0.003, 1.0))];
         assert!(!admits(&v(0.0, 1.0), &ridge), "within half a degree of both");
         let sharp = [(v(-1.0, -0.3), v(-0.3, 1.0)), (v(1.0, -0.3), v(0.3, 1.0))];
         assert!(admits(&v(0.0, 1.0), &sharp), "a ridge has it");
-        let level = [(v(-1.0, 0.0), v(0.0, 1.0)), (v(1.0, 0.0), v(0.0, 1.0))];
+        let coplanar = [(v(-1.0, 0.0), v(0.0, 1.0)), (v(1.0, 0.0), v(0.0, 1.0))];
         let along = Vector::<f64, 3>::new(0.0, 1.0, 0.004).normalize();
-        assert!(!admits(&along, &level) && !admits(&along, &level[..1]), "along the edge");
+        assert!(!admits(&along, &coplanar) && !admits(&along, &coplanar[..1]), "along the edge");
     }
 }

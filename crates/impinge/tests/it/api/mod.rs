@@ -14,5 +14,6 @@ mod dim3;
 mod floors;
 mod memory;
 mod messages;
+mod prose;
 mod public_face;
 mod values;

@@ -1,7 +1,7 @@
-//! Contacts of faces with triangles, eight at a time: what the two share, seen along the normal.
+//! Contacts of faces with triangles, eight at a time, against the exact overlap of both outlines.
 
 use super::clip::{Outline, common, prism, regular};
-use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
+use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::{RawPoint, RawPoints};
 use crate::math::simd::Level;
@@ -11,16 +11,16 @@ use crate::shape::{Cuboid, FeatureId, Shape};
 
 type Corners<N> = [Point<N, 3>; 3];
 
-/// Eight triangles in the frame of the solid, and what is asked of each; of those that the solid shows a face along.
+/// Triangles in the frame of a solid, and the input of the clip for each.
 struct Scene<N: Real> {
     triangles: Vec<Corners<N>>,
-    asked: Vec<TriangleAsked<N>>,
+    requests: Vec<ClipRequest<N>>,
 }
 
-/// What is found of one triangle: its points, unless the lanes leave it.
+/// The points of one triangle; `None` if the lanes leave it undecided.
 type Found<N> = Option<Vec<RawPoint<N, 3>>>;
 
-/// The normal of a triangle on the side of the solid, which is above it.
+/// The unit normal of a triangle with a positive z.
 fn upward<N: Real>([a, b, c]: &Corners<N>) -> Vector<N, 3> {
     let normal = cross(&(b - a), &(c - a)).normalize();
     if normal.z < N::ZERO { -normal } else { normal }
@@ -29,16 +29,17 @@ fn upward<N: Real>([a, b, c]: &Corners<N>) -> Vector<N, 3> {
 impl<N: Real> Scene<N> {
     fn new(solid: &dyn Shape<N, 3>, triangles: Vec<(Corners<N>, Vector<N, 3>)>) -> Self {
         let solid = solid.geometry().0;
-        let mut scene = Self { triangles: Vec::new(), asked: Vec::new() };
+        let mut scene = Self { triangles: Vec::new(), requests: Vec::new() };
         for (triangle, normal) in triangles {
-            let asked = TriangleAsked::new(solid, normal, None, -N::INFINITY);
+            let request = ClipRequest::new(solid, normal, None, -N::INFINITY);
             scene.triangles.push(triangle);
-            scene.asked.push(asked.expect("a box or a hull"));
+            scene.requests.push(request.expect("a box or a hull"));
         }
         scene
     }
 
-    /// What is found with the triangles in a frame of their own, in which the solid is turned and somewhere.
+    /// Clips all triangles, given to the kernel in a frame of their own. There the solid is at
+    /// `turn` and `origin`; the points are in the frame of the solid.
     fn found(
         &self,
         level: Level,
@@ -49,15 +50,15 @@ impl<N: Real> Scene<N> {
         let lanes = FaceSolid { solid: geometry.0, turn, origin, prediction: N::lit(10.0) };
         let mut all = vec![None; self.triangles.len()];
         let mut clip = FaceClip::blank();
-        for (first, (triangles, asked)) in
-            self.triangles.chunks(LANES).zip(self.asked.chunks(LANES)).enumerate()
+        for (first, (triangles, requests)) in
+            self.triangles.chunks(LANES).zip(self.requests.chunks(LANES)).enumerate()
         {
             let (mut packet, mut points) = (PartPacket::blank(), RawPoints::new());
             for (lane, corners) in triangles.iter().enumerate() {
                 packet.put(lane, &corners.map(|corner| Point::from(turn * corner.coords + origin)));
             }
             let mut start = 0;
-            let packet = (&packet, asked);
+            let packet = (&packet, requests);
             lanes.each_clip_at(level, packet, &mut clip, &mut points, |lane, lowest, points| {
                 let own = points[start..].to_vec();
                 start = points.len();
@@ -77,7 +78,7 @@ fn projected_along<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64;
     [point.coords.dot(&u).as_f64(), point.coords.dot(&v).as_f64()]
 }
 
-/// Twice the area of the hull of some places.
+/// Twice the area of the convex hull of some points.
 fn hull_area(positions: &[[f64; 2]]) -> f64 {
     let mut sorted = positions.to_vec();
     sorted.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
@@ -109,13 +110,13 @@ fn outline_area(outline: &Outline) -> f64 {
     outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
 }
 
-/// The bottom of a solid that stands on the plane z = 0, counter-clockwise seen from above.
+/// The bottom of a solid that stands on the plane z = 0, in the order of its outline.
 fn bottom(outline: &Outline) -> Vec<Point<f64, 3>> {
     outline.iter().map(|&[x, y]| Point::<f64, 3>::new(x, y, 0.0)).collect()
 }
 
-/// The points found span all that a triangle and the bottom of a solid share, each lies on both, as far apart as it
-/// says, and bears the names of where it lies.
+/// Checks the points of one triangle. They span the overlap of the triangle and the bottom of the
+/// solid, each lies on both at its distance, and has the ids of the features it lies on.
 fn check<N: Real>(
     outline: &Outline,
     corners: &Corners<N>,
@@ -163,7 +164,8 @@ fn check<N: Real>(
     }
 }
 
-/// Frames for the triangles: that of the solid, and one turned and far away by as much as rounding allows.
+/// Two frames for the triangles: that of the solid, and one that is turned and translated at
+/// random.
 fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     let (normal, _) = (random.vector::<N>(1.0).normalize(), 0);
     let (u, v) = orthonormal_basis(&normal);
@@ -171,8 +173,8 @@ fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
     [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, random.vector(2.0))]
 }
 
-/// Triangles about the plane z = 0 along whose normals a solid on it shows its bottom; on a grid, whose lines the sides
-/// of boxes lie on, or anywhere.
+/// Random triangles close to the plane z = 0, nearly horizontal, so that a solid on the plane shows
+/// its bottom. On a grid, corners and sides of the outlines coincide.
 fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     let mut corner = |at: usize| {
         let mut position = random.vector::<N>(2.0);
@@ -186,13 +188,14 @@ fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     let all = (0..24).map(|_| [corner(0), corner(1), corner(2)]);
     let is_wide = |corners: &Corners<N>| {
         let [a, b, c] = corners;
-        let is_level = upward(corners).z > N::lit(0.9);
-        is_level && cross(&(b - a), &(c - a)).norm() > N::lit(0.3)
+        let is_upright = upward(corners).z > N::lit(0.9);
+        is_upright && cross(&(b - a), &(c - a)).norm() > N::lit(0.3)
     };
     all.filter(is_wide).collect()
 }
 
-/// Checks a solid over some triangles, which the solid sees `lift` lower; how many the lanes leave, and how many not.
+/// Checks a solid over some triangles, moved down by `lift` in the frame of the solid. Returns how
+/// many the lanes leave undecided, and how many not.
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),
@@ -205,11 +208,11 @@ fn check_all<N: Real>(
     let scene = Scene::new(solid, placed.collect());
     for (turn, origin) in frames(random) {
         let found = scene.found(Level::new(), solid, (&turn, origin));
-        for ((moved, asked), found) in scene.triangles.iter().zip(&scene.asked).zip(found) {
+        for ((moved, request), found) in scene.triangles.iter().zip(&scene.requests).zip(found) {
             counts[usize::from(found.is_some())] += 1;
             if let Some(mut found) = found {
                 found.iter_mut().for_each(|point| point.point1 += up);
-                check(outline, &moved.map(|corner| corner + up), &asked.normal, &found);
+                check(outline, &moved.map(|corner| corner + up), &request.normal, &found);
             }
         }
     }
@@ -220,7 +223,7 @@ fn all_is_shared<N: Real>() {
     let mut random = Xorshift(11);
     let square: Outline = vec![[-1.0, -1.5], [1.0, -1.5], [1.0, 1.5], [-1.0, 1.5]];
     let (triangle, octagon) = (regular(3, [0.1, 0.0], 1.5, 0.3), regular(8, [0.0, 0.2], 1.2, 0.1));
-    // A box has its middle at the origin.
+    // The centre of a box is at the origin.
     let cuboid = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::lit(1.5), N::ONE));
     let hulls = [&triangle, &octagon].map(|outline| prism::<N>(outline, [0.0, 2.0]));
     let solids: [(&Outline, &dyn Shape<N, 3>, N); 3] = [
@@ -280,30 +283,30 @@ fn what_touches_is_as_near_as_is_known() {
     let solid = Cuboid::new(Vector::<f64, 3>::repeat(1.0));
     let corners = [[-3.0, -3.0, -1.2], [3.0, -3.0, -1.2], [0.0, 4.0, -1.2]].map(Point::from);
     let up = Vector::<f64, 3>::z();
-    let ask = |nearest: Option<f64>, least: f64| {
-        let asked = TriangleAsked::new(solid.geometry().0, up, nearest, least).expect("a face");
-        let scene = Scene { triangles: vec![corners], asked: vec![asked] };
+    let clip = |nearest: Option<f64>, least: f64| {
+        let request = ClipRequest::new(solid.geometry().0, up, nearest, least).expect("a face");
+        let scene = Scene { triangles: vec![corners], requests: vec![request] };
         let identity = (&Matrix::<f64, 3>::identity(), Vector::<f64, 3>::zeros());
         scene.found(Level::new(), &solid, identity).remove(0)
     };
-    let near = ask(Some(0.2 - 1e-16), -f64::INFINITY).expect("that near");
+    let near = clip(Some(0.2 - 1e-16), -f64::INFINITY).expect("that near");
     assert_eq!((near.len(), near[0].distance), (4, 0.2 - 1e-16), "as it is known");
-    assert!(ask(Some(0.1), -f64::INFINITY).is_none(), "no point is that near");
-    assert_eq!(ask(None, 0.2).expect("all are").len(), 4, "none is nearer");
-    assert_eq!(ask(None, 0.3).expect("none is").len(), 0, "all are nearer than they can be");
+    assert!(clip(Some(0.1), -f64::INFINITY).is_none(), "no point is that near");
+    assert_eq!(clip(None, 0.2).expect("all are").len(), 4, "none is nearer");
+    assert_eq!(clip(None, 0.3).expect("none is").len(), 0, "all are nearer than they can be");
 }
 
 #[test]
 fn edges_and_corners_of_a_solid_are_clipped_too() {
     let solid = Cuboid::new(Vector::<f64, 3>::repeat(1.0));
-    let found = |up: [f64; 3], reach: f64| {
+    let found = |up: [f64; 3], size: f64| {
         let normal = Vector::<f64, 3>::from(up).normalize();
         let (u, v) = orthonormal_basis(&normal);
         let low = Point::from(-normal * 2.0);
         let corners = [
-            low - u * reach - v * reach,
-            low + u * (3.0 * reach) - v * reach,
-            low + v * (3.0 * reach) - u * reach,
+            low - u * size - v * size,
+            low + u * (3.0 * size) - v * size,
+            low + v * (3.0 * size) - u * size,
         ];
         let scene = Scene::new(&solid, vec![(corners, normal)]);
         let identity = (&Matrix::<f64, 3>::identity(), Vector::<f64, 3>::zeros());

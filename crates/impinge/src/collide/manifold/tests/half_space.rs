@@ -64,19 +64,19 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
         let normal = -pair.pose12.vector(plane.normal());
         let deep = N::lit(random.between(-1.0, 0.02) * scale);
         pair.pose12.translation = normal * (deep - fact(&pair).distance);
-        let mut asked = request::<N>(0.05 * scale, 0.0);
-        asked.max_points = 64;
+        let mut wanted = request::<N>(0.05 * scale, 0.0);
+        wanted.max_points = 64;
         let (mut raw, tolerance) = (RawManifold::default(), N::lit(256.0 * scale) * N::EPSILON);
         for _ in 0..3 {
             let found = fact(&pair);
             let before = raw.clone();
-            build3(&pair, &found, &asked, &mut raw);
+            build3(&pair, &found, &wanted, &mut raw);
             let what = format!("round {round}, {}: {raw:?}", describe(&pair));
             for point in &raw.points {
                 let old = before.points.iter().find(|old| old.feature1 == point.feature1);
                 assert!(old.is_none_or(|old| old.id == point.id), "{what}\n{before:?}");
             }
-            if found.distance > asked.prediction {
+            if found.distance > wanted.prediction {
                 assert!(raw.points.is_empty(), "{what}");
                 continue;
             }
@@ -93,7 +93,7 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                 let distance = -height - radius;
                 // Over a capsule's raised end the surface is a little nearer than the ball around
                 // the end.
-                let reach = asked.prediction
+                let max_distance = wanted.prediction
                     + if radius > N::ZERO { N::lit(-0.05 * scale) } else { tolerance };
                 let is_near =
                     |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= tolerance;
@@ -101,9 +101,9 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                 // With more than four corners, those on the outline count, and old ones that span
                 // most of it.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
-                let is_far = distance > reach - tolerance - tolerance;
+                let is_far = distance > max_distance - tolerance - tolerance;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");
-                expected += usize::from(distance <= asked.prediction + tolerance);
+                expected += usize::from(distance <= wanted.prediction + tolerance);
             }
             assert!(raw.points.len() <= expected.max(1) || radius > N::ZERO, "{what}");
             pair.pose12.translation += random.vector::<N, 3>(0.02).map(|x| x * N::lit(scale));

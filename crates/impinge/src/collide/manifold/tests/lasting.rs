@@ -56,8 +56,8 @@ fn on_plane<N: Scene<D>, const D: usize>() -> usize {
     slide::<N, D>(&Plane::new(Unit::new_normalize(up)), 0.0)
 }
 
-fn on_box<N: Scene<D>, const D: usize>(reach: f64) -> usize {
-    let mut half_extents = Vector::<N, D>::repeat(N::lit(reach));
+fn on_box<N: Scene<D>, const D: usize>(half_extent: f64) -> usize {
+    let mut half_extents = Vector::<N, D>::repeat(N::lit(half_extent));
     half_extents[1] = N::ONE;
     slide::<N, D>(&Cuboid::new(half_extents), 1.0)
 }

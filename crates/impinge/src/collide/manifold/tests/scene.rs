@@ -86,8 +86,8 @@ impl Random {
         low + (high - low) * f64::from(bits) / f64::from(1 << 24)
     }
 
-    pub(crate) fn vector<N: Real, const D: usize>(&mut self, reach: f64) -> Vector<N, D> {
-        Vector::<N, D>::from_fn(|_, _| N::lit(self.between(-reach, reach)))
+    pub(crate) fn vector<N: Real, const D: usize>(&mut self, size: f64) -> Vector<N, D> {
+        Vector::<N, D>::from_fn(|_, _| N::lit(self.between(-size, size)))
     }
 
     pub(crate) fn turn(&mut self) -> [f64; 3] {

@@ -102,7 +102,7 @@ fn each<'p, 'a: 'p, N: Real, T: Copy>(
     convert: impl Fn(&GapResult<N>, &Pair<'a, N, 3>) -> Option<T>,
 ) -> [Option<Option<T>>; LANES] {
     let mut converted = [None; LANES];
-    let Level::Wide(vectors) = Level::new() else { return converted };
+    let Some(vectors) = Level::new().vectors() else { return converted };
     if let Some(results) = packet::results(vectors, pairs.clone(), limit, with_overlap) {
         for ((converted, result), pair) in converted.iter_mut().zip(&results).zip(pairs) {
             *converted = Some(convert(result, pair));

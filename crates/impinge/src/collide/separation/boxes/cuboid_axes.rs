@@ -70,16 +70,16 @@ impl<N: Real> BoxPair<N> {
     fn best_face(&self, abs_rotation: &Matrix<N, 3>) -> (AxisKind, N) {
         let (t, mut best, mut gap) = (&self.pose12.translation, AxisKind::Face1(0), N::ZERO);
         for i in 0..3 {
-            let reach2 = (0..3).fold(N::ZERO, |sum, j| sum + abs_rotation[(i, j)] * self.half2[j]);
-            let found = t[i].abs() - self.half1[i] - reach2;
+            let extent2 = (0..3).fold(N::ZERO, |sum, j| sum + abs_rotation[(i, j)] * self.half2[j]);
+            let found = t[i].abs() - self.half1[i] - extent2;
             if i == 0 || found > gap {
                 (best, gap) = (AxisKind::Face1(i), found);
             }
         }
         for j in 0..3 {
-            let reach1 = (0..3).fold(N::ZERO, |sum, i| sum + abs_rotation[(i, j)] * self.half1[i]);
+            let extent1 = (0..3).fold(N::ZERO, |sum, i| sum + abs_rotation[(i, j)] * self.half1[i]);
             let along = (0..3).fold(N::ZERO, |sum, i| sum + self.pose12.rotation[(i, j)] * t[i]);
-            let found = along.abs() - reach1 - self.half2[j];
+            let found = along.abs() - extent1 - self.half2[j];
             if found > gap {
                 (best, gap) = (AxisKind::Face2(j), found);
             }
@@ -102,12 +102,12 @@ impl<N: Real> BoxPair<N> {
             for j in 0..3 {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[(i1, j)] - t[i1] * r[(i2, j)];
-                let reach1 =
+                let extent1 =
                     self.half1[i1] * abs_rotation[(i2, j)] + self.half1[i2] * abs_rotation[(i1, j)];
                 let product1 = (r[(i1, j)] * r[(i2, j1)] - r[(i2, j)] * r[(i1, j1)]).abs();
                 let product2 = (r[(i1, j)] * r[(i2, j2)] - r[(i2, j)] * r[(i1, j2)]).abs();
-                let reach2 = self.half2[j1] * product1 + self.half2[j2] * product2;
-                let slack = along.abs() - reach1 - reach2;
+                let extent2 = self.half2[j1] * product1 + self.half2[j2] * product2;
+                let slack = along.abs() - extent1 - extent2;
                 if slack <= min(bound, N::ZERO) {
                     continue;
                 }

@@ -123,14 +123,14 @@ impl<'a, N: Real> LocalSegment<'a, N> {
     }
 
     /// Returns the separation along the unit vector `outward`, if both points are as far apart
-    /// along it as the supporting planes. `level` is the extent of the solid along it.
+    /// along it as the supporting planes. `extent` is the extent of the solid along it.
     fn proved(
         &self,
         outward: Vector<N, 3>,
-        level: N,
+        extent: N,
         [on_segment, on_solid]: [Vector<N, 3>; 2],
     ) -> Option<Parting<N>> {
-        let distance = self.low(&outward) - level;
+        let distance = self.low(&outward) - extent;
         let aside = on_segment - on_solid - outward * distance;
         let is_proved = aside.norm_squared() <= rounding_error::<N>() * rounding_error();
         is_proved.then_some(Parting { outward, on_segment, on_solid, distance })
@@ -198,15 +198,15 @@ impl<N: Real> LocalBox<'_, N> {
         for (axis, one, other) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let (x, y) = (-along[other], along[one]);
             let height = x * from[one] + y * from[other];
-            let reach = x.abs() * self.half[one] + y.abs() * self.half[other];
+            let extent = x.abs() * self.half[one] + y.abs() * self.half[other];
             let sine = (x * x + y * y).sqrt();
             // Written so that NaN and segments parallel to the axis are skipped.
-            let is_certain = sine > rounding_error() && (height.abs() - reach) > bound * sine;
+            let is_certain = sine > rounding_error() && (height.abs() - extent) > bound * sine;
             if is_certain {
                 let signed_sine = if height < N::ZERO { -sine } else { sine };
                 let mut outward = Vector::<N, 3>::zeros();
                 (outward[one], outward[other]) = (x / signed_sine, y / signed_sine);
-                bound = (height.abs() - reach) / sine;
+                bound = (height.abs() - extent) / sine;
                 best = Some((axis, outward, bound));
             }
         }
@@ -214,7 +214,7 @@ impl<N: Real> LocalBox<'_, N> {
     }
 
     /// Returns the extent of the box along a vector.
-    fn level(&self, along: &Vector<N, 3>) -> N {
+    fn extent(&self, along: &Vector<N, 3>) -> N {
         along[0].abs() * self.half[0]
             + along[1].abs() * self.half[1]
             + along[2].abs() * self.half[2]
@@ -295,7 +295,7 @@ impl<N: Real> LocalBox<'_, N> {
             let length = away.norm();
             (length > rounding_error()).then(|| away / length)
         })?;
-        self.segment.proved(outward, self.level(&outward), points)
+        self.segment.proved(outward, self.extent(&outward), points)
     }
 
     /// Returns the separating direction when the nearest feature of the box is an edge:

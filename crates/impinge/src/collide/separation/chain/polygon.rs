@@ -57,10 +57,10 @@ struct PolygonExtents<N: Real> {
     /// Bound of the distance of its vertices from the origin.
     size: N,
     /// Extent along the normal of each side.
-    reaches: Row<N>,
+    extents: Row<N>,
     /// Direction of the tip at each vertex, and the extent along it.
     tips: [Row<N>; 2],
-    tip_reaches: Row<N>,
+    tip_extents: Row<N>,
     /// Bit of each vertex with a tip.
     are_tips: u64,
 }
@@ -69,21 +69,21 @@ impl<N: Real> PolygonExtents<N> {
     /// Computes the extents of a polygon along its own directions.
     #[inline(always)]
     fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
-        let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
+        let (mut tips, mut tip_extents) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
         let (directions, is_tip) = outline.tips::<S, V>(simd, 0);
         for axis in 0..2 {
             directions[axis].store(&mut tips[axis]);
         }
-        let mut reaches = [N::ZERO; LANES];
-        for (vertex, reach) in reaches.iter_mut().enumerate().take(outline.count) {
-            *reach = outline.normal(vertex).dot(&outline.at(vertex).coords);
+        let mut extents = [N::ZERO; LANES];
+        for (vertex, extent) in extents.iter_mut().enumerate().take(outline.count) {
+            *extent = outline.normal(vertex).dot(&outline.at(vertex).coords);
         }
         let are_tips = is_tip.to_bitmask();
         if are_tips != 0 {
-            outline.reach(simd, &directions).store(&mut tip_reaches);
+            outline.extent(simd, &directions).store(&mut tip_extents);
         }
         let size = outline.size::<S, V>(simd);
-        Self { outline, size, reaches, tips, tip_reaches, are_tips }
+        Self { outline, size, extents, tips, tip_extents, are_tips }
     }
 }
 
@@ -135,10 +135,10 @@ impl<N: Real> SegmentAxes<N> {
         let size = sizes[0].larger(sizes[1]).larger(V::all(simd, solid.size));
         let rounding_error = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
         let slack = rounding_error + V::all(simd, N::EPSILON * rounding);
-        let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * slack;
+        let max_gap = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * slack;
         // The gap is a lower bound: a gap beyond the limit by more than rounding rejects the
         // segment.
-        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach);
+        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(max_gap);
         let (beyond, zeros) = (bits(beyond), [N::ZERO; LANES]);
         let mut axes = Self { gaps: zeros, normals: [zeros; 2], rounding_error: zeros, beyond };
         best.gap.store(&mut axes.gaps);
@@ -206,10 +206,10 @@ fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 ) {
     for vertex in 0..solid.outline.count.min(LANES) {
         let normal = solid.outline.normal(vertex);
-        add(simd, [a, b], [normal.x, normal.y], solid.reaches[vertex], best);
+        add(simd, [a, b], [normal.x, normal.y], solid.extents[vertex], best);
         if solid.are_tips >> vertex & 1 == 1 {
             let direction = [solid.tips[0][vertex], solid.tips[1][vertex]];
-            add(simd, [a, b], direction, solid.tip_reaches[vertex], best);
+            add(simd, [a, b], direction, solid.tip_extents[vertex], best);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::collide::Pair;
 use crate::collide::separation::hulls::tests::Random;
 use crate::collide::separation::polygons::polygon_polygon::tests::solid_of;
-use crate::collide::separation::separation_in_plane;
+use crate::collide::separation::separation_2d;
 use crate::shape::{Ball, Segment};
 
 /// One to sixteen segments around an origin, and their tiles.
@@ -57,7 +57,7 @@ fn compare<N: Real>(seed: u64) {
         for (index, segment) in segments.iter().enumerate() {
             let segment = Kind::Segment(segment);
             let (first, second) = if comes_first { (kind, segment) } else { (segment, kind) };
-            let answer = separation_in_plane(&Pair { first, second, pose12 }, limit);
+            let answer = separation_2d(&Pair { first, second, pose12 }, limit);
             expected.extend(answer.map(|answer| (index, answer)));
         }
         for level in Level::available() {

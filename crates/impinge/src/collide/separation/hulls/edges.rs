@@ -113,16 +113,17 @@ pub(super) struct EdgeQuery<N> {
 
 impl<N: Real> ReferenceFace<'_, '_, N> {
     /// Returns the edges of each solid that can hold the points of an answer whose points are no
-    /// farther apart than `reach`: those with an end close enough to the other solid along the
+    /// farther apart than `max_distance`: those with an end close enough to the other solid along the
     /// normal.
     #[inline(always)]
     fn candidates<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        reach: N,
+        max_distance: N,
     ) -> [CandidateEdges; 2] {
         let slack = N::lit(4.0) * rounding_error();
-        let (least, most) = (self.other.heights.low - reach - slack, self.offset() + reach + slack);
+        let (least, most) =
+            (self.other.heights.low - max_distance - slack, self.offset() + max_distance + slack);
         let own = self.own.heights.up_to::<S, V>(simd, -least);
         let other = self.other.heights.up_to::<S, V>(simd, most);
         [
@@ -175,9 +176,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     pub(super) fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        reach: N,
+        max_distance: N,
     ) -> Option<EdgeQuery<N>> {
-        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, max_distance);
         let (mut best, mut largest): (Option<EdgeQuery<N>>, N) =
             (None, self.separation() + N::TWO * rounding_error());
         for eight in candidates2.indices().chunks(LANES) {
@@ -225,9 +226,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     pub(super) fn nearest_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        reach: N,
+        max_distance: N,
     ) -> Option<Separation<N, 3>> {
-        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, max_distance);
         let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
         for eight in candidates2.indices().chunks(LANES) {
             let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);

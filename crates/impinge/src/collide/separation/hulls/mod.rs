@@ -110,7 +110,7 @@ pub(super) fn rounding_error<N: Real>() -> N {
 
 /// Returns what a lower bound has to exceed to be beyond the caller's `limit`: the limit plus
 /// rounding, in units of the pair.
-pub(super) fn out_of_reach<N: Real>(units: &Units<N>, limit: N) -> N {
+pub(super) fn beyond_limit<N: Real>(units: &Units<N>, limit: N) -> N {
     let limit = limit * units.shrink;
     limit + N::lit(16.0) * rounding_error::<N>() * (N::ONE + limit.abs())
 }
@@ -137,7 +137,7 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     limit: N,
 ) -> SatResult<N> {
     let units = Units::of(first.reach, second.reach, &pose12.translation);
-    let (shrink, beyond) = (units.shrink, out_of_reach(&units, limit));
+    let (shrink, beyond) = (units.shrink, beyond_limit(&units, limit));
     let in_first = Pose { rotation: pose12.rotation, translation: pose12.translation * shrink };
     let in_second = in_first.inverse();
     let own1 = Vertices::in_own_frame::<S, V>(simd, first, shrink);

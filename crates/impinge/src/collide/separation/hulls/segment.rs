@@ -24,7 +24,7 @@ use super::edges::{
 };
 use super::vertices::Vertices;
 use super::{
-    LANES, LocalFeatures, Polyhedral, SatResult, in_first_frame, out_of_reach, rounding_error,
+    LANES, LocalFeatures, Polyhedral, SatResult, beyond_limit, in_first_frame, rounding_error,
 };
 use crate::collide::Pair;
 use crate::convex::{Separation, Units};
@@ -85,7 +85,7 @@ fn sat<N: Real>(
         along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
         shrink: units.shrink,
     };
-    let beyond = out_of_reach(&units, limit);
+    let beyond = beyond_limit(&units, limit);
     let result = with_lanes!(level, simd => query.sat_in_lanes::<_, N::Lanes<_>>(simd, beyond));
     match result {
         SatResult::Found(found) => {

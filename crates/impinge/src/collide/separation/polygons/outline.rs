@@ -236,7 +236,7 @@ impl<N: Real> PolygonOutline<N> {
 
     /// Returns the largest coordinate of the vertices along each of eight directions.
     #[inline(always)]
-    pub(in crate::collide::separation) fn reach<S: Simd, V: Wide<S, Scalar = N>>(
+    pub(in crate::collide::separation) fn extent<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         directions: &[V; 2],

@@ -11,7 +11,7 @@ use crate::math::simd::Simd;
 use crate::math::{Point, Real, Vector, Wide, perp, unit};
 
 /// Two outlines and the direction from the first to the second with its gap, which may be negative.
-pub(in crate::collide::separation) struct Facing<'a, N: Real> {
+pub(in crate::collide::separation) struct OutlinePair<'a, N: Real> {
     outlines: [&'a PolygonOutline<N>; 2],
     /// Unit direction from the first outline to the second, with its gap.
     axis: Axis<N>,
@@ -21,7 +21,7 @@ pub(in crate::collide::separation) struct Facing<'a, N: Real> {
     rounding_error: N,
 }
 
-impl<'a, N: Real> Facing<'a, N> {
+impl<'a, N: Real> OutlinePair<'a, N> {
     /// Finds the tops of both outlines along an axis.
     #[inline(always)]
     pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(

@@ -6,14 +6,14 @@
 //! positive, so the nearest points lie on the sides next to the best normal, ends included.
 //!
 //! Eight sides are tried at a time, each against all vertices of the other solid. If the best
-//! normal leads to the nearest points, as it mostly does ([`Facing::clear_case`]), the tips of sharp
+//! normal leads to the nearest points, as it mostly does ([`OutlinePair::clear_case`]), the tips of sharp
 //! corners are skipped. The rest goes to the [general
 //! algorithm](crate::collide::separation::general): outlines with too many vertices, sides whose
 //! squared length is close to underflow or overflow, and nearest points that do not lie along the
 //! best axis.
 
 use super::outline::{LANES, PolygonOutline, highest, lane};
-use super::polygon_nearest::Facing;
+use super::polygon_nearest::OutlinePair;
 use crate::collide::Pair;
 use crate::collide::separation::boxes::rectangle_axes::Rectangles;
 use crate::collide::separation::general;
@@ -110,17 +110,17 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         None => best_side::<S, N, V>(simd, &own, &other),
     };
     // The gap is a lower bound: beyond the limit by more than rounding it rejects the pair.
-    let reach = limit + N::lit(16.0) * (rounding_error + N::EPSILON * rounding);
-    if sides.gap - rounding > reach {
+    let max_gap = limit + N::lit(16.0) * (rounding_error + N::EPSILON * rounding);
+    if sides.gap - rounding > max_gap {
         return OutlineResult::Beyond;
     }
-    let facing = Facing::of::<S, V>(simd, outlines, &sides, rounding_error);
-    let found = match facing.clear_case() {
+    let outlines_along = OutlinePair::of::<S, V>(simd, outlines, &sides, rounding_error);
+    let found = match outlines_along.clear_case() {
         Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
         None => {
             let is_known = known.is_some();
             let best = if is_known { sides } else { best_axis::<S, N, V>(simd, outlines, sides) };
-            if best.gap - rounding > reach {
+            if best.gap - rounding > max_gap {
                 return OutlineResult::Beyond;
             }
             of_axis::<S, N, V>(simd, outlines, &best, rounding_error)
@@ -138,8 +138,8 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
     best: &Axis<N>,
     rounding_error: N,
 ) -> Option<Separation<N, 2>> {
-    let facing = Facing::of::<S, V>(simd, outlines, best, rounding_error);
-    let cores = facing.separation::<S, V>(simd)?;
+    let outlines_along = OutlinePair::of::<S, V>(simd, outlines, best, rounding_error);
+    let cores = outlines_along.separation::<S, V>(simd)?;
     Some(cores.rounded(outlines[0].rounding, outlines[1].rounding))
 }
 
@@ -177,7 +177,7 @@ fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         let [x, y]: [V; 2] = load(simd, &block.normals);
         let [at_x, at_y]: [V; 2] = load(simd, &block.vertices);
         let offsets = x * at_x + y * at_y;
-        let (gap, side) = highest(simd, -other.reach(simd, &[-x, -y]) - offsets);
+        let (gap, side) = highest(simd, -other.extent(simd, &[-x, -y]) - offsets);
         if gap > best.gap {
             best = Axis { gap, normal: own.normal(number * LANES + side) };
         }
@@ -221,7 +221,7 @@ fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         if !is_tip.any_true() {
             continue;
         }
-        let gaps = -other.reach(simd, &[-tips[0], -tips[1]]) - own.reach(simd, &tips);
+        let gaps = -other.extent(simd, &[-tips[0], -tips[1]]) - own.extent(simd, &tips);
         let (gap, tip) = highest(simd, is_tip.select(gaps, none));
         if best.is_none_or(|best| gap > best.gap) {
             best = Some(Axis { gap, normal: lane(&tips, tip).coords });

@@ -96,8 +96,8 @@ impl<N: Real> Profile<N> {
                     DirectedPoint::of(self, &projected),
                 ));
             }
-            let is_level = slope.abs() <= still::<N>() * search.length;
-            if is_level || descent.is_some_and(|descent| descent.abs() * search.length <= still()) {
+            let is_flat = slope.abs() <= still::<N>() * search.length;
+            if is_flat || descent.is_some_and(|descent| descent.abs() * search.length <= still()) {
                 return Some((
                     NearestHull::Chord(ends),
                     DirectedPoint::across(self, &projected, &(search.along / search.length))?,

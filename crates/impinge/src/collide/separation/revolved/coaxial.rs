@@ -111,7 +111,7 @@ impl<N: Real> AxialOutline<N> {
         max(self.corners[0].norm(), self.corners[1].norm())
     }
 
-    fn level(&self, normal: &Vector<N, 2>) -> N {
+    fn extent_in_half_plane(&self, normal: &Vector<N, 2>) -> N {
         max(normal.dot(&self.corners[0]), normal.dot(&self.corners[1]))
     }
 
@@ -119,7 +119,7 @@ impl<N: Real> AxialOutline<N> {
     fn extent(&self, along: &Vector<N, 3>) -> N {
         let up = along.dot(&self.axis);
         let aside = (along - self.axis * up).norm();
-        along.dot(&self.middle) + self.level(&Vector::<N, 2>::new(aside, up))
+        along.dot(&self.middle) + self.extent_in_half_plane(&Vector::<N, 2>::new(aside, up))
     }
 
     /// Normals of the caps, then of the side.
@@ -138,7 +138,7 @@ impl<N: Real> AxialOutline<N> {
 
     /// Returns the corners farthest along a normal; for caps also their mirror images.
     fn touched(&self, normal: &Vector<N, 2>, aside: &Vector<N, 3>) -> SmallVec<[Vector<N, 3>; 8]> {
-        let low = self.level(normal) - N::EPSILON.sqrt();
+        let low = self.extent_in_half_plane(normal) - N::EPSILON.sqrt();
         let sides: &[N] = if normal.x > N::ZERO { &[N::ONE] } else { &[N::ONE, -N::ONE] };
         let far = self.corners.iter().filter(|corner| normal.dot(corner) >= low);
         far.flat_map(|corner| {

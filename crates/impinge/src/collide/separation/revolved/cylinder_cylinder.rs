@@ -10,7 +10,7 @@
 
 use super::coaxial;
 use crate::collide::Pair;
-use crate::collide::separation::hulls::{in_first_frame, out_of_reach, rounding_error};
+use crate::collide::separation::hulls::{beyond_limit, in_first_frame, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
@@ -35,7 +35,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     }
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
     let cylinders = CylinderPair::new(first, second, &pair.pose12, units.shrink);
-    let result = cylinders.resolve(out_of_reach(&units, limit));
+    let result = cylinders.resolve(beyond_limit(&units, limit));
     match result.answer(&units, &pair.pose12) {
         Some(found) => found.filter(|found| found.distance <= limit),
         None => coaxial::separation(pair, limit),
@@ -323,10 +323,12 @@ impl<N: Real> CylinderView<N> {
     /// Returns the middle of the part of the other solid's lowest line beside this solid, for
     /// parallel axes.
     fn beside_parallel(&self, down: &Vector<N, 3>) -> Option<Vector<N, 3>> {
-        let reach = self.other.half * self.axis.y.abs();
+        let extent = self.other.half * self.axis.y.abs();
         let is_parallel = radial(&self.axis).norm() * self.other.half <= rounding_error();
-        let (low, high) =
-            (max(self.center.y - reach, -self.own.half), min(self.center.y + reach, self.own.half));
+        let (low, high) = (
+            max(self.center.y - extent, -self.own.half),
+            min(self.center.y + extent, self.own.half),
+        );
         let at = ((low + high) * N::HALF - self.center.y) / self.axis.y;
         // Never beyond the ends: a disk, whose axis may point anywhere, has no line.
         let half = self.other.half;

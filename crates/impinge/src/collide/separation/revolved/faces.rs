@@ -15,11 +15,11 @@ impl<N: Real> RevolvedPair<'_, N> {
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
             let outward = -self.pose12.rotation.tr_mul(normal);
             let nearest = self.profile.round.support(&outward);
-            let level = outward.dot(&nearest);
-            let height = normal.dot(&self.shift) - offset * self.shrink - level;
+            let extent = outward.dot(&nearest);
+            let height = normal.dot(&self.shift) - offset * self.shrink - extent;
             if best.as_ref().is_none_or(|(most, _)| height > *most) {
                 let point = nearest + outward * height;
-                best = Some((height, DirectedPoint { point, nearest, outward, level }));
+                best = Some((height, DirectedPoint { point, nearest, outward, extent }));
             }
         };
         match self.flat {
@@ -47,7 +47,7 @@ impl<N: Real> RevolvedPair<'_, N> {
             let (_, directed): (NearestHull<N>, _) = self.at_point(vertex);
             let low = self.lowest(&directed.outward);
             let is_lowest = directed.outward.dot(&(directed.point - low)) <= still();
-            let height = directed.outward.dot(&low) - directed.level;
+            let height = directed.outward.dot(&low) - directed.extent;
             is_lowest.then(|| directed.proved(height)).flatten()
         })
     }

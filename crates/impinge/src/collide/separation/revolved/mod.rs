@@ -34,7 +34,7 @@ use self::cylinder_cylinder::{RevolvedFound, RevolvedResult};
 use self::profile::{Profile, ProfilePart, ProfileView};
 use super::flat_core::FlatCore;
 use super::general;
-use super::hulls::{out_of_reach, rounding_error};
+use super::hulls::{beyond_limit, rounding_error};
 use super::ridges::{self, Round};
 use super::wrong_kinds;
 use crate::collide::Pair;
@@ -87,7 +87,7 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     let units = Units::of(map1.reach(), map2.reach(), &pose12.translation);
     let profile = Profile::new(Round::new(&pair.second, units.shrink)?);
     let shift = pose12.translation * units.shrink;
-    let beyond = out_of_reach(&units, limit + map1.rounding());
+    let beyond = beyond_limit(&units, limit + map1.rounding());
     let result = match FlatCore::of(pair.first) {
         Some(flat) => {
             RevolvedPair { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
@@ -127,9 +127,9 @@ struct DirectedPoint<N: Real> {
     point: Vector<N, 3>,
     /// The point of the round solid across from `point`.
     nearest: Vector<N, 3>,
-    /// Unit vector out of the round solid; `level` is the extent of the round solid along it.
+    /// Unit vector out of the round solid; `extent` is the extent of the round solid along it.
     outward: Vector<N, 3>,
-    level: N,
+    extent: N,
 }
 
 /// The points whose hull contains the nearest point; no more than needed.
@@ -204,12 +204,12 @@ impl<N: Real> RevolvedPair<'_, N> {
         let outward =
             if unit_across.dot(&directed.outward) < N::ZERO { -unit_across } else { unit_across };
         let mut nearest = self.profile.round.support(&outward);
-        let level = outward.dot(&nearest);
+        let extent = outward.dot(&nearest);
         // On a cap or a line the support point is not unique; take the one known to be near.
-        if outward.dot(&directed.nearest) >= level - rounding_error() {
+        if outward.dot(&directed.nearest) >= extent - rounding_error() {
             nearest = directed.nearest;
         }
-        let height = outward.dot(&a) - level;
+        let height = outward.dot(&a) - extent;
         let point = nearest + outward * height;
         let slack = -rounding_error::<N>() * area;
         let over = |from: &Vector<N, 3>, to: &Vector<N, 3>| {
@@ -220,7 +220,7 @@ impl<N: Real> RevolvedPair<'_, N> {
             let is_proved = height > N::ZERO || self.holds(&nearest, -height);
             return is_proved.then_some((
                 NearestHull::Triangle,
-                DirectedPoint { point, nearest, outward, level },
+                DirectedPoint { point, nearest, outward, extent },
             ));
         }
         let mut best: Option<(NearestHull<N>, DirectedPoint<N>)> = None;
@@ -257,14 +257,14 @@ impl<N: Real> RevolvedPair<'_, N> {
 
 impl<N: Real> DirectedPoint<N> {
     /// Takes the direction of a view. At a point on a corner, up to rounding, that direction may
-    /// not be one along which the corner is farthest; `level` shows it.
+    /// not be one along which the corner is farthest; `extent` shows it.
     fn of(profile: &Profile<N>, projected: &ProfileView<N>) -> Self {
-        let level = profile.level(&projected.outward);
+        let extent = profile.extent(&projected.outward);
         Self {
             point: projected.point,
             nearest: projected.nearest(),
             outward: projected.outward,
-            level,
+            extent,
         }
     }
 
@@ -285,18 +285,18 @@ impl<N: Real> DirectedPoint<N> {
             }
             _ => unit(&(projected.outward - along * along.dot(&projected.outward)))?.0,
         };
-        let level = profile.level(&outward);
-        Some(Self { point: projected.point, nearest: projected.nearest(), outward, level })
+        let extent = profile.extent(&outward);
+        Some(Self { point: projected.point, nearest: projected.nearest(), outward, extent })
     }
 
     fn distance(&self) -> N {
-        self.outward.dot(&self.point) - self.level
+        self.outward.dot(&self.point) - self.extent
     }
 
     /// Returns the result given the lowest vertex along the direction: beyond, or if nothing is
     /// lower than the place, whether it is proved. `None` if a vertex is lower.
     fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
-        let height = self.outward.dot(low) - self.level;
+        let height = self.outward.dot(low) - self.extent;
         if height > beyond {
             return Some(RevolvedResult::Beyond);
         }

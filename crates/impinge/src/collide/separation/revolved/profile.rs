@@ -61,7 +61,7 @@ impl<N: Real> Profile<N> {
     }
 
     /// Returns the extent of the solid along a direction.
-    pub(super) fn level(&self, outward: &Vector<N, 3>) -> N {
+    pub(super) fn extent(&self, outward: &Vector<N, 3>) -> N {
         outward.dot(&self.round.support(outward))
     }
 

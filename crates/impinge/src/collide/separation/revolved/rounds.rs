@@ -105,8 +105,8 @@ impl<N: Real> RoundView<N> {
             let (around, pull) = (cross(&self.axis, &out), projected.pull());
             let slope = pull.dot(&around);
             let bend = projected.bend(&around) * radius - pull.dot(&out);
-            let is_level = slope.abs() <= still() || slope.abs() * radius <= still::<N>() * bend;
-            if is_level {
+            let is_flat = slope.abs() <= still() || slope.abs() * radius <= still::<N>() * bend;
+            if is_flat {
                 return DirectedPoint::across(&self.own, &projected, &around);
             }
             out = if bend > N::ZERO {
@@ -128,16 +128,16 @@ impl<N: Real> RoundView<N> {
         }
         // The part in the plane of the axes follows from the angles of the normal with both axes.
         let up = Vector::<N, 3>::y();
-        let level =
+        let in_plane =
             (up * (rise1 + rise2 * cosine) - self.axis * (rise2 + rise1 * cosine)) / squared;
-        let left = N::ONE - level.norm_squared();
+        let left = N::ONE - in_plane.norm_squared();
         if left <= N::ZERO {
             return None;
         }
         let aside = cross(&up, &self.axis) * (left / squared).sqrt();
         let gap =
-            |outward: &Vector<N, 3>| outward.dot(&self.lowest(outward)) - self.own.level(outward);
-        let [one, other] = [level + aside, level - aside];
+            |outward: &Vector<N, 3>| outward.dot(&self.lowest(outward)) - self.own.extent(outward);
+        let [one, other] = [in_plane + aside, in_plane - aside];
         let (outward, height) = match (gap(&one), gap(&other)) {
             (height, other) if height >= other => (one, height),
             (_, height) => (other, height),
@@ -157,8 +157,8 @@ impl<N: Real> RoundView<N> {
         let other = line(&self.other, &-self.rotation.tr_mul(&outward))?;
         let other = other.mapped(|end| Point::from(self.center + self.rotation * end.coords));
         let (nearest, point) = nearest_of_segments(&own, &other);
-        let level = self.own.level(&outward);
-        Some(DirectedPoint { point: point.coords, nearest: nearest.coords, outward, level })
+        let extent = self.own.extent(&outward);
+        Some(DirectedPoint { point: point.coords, nearest: nearest.coords, outward, extent })
     }
 
     /// Returns whether balls around the midpoint of both points, one in each solid, add up to the

@@ -211,7 +211,7 @@ impl<N: Real> DepthSearch<'_, N> {
         let line = |u: &Vector<N, 2>| {
             let vertex = flat.vertices[flat.lowest(&lift(u))];
             let toward = Vector::<N, 2>::new(vertex.x, vertex.z) * -slope.aside;
-            RidgeLine { base: slope.reach - slope.along * vertex.y, toward }
+            RidgeLine { base: slope.extent - slope.along * vertex.y, toward }
         };
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut search = ArcSearch::new(self.least, gap);

@@ -128,11 +128,11 @@ impl<N: Real> TriangleQuery<'_, N> {
         let is_less = of_solid.gap.simd_gt(own.gap + V::all(simd, rounding_error()));
         let face = own.or(is_less, &of_solid);
         let beyond = beyond | (packet.is_beyond(face.gap) & is_wide);
-        let asked = is_wide & !beyond;
-        if asked.to_bitmask() == 0 {
+        let wanted = is_wide & !beyond;
+        if wanted.to_bitmask() == 0 {
             return packet.stored(&face, beyond, none);
         }
-        let best = packet.query_edges(&climbs, &directions, asked, face);
+        let best = packet.query_edges(&climbs, &directions, wanted, face);
         // For a short edge, its two faces alone may claim a gap that other vertices do not leave.
         let [_, gap] = packet.gaps_along(&best.normal);
         let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * rounding_error()));
@@ -313,7 +313,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         &self,
         climbs: &[[V::Mask; 3]; MAX_FACES],
         directions: &Directions<V, V::Mask>,
-        asked: V::Mask,
+        wanted: V::Mask,
         face: TriangleAxis<V>,
     ) -> TriangleAxis<V> {
         let (simd, zero, one) = (self.simd, V::all(self.simd, N::ZERO), V::all(self.simd, N::ONE));
@@ -332,8 +332,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
             let least = V::all(simd, sine * sine) * dot(&along, &along);
             for side in 0..3 {
                 feature += one;
-                let is_asked = (first[side] ^ second[side]) & !(is_forward ^ first[side]) & asked;
-                if is_asked.to_bitmask() == 0 {
+                let is_candidate =
+                    (first[side] ^ second[side]) & !(is_forward ^ first[side]) & wanted;
+                if is_candidate.to_bitmask() == 0 {
                     continue;
                 }
                 let outward = first[side].select(one, -one);
@@ -342,7 +343,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
                 let squared = dot(&across, &across);
                 let length = squared.sqrt();
                 // Parallel edges have no perpendicular; faces separate the two as much.
-                let is_more = is_asked & squared.simd_gt(least) & slack.simd_gt(bound * length);
+                let is_more = is_candidate & squared.simd_gt(least) & slack.simd_gt(bound * length);
                 // Divisions cost more than all the rest, and few directions improve on the best so
                 // far.
                 if is_more.to_bitmask() == 0 {

@@ -25,9 +25,8 @@ use crate::math::{Point, Real, Vector, Wide, filled, max_component, min};
 
 /// A triangle is thin if the squared ratio of its height to its longest side is at most this.
 const TALL: f64 = 1.0 / 1000.0;
-/// Squared distances differ if they do by more than this many epsilon of all squared lengths. A
-/// nearest feature is certain if the centre has to move by the root of that to make another the
-/// nearest.
+/// Squared distances count as different above this many epsilon of all squared lengths. A nearest
+/// feature is certain if the centre has to move by the root of that to make another the nearest.
 const CLEAR: f64 = 64.0;
 /// Kinds of corners follow those of sides.
 const CORNER: f64 = 3.0;
@@ -54,26 +53,30 @@ pub(crate) struct BallQuestion<'a, N: Real> {
 }
 
 /// The triangles near a ball.
-pub(crate) struct NearTriangles<N> {
+pub(crate) struct CandidateTriangles<N> {
     /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown.
     pub(crate) from_middle: N,
     /// For each packet with near triangles, in order: its index, and the bits of those that may be
     /// within reach and of the hidden ones among them.
-    pub(crate) near: SmallVec<[(usize, [u8; 2]); 8]>,
+    pub(crate) masks: SmallVec<[(usize, [u8; 2]); 8]>,
     /// Squared distances of all hidden triangles are at least this; infinite if none is hidden.
     pub(crate) hidden_from: N,
 }
 
 /// Finds the triangles near a ball; none counts as hidden unless `has_seams`.
-pub(crate) fn near_triangles<N: Real>(
+pub(crate) fn candidate_triangles<N: Real>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
-) -> NearTriangles<N> {
+) -> CandidateTriangles<N> {
     at(Level::new(), question, has_seams)
 }
 
 /// Runs the search with the vectors of an instruction set; the result does not depend on it.
-fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> NearTriangles<N> {
+fn at<N: Real>(
+    level: Level,
+    question: &BallQuestion<'_, N>,
+    has_seams: bool,
+) -> CandidateTriangles<N> {
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
@@ -83,10 +86,13 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
     has_seams: bool,
-) -> NearTriangles<N> {
+) -> CandidateTriangles<N> {
     let mut features: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
-    let mut candidates =
-        NearTriangles { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
+    let mut candidates = CandidateTriangles {
+        from_middle: N::INFINITY,
+        masks: SmallVec::new(),
+        hidden_from: N::INFINITY,
+    };
     for (block, tiles) in question.tiles.iter().enumerate() {
         let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
         let within = meant & bits(are_within::<S, N, V>(simd, question, tiles));
@@ -96,21 +102,21 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         let eight = TrianglePacket::<V>::of(simd, question, tiles);
         let (mut own, least) = eight.nearest_features(simd, question, block, within, has_seams);
         candidates.from_middle = min(candidates.from_middle, least);
-        if own.near != 0 {
-            own.sides &= own.near;
-            candidates.near.push((block, [own.near, 0]));
+        if own.mask != 0 {
+            own.sides &= own.mask;
+            candidates.masks.push((block, [own.mask, 0]));
             features.push(own);
         }
     }
     for (at, own) in features.iter().enumerate() {
-        let mut asked = own.sides;
-        while asked != 0 {
-            let lane = asked.trailing_zeros() as usize;
-            asked &= asked - 1;
+        let mut sides_left = own.sides;
+        while sides_left != 0 {
+            let lane = sides_left.trailing_zeros() as usize;
+            sides_left &= sides_left - 1;
             let around =
                 &features[at.saturating_sub(MAX_APART)..features.len().min(at + 1 + MAX_APART)];
             if is_hidden::<S, N, V>(simd, question, around, own, lane) {
-                candidates.near[at].1[1] |= 1 << lane;
+                candidates.masks[at].1[1] |= 1 << lane;
                 candidates.hidden_from = min(candidates.hidden_from, own.least[lane]);
             }
         }
@@ -143,7 +149,7 @@ struct NearestFeatures<N> {
     /// Index of the packet.
     block: usize,
     /// Bit of each triangle that may be within reach.
-    near: u8,
+    mask: u8,
     /// Bit of each triangle whose nearest point certainly lies on one of its sides or corners.
     sides: u8,
     /// Nearest feature: a side by the index of its first corner, a corner by its index plus 3.
@@ -238,10 +244,10 @@ impl<V> TrianglePacket<V> {
         let [a, b, c, d, e, f, g, h] = known;
         let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
         let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
-        let near = within & bits(!is_beyond);
+        let mask = within & bits(!is_beyond);
         let mut features =
-            NearestFeatures { block, near, sides: 0, kinds: blank, least: blank, most };
-        if near != 0 && has_seams {
+            NearestFeatures { block, mask, sides: 0, kinds: blank, least: blank, most };
+        if mask != 0 && has_seams {
             let clear = V::all(simd, N::lit(CLEAR) * N::EPSILON) * (size * size);
             let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
             let (kind, margin) = self.beside(simd);
@@ -416,19 +422,20 @@ mod tests {
             let tiles = strip::<N>(random);
             let center = random.vector::<N>() * N::HALF;
             let (radius, limit) = (N::ONE, N::lit(0.1));
-            let reach = Vector::<N, 3>::repeat(N::lit(1.2));
-            let within = Aabb::around(Point::from(center), reach);
+            let half_extents = Vector::<N, 3>::repeat(N::lit(1.2));
+            let within = Aabb::around(Point::from(center), half_extents);
             let question = BallQuestion { tiles: &tiles, count: 10, center, radius, limit, within };
-            let expected = near_triangles(&question, true);
+            let expected = candidate_triangles(&question, true);
             for level in Level::available() {
                 let found = at(level, &question, true);
-                assert_eq!(found.near, expected.near, "{level:?}");
+                assert_eq!(found.masks, expected.masks, "{level:?}");
                 assert_eq!(found.from_middle, expected.from_middle, "{level:?}");
                 assert_eq!(found.hidden_from, expected.hidden_from, "{level:?}");
             }
-            let found = near_triangles(&question, false);
-            for ((_, [near, without]), (_, [same, with])) in found.near.iter().zip(&expected.near) {
-                assert_eq!((near, *without), (same, 0), "without seams none is hidden");
+            let found = candidate_triangles(&question, false);
+            for ((_, [all, without]), (_, [same, with])) in found.masks.iter().zip(&expected.masks)
+            {
+                assert_eq!((all, *without), (same, 0), "without seams none is hidden");
                 hidden += with.count_ones();
             }
         }

@@ -9,7 +9,7 @@
 //! decides whether a pair is within.
 //!
 //! ```text
-//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `near`: bits of those that are meant
+//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of the selected ones
 //!              |   | |         |     |
 //!   packet  [0 1 2 3 4 ...]                            up to eight of them, packed without gaps;
 //!                                                      the visitor counts on over all packets
@@ -23,7 +23,7 @@ mod ball;
 pub(super) mod pair;
 
 use self::axes::{AxisFeature, TriangleAxes};
-pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
+pub(crate) use self::ball::{BallQuestion, CandidateTriangles, candidate_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::math::ones::Ones;
@@ -36,7 +36,7 @@ use crate::shape::{FeatureId, Kind};
 const INSIDE: f64 = 1.0 / 256.0;
 /// Least squared sine of the angle between the two.
 const MIN_SINE: f64 = 1.0 / 1024.0;
-/// A triangle with a smaller ratio of height to longest side may have its other sides as near.
+/// Least ratio of height to longest side: in a thinner triangle another side may be as near.
 const TALL: f64 = 1.0 / 32.0;
 /// `CLEAR`: one corner is nearest if the others are farther by this many times rounding. `LONG`: a
 /// side below this many times rounding in length is too short to decide.
@@ -51,8 +51,8 @@ fn rounding_error<N: Real>() -> N {
 /// A subset of the triangles of many tiles.
 pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
-    /// For each tile the bits of the triangles that are meant.
-    pub(crate) near: &'a [u8],
+    /// For each tile the bits of the selected triangles.
+    pub(crate) masks: &'a [u8],
     /// Origin that the triangles are taken relative to.
     pub(crate) origin: Vector<N, 3>,
 }
@@ -68,16 +68,15 @@ pub(crate) struct TriangleGap<N: Real> {
     pub(crate) touched: Option<FeatureId>,
 }
 
-/// Called with the index of a triangle among those that are meant, and its gap if the case is
-/// plain.
+/// Receives the index of a triangle among the selected ones, and its gap if the case is plain.
 pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap<N>>);
 
 impl<N: Real> TiledTriangles<'_, N> {
-    /// Tile and lane of each triangle that is meant.
+    /// Tile and lane of each selected triangle.
     fn slots(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
-        let all = self.tiles.iter().zip(self.near);
-        all.flat_map(move |(tiles, near)| {
-            Ones::<LANES>((*near).into()).map(move |lane| (tiles, lane))
+        let all = self.tiles.iter().zip(self.masks);
+        all.flat_map(move |(tiles, mask)| {
+            Ones::<LANES>((*mask).into()).map(move |lane| (tiles, lane))
         })
     }
 }
@@ -113,7 +112,7 @@ struct TriangleQuery<'a, N: Real> {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// Packs the triangles that are meant, eight at a time, and visits those within the limit.
+    /// Packs the selected triangles, eight at a time, and visits those within the limit.
     fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut slots, mut first) = (self.parts.slots(), 0);
         loop {

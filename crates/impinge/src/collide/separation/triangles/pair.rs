@@ -71,7 +71,7 @@ fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit:
     let rounding_error = hulls::rounding_error::<N>();
     let is_second = face2.gap > face1.gap + rounding_error;
     let face = if is_second { &face2 } else { &face1 };
-    if max(face.gap, edges.gap) > hulls::out_of_reach(&units, limit) {
+    if max(face.gap, edges.gap) > hulls::beyond_limit(&units, limit) {
         return Axes::Beyond;
     }
     let of_edges =

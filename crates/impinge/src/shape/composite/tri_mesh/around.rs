@@ -65,13 +65,13 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         let mut crossed: SmallVec<[_; 4]> = SmallVec::new();
         crossed.push((triangle, side, None));
         let line = OnceCell::new();
-        let stretch = |other: u32, exit: usize| {
+        let interval = |other: u32, exit: usize| {
             let line = line.get_or_init(|| SideLine::of(&self.corners(triangle), side));
             Some(line.span(&self.ends_of(other, exit))).filter(|span| line.overlaps(span))
         };
         if self.inward(triangle, side).is_none() {
             for other in [1, 2].map(|turn| (side + turn) % 3) {
-                let span = stretch(triangle, other);
+                let span = interval(triangle, other);
                 crossed.extend(span.map(|span| (triangle, other, Some(span))));
             }
         }
@@ -84,7 +84,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
                 None => {
                     for exit in [1, 2].map(|turn| (entered + turn) % 3) {
                         let is_new = !crossed_before(&crossed, other, exit);
-                        let span = stretch(other, exit).filter(|_| is_new);
+                        let span = interval(other, exit).filter(|_| is_new);
                         crossed.extend(span.map(|span| (other, exit, Some(span))));
                     }
                 }

@@ -193,8 +193,8 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
             Aabb::of_rotated(rotated.mins().coords, rotated.maxs().coords, size, pose)
         });
     }
-    let reach = |direction: Vector<N, D>| {
-        tree.reach_along(direction, |part| {
+    let extent = |direction: Vector<N, D>| {
+        tree.extent_along(direction, |part| {
             let along = parts[part as usize].iter().map(|vertex| corner(vertex).dot(&direction));
             along.fold(-N::INFINITY, max)
         })
@@ -202,7 +202,7 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     let (mut low, mut high) = (Vector::<N, D>::zeros(), Vector::<N, D>::zeros());
     for axis in 0..D {
         let direction = pose.rotation.row(axis).transpose();
-        (low[axis], high[axis]) = (-reach(-direction), reach(direction));
+        (low[axis], high[axis]) = (-extent(-direction), extent(direction));
     }
     Aabb::of_rotated(low, high, size, pose)
 }

@@ -26,12 +26,7 @@ pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector
 
 impl<N: Real> TriMesh<N, 3> {
     /// [`Surface::admits`](crate::shape::Surface::admits) in 3D.
-    pub(super) fn admits_in_space(
-        &self,
-        part: u32,
-        feature: FeatureId,
-        normal: &Vector<N, 3>,
-    ) -> bool {
+    pub(super) fn admits_3d(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
         if self.keeps_internal_edges {
             return !self.is_one_sided || self.cosine(part, normal) >= -slack::<N>();
         }
@@ -45,9 +40,9 @@ impl<N: Real> TriMesh<N, 3> {
             }
     }
 
-    /// [`Self::admits_in_space`] for two normals, the second only if the first is rejected; the
+    /// [`Self::admits_3d`] for two normals, the second only if the first is rejected; the
     /// neighbourhood is evaluated once.
-    pub(super) fn admits_in_turn_in_space(
+    pub(super) fn admits_in_turn_3d(
         &self,
         part: u32,
         feature: FeatureId,
@@ -64,18 +59,14 @@ impl<N: Real> TriMesh<N, 3> {
                 [is_first, !is_first && (is_free(normals[1]) || admits(normals[1]))]
             }
             _ => {
-                let is_first = self.admits_in_space(part, feature, normals[0]);
-                [is_first, !is_first && self.admits_in_space(part, feature, normals[1])]
+                let is_first = self.admits_3d(part, feature, normals[0]);
+                [is_first, !is_first && self.admits_3d(part, feature, normals[1])]
             }
         }
     }
 
     /// [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` without area.
-    pub(super) fn snapped_in_space(
-        &self,
-        part: u32,
-        normal: &Vector<N, 3>,
-    ) -> Option<Vector<N, 3>> {
+    pub(super) fn snapped_3d(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let own = self.normal(part)?;
         let is_front = self.is_one_sided || own.dot(normal) >= N::ZERO;
         Some(if is_front { own } else { -own })
@@ -87,8 +78,7 @@ impl<N: Real> TriMesh<N, 3> {
 
     /// Whether `normal` is the triangle's own normal, on a side that it has.
     fn is_own_normal(&self, part: u32, normal: &Vector<N, 3>) -> bool {
-        self.snapped_in_space(part, normal)
-            .is_some_and(|own| max_component(&(own - normal)) <= slack())
+        self.snapped_3d(part, normal).is_some_and(|own| max_component(&(own - normal)) <= slack())
     }
 
     fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
@@ -202,7 +192,7 @@ impl<N: Real> TriMesh<N, 3> {
     }
 
     /// See [`OwnSurface::face_seams`](crate::shape::surface::own_surface::OwnSurface::face_seams).
-    pub(super) fn face_seams_in_space(&self, part: u32) -> Option<FaceSeams<N>> {
+    pub(super) fn face_seams_3d(&self, part: u32) -> Option<FaceSeams<N>> {
         let front = self.normal(part).filter(|_| !self.keeps_internal_edges)?;
         let (bend, is_rim) =
             (|side| self.bend_at(part, side), |side| self.topology.is_border(part, side));

@@ -81,13 +81,13 @@ impl<V> Boxes<V, 2> {
     {
         let (r, t, zero) = (&self.rotation, &self.translation, V::all(simd, N::ZERO));
         let abs_rotation = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
-        let reach2: [V; 2] = filled(
+        let extent2: [V; 2] = filled(
             #[inline(always)]
             |i| dot(&[abs_rotation[0][i], abs_rotation[1][i]], &self.half2),
         );
         let gaps: [V; 2] = filled(
             #[inline(always)]
-            |i| t[i].abs() - self.half1[i] - reach2[i],
+            |i| t[i].abs() - self.half1[i] - extent2[i],
         );
         let is = [t[0].simd_ge(zero), t[1].simd_gt(zero)];
         // Ties go by the outline: below, right, above, left. So x is first only for right and

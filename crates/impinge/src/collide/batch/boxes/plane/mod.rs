@@ -119,17 +119,17 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
             axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.rounding_error);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
-        let is_asked = bits(is_near) & inputs.is_usable;
+        let is_candidate = bits(is_near) & inputs.is_usable;
         // Valid for batches that end here.
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
-        if is_asked == 0 {
+        if is_candidate == 0 {
             return;
         }
         let sides = BoxSides::of_axis(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), sides.tolerance);
         let mut admission = Admission::new(simd, Limits { gap, prediction, sine, tolerance });
         self.at_ends = sides.share(simd, &mut admission, &mut self.slots);
-        let is_built = bits(admission.is_found() & sides.is_fit) & is_asked;
+        let is_built = bits(admission.is_found() & sides.is_fit) & is_candidate;
         self.sides = [
             bits(sides.is_y),
             bits(sides.is_upward),

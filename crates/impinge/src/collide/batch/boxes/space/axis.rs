@@ -134,14 +134,14 @@ impl<V> Boxes<V, 3> {
             for j in 0..3 {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[j][i1] - t[i1] * r[j][i2];
-                let reach1 =
+                let extent1 =
                     self.half1[i1] * abs_rotation[j][i2] + self.half1[i2] * abs_rotation[j][i1];
                 // Components of the product on the other axes of the second box; see
                 // `BoxPair::best_edges`.
                 let product1 = (r[j][i1] * r[j1][i2] - r[j][i2] * r[j1][i1]).abs();
                 let product2 = (r[j][i1] * r[j2][i2] - r[j][i2] * r[j2][i1]).abs();
-                let reach2 = self.half2[j1] * product1 + self.half2[j2] * product2;
-                let slack = along.abs() - reach1 - reach2;
+                let extent2 = self.half2[j1] * product1 + self.half2[j2] * product2;
+                let slack = along.abs() - extent1 - extent2;
                 let sine = (r[j][i1] * r[j][i1] + r[j][i2] * r[j][i2]).sqrt();
                 let is_better = !slack.simd_le(bound.smaller(zero))
                     & sine.simd_gt(least)

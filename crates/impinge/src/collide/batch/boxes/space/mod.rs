@@ -119,18 +119,18 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
             axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.rounding_error);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         self.is_apart = bits(is_apart & axis.is_finite);
-        let is_asked = bits(is_near) & inputs.is_usable;
+        let is_candidate = bits(is_near) & inputs.is_usable;
         self.is_built = 0;
-        if is_asked == 0 {
+        if is_candidate == 0 {
             return;
         }
         let faces = FacesInLanes::of_axis(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
         // If no face of the batch is tilted too far, nothing of the faces has to be excluded.
-        let is_partial = bits(!faces.is_whole) & is_asked != 0;
+        let is_partial = bits(!faces.is_whole) & is_candidate != 0;
         let is_found = self.fill::<S, V>(simd, &boxes, &faces, &limits, is_partial);
-        self.is_built = bits(is_found & faces.is_fit) & is_asked;
+        self.is_built = bits(is_found & faces.is_fit) & is_candidate;
         self.sides = [
             bits(faces.is_w[0]),
             bits(faces.is_w[1]),

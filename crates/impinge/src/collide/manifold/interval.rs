@@ -29,8 +29,8 @@ pub(super) fn build<N: Real>(
     limit: usize,
     out: &mut RawManifold<N, 2>,
 ) -> bool {
-    let first = Stretch::of(Which::First, pair.first, None, frame);
-    let second = Stretch::of(Which::Second, pair.second, Some(&pair.pose12), frame);
+    let first = FeatureInterval::of(Which::First, pair.first, None, frame);
+    let second = FeatureInterval::of(Which::Second, pair.second, Some(&pair.pose12), frame);
     let (Some(first), Some(second)) = (first, second) else { return false };
     let mut candidates = Candidates::new();
     if first.is_side && second.is_side {
@@ -56,7 +56,7 @@ pub(super) struct Corner<N: Real, const D: usize> {
 }
 
 /// Supporting feature of a solid: a side, or a point.
-pub(super) struct Stretch<N: Real> {
+pub(super) struct FeatureInterval<N: Real> {
     which: Which,
     id: FeatureId,
     /// Ends of the side; for a point the first counts.
@@ -75,7 +75,7 @@ pub(super) struct Stretch<N: Real> {
     top: (N, Vector<N, 2>),
 }
 
-impl<N: Real> Stretch<N> {
+impl<N: Real> FeatureInterval<N> {
     /// Returns the supporting feature of a solid at `pose` in the frame of the first; `None` if it
     /// is neither a side nor a corner.
     #[inline(always)]
@@ -110,7 +110,7 @@ impl<N: Real> Stretch<N> {
             let point = pose.map_or(vertex, |pose| placed(pose, &vertex));
             Corner { point, flat: frame.flat(&point), id }
         };
-        let mut stretch = Self {
+        let mut interval = Self {
             which,
             id: supporting.id,
             corners: [corner(supporting.ends[0]), corner(supporting.ends[1])],
@@ -121,11 +121,11 @@ impl<N: Real> Stretch<N> {
             length: N::ZERO,
             top: (N::ZERO, Vector::<N, 2>::zeros()),
         };
-        stretch.simplify(&which.outward(frame), frame.tolerance);
-        if stretch.rounding > N::ZERO {
-            stretch.find_top(frame);
+        interval.simplify(&which.outward(frame), frame.tolerance);
+        if interval.rounding > N::ZERO {
+            interval.find_top(frame);
         }
-        stretch
+        interval
     }
 
     /// Reduces a side without length to its first corner, with the id of the side; and one that is
@@ -238,8 +238,8 @@ fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
 /// Two sides in one frame.
 pub(super) struct Shared<'a, N: Real> {
     pub(super) frame: &'a ContactFrame<N, 2>,
-    pub(super) first: &'a Stretch<N>,
-    pub(super) second: &'a Stretch<N>,
+    pub(super) first: &'a FeatureInterval<N>,
+    pub(super) second: &'a FeatureInterval<N>,
 }
 
 impl<N: Real> Shared<'_, N> {
@@ -270,11 +270,11 @@ impl<N: Real> Shared<'_, N> {
     ) {
         let (gap, normal) = (core2 - core1, self.frame.normal());
         let half = (gap - normal * normal.dot(&gap)) * N::HALF;
-        self.push_facing(&(core1 + half), &(core2 - half), features, out);
+        self.push_pair(&(core1 + half), &(core2 - half), features, out);
     }
 
     /// Adds a pair of points across from each other, once.
-    pub(super) fn push_facing(
+    pub(super) fn push_pair(
         &self,
         core1: &Point<N, 2>,
         core2: &Point<N, 2>,
