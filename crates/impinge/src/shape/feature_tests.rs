@@ -221,12 +221,12 @@ fn the_facing_feature_of_a_cube_follows_the_angle() {
 #[test]
 fn flat_cuboids_answer_what_they_are() {
     let mut feature = Feature::default();
-    let sheet = Cuboid::<f32, 3>::new(Vector::<f32, 3>::new(1.0, 2.0, 0.0));
-    sheet.core_feature(&Vector::<f32, 3>::z(), &mut feature);
+    let flat_box = Cuboid::<f32, 3>::new(Vector::<f32, 3>::new(1.0, 2.0, 0.0));
+    flat_box.core_feature(&Vector::<f32, 3>::z(), &mut feature);
     assert_eq!((feature.vertices.len(), feature.id), (4, FeatureId::Face(4)), "a rectangle");
-    sheet.core_feature(&Vector::<f32, 3>::x(), &mut feature);
+    flat_box.core_feature(&Vector::<f32, 3>::x(), &mut feature);
     assert_eq!(feature.vertices.len(), 2, "its side is a segment: {feature:?}");
-    let ends = sheet.edge(feature.id).map(|(_, end)| end);
+    let ends = flat_box.edge(feature.id).map(|(_, end)| end);
     assert!(
         feature.vertices.iter().all(|v| ends.contains(v)),
         "{feature:?} is that edge: {ends:?}"

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::HeightField;
 use super::marks::Diagonal;
-use super::sheet::GridPoint;
+use super::triangles::GridPoint;
 use crate::math::{Mapped, Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::composite::tri_mesh::{inward_of, normal_of};
 use crate::shape::surface::bend::Bend;
