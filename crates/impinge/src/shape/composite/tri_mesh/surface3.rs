@@ -240,6 +240,6 @@ mod tests {
                 counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
             }
         }
-        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 100), "all cases occur: {counts:?}");
     }
 }
