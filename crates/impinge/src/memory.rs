@@ -43,7 +43,7 @@ pub(crate) struct Look {
     /// The greatest length of a list since the last check.
     pub(crate) longest: usize,
     /// The number of objects has not increased since the last check.
-    pub(crate) is_settled: bool,
+    pub(crate) is_stable: bool,
 }
 
 impl Recent {
@@ -58,7 +58,7 @@ impl Recent {
         if self.updates < PERIOD {
             return None;
         }
-        let look = Look { longest: self.longest, is_settled: count <= self.count };
+        let look = Look { longest: self.longest, is_stable: count <= self.count };
         *self = Self { count, ..Self::default() };
         Some(look)
     }
@@ -76,7 +76,7 @@ impl Look {
     pub(crate) fn fit<T>(self, list: &mut Vec<T>) {
         let spare = list.len() / 8;
         let surplus = list.capacity() - list.len();
-        if self.is_settled && surplus > 2 * spare && surplus * size_of::<T>() > SPARE {
+        if self.is_stable && surplus > 2 * spare && surplus * size_of::<T>() > SPARE {
             list.shrink_to(list.len() + spare);
         }
     }
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_that_grow_keep_their_room() {
+    fn lists_that_grow_keep_their_capacity() {
         let (mut recent, mut list) = (Recent::default(), vec![0_u8; 50_000]);
         list.reserve_exact(50_000);
         looks(&mut recent, PERIOD, 0, 49_000)[0].fit(&mut list);

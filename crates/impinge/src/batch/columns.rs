@@ -297,8 +297,8 @@ impl<N: Real, const D: usize> HitColumns<'_, N, D> {
 /// Writes a slot, if the column is not empty.
 #[inline]
 fn put<T>(column: &mut [T], slot: usize, value: T) {
-    if let Some(place) = column.get_mut(slot) {
-        *place = value;
+    if let Some(element) = column.get_mut(slot) {
+        *element = value;
     }
 }
 

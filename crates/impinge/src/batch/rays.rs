@@ -116,11 +116,11 @@ pub(super) fn cast<N: Space<D>, const D: usize>(
                 range.map(|index| rays.ray(index).inverse_transformed_by(&pose)).collect();
             let batch = RayBatch { rays: &local, max_time: rays.max_time, solid: rays.solid };
             return cast_many_on(shape, &batch, &mut |slot, hit| {
-                let turned = |hit: RayIntersection<N, D>| RayIntersection {
+                let rotated = |hit: RayIntersection<N, D>| RayIntersection {
                     normal: pose.vector(&hit.normal),
                     ..hit
                 };
-                out.put(slot, hit.map(turned).as_ref());
+                out.put(slot, hit.map(rotated).as_ref());
             });
         }
         for (slot, index) in range.enumerate() {

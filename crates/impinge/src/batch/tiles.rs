@@ -123,13 +123,13 @@ pub fn pairs_in_tile<N: Space<D>, const D: usize>(
         return Err(BatchError::NoTile { tile, tiles: tiles.number() });
     }
     let pairs = entries::pairs_in_tile(side, tiles, tile, control)?;
-    let named = pairs.into_iter().map(|pair| {
+    let id_pairs = pairs.into_iter().map(|pair| {
         let [one, other] = pair.mapped(|element| ids[element as usize]);
         [one.min(other), one.max(other)]
     });
-    let mut named: Vec<[u64; 2]> = named.collect();
-    named.sort_unstable();
-    Ok(named)
+    let mut id_pairs: Vec<[u64; 2]> = id_pairs.collect();
+    id_pairs.sort_unstable();
+    Ok(id_pairs)
 }
 
 impl TileRows {

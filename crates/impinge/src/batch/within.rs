@@ -209,8 +209,8 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
         }
         let (side, mut boxes) = (PreparedSide::new(side), vec![None; given]);
         let work = |range: Range<usize>, boxes: &mut [Option<Aabb<N, D>>]| {
-            for (place, element) in boxes.iter_mut().zip(range) {
-                *place = grown_box(&side, element);
+            for (slot, element) in boxes.iter_mut().zip(range) {
+                *slot = grown_box(&side, element);
             }
         };
         Progress::new(control).run(given, &mut boxes[..], work)?;
@@ -218,18 +218,18 @@ impl<'a, N: Space<D>, const D: usize> BoxedSide<'a, N, D> {
     }
 
     /// Returns the near pairs of an element of this side, which searches, and one of the other
-    /// side, as `named` maps them, in any order. `named` returns `None` for pairs to be left out.
+    /// side, as `pair_of` maps them, in any order. `pair_of` returns `None` for pairs to be left out.
     fn pairs_with(
         &self,
         other: &Self,
         distance: N,
         control: &Control<'_>,
-        named: impl Fn(u32, u32) -> Option<[u32; 2]> + Sync,
+        pair_of: impl Fn(u32, u32) -> Option<[u32; 2]> + Sync,
     ) -> Result<Vec<[u32; 2]>, BatchError> {
         let (numbers, tree) = other.tree()?;
         let margin = margin(distance);
         let near = |walker: usize, index: usize| {
-            let pair = named(number_of(walker), numbers[index])?;
+            let pair = pair_of(number_of(walker), numbers[index])?;
             let (one, found) =
                 (self.side.element(walker), other.side.element(numbers[index] as usize));
             let is_near = distance_within(&one, &found, distance).is_some();
@@ -277,12 +277,12 @@ fn grown_box<N: Space<D>, const D: usize>(
     if !pose.is_finite() || !aabb.holds_finite_point() {
         return None;
     }
-    let mut reach = N::ZERO;
+    let mut farthest = N::ZERO;
     for axis in 0..D {
         for face in [aabb.mins()[axis], aabb.maxs()[axis]] {
             let away = (face - pose.translation[axis]).abs();
-            reach = if away.is_finite_number() { max(away, reach) } else { reach };
+            farthest = if away.is_finite_number() { max(away, farthest) } else { farthest };
         }
     }
-    Some(enclosing(&aabb, &pose).loosened(reach * N::lit(ROUNDING_ERRORS) * N::EPSILON))
+    Some(enclosing(&aabb, &pose).loosened(farthest * N::lit(ROUNDING_ERRORS) * N::EPSILON))
 }

@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_around_a_way() {
+    fn boxes_around_a_path() {
         let swept = unit_box().swept(&Vector::<f64, 2>::new(-2.0, 0.0), 1.5);
         assert_eq!(swept, Aabb::new(P::new(-3.0, 0.0), P::new(1.0, 1.0)), "three to the left");
         let swept = unit_box().swept(&Vector::<f64, 2>::new(0.0, 1.0), f64::INFINITY);
@@ -419,20 +419,20 @@ mod tests {
     }
 
     #[test]
-    fn a_turned_unbounded_box_stays_unbounded_without_nan() {
+    fn a_rotated_unbounded_box_stays_unbounded_without_nan() {
         let strip = Aabb::new(P::new(f64::NEG_INFINITY, 0.0), P::new(f64::INFINITY, 1.0));
         let still = strip.transformed_by(&Pose::identity());
         assert_eq!(still, strip, "an identity pose changes nothing");
-        let turned = strip.transformed_by(&Pose::from_isometry(&Isometry2::rotation(0.3)));
-        assert_eq!(turned, Aabb::unbounded(), "both axes lean on the infinite one");
+        let rotated = strip.transformed_by(&Pose::from_isometry(&Isometry2::rotation(0.3)));
+        assert_eq!(rotated, Aabb::unbounded(), "both axes have a component of the infinite one");
     }
 
     #[test]
-    fn a_turned_square_fits_its_box() {
-        let turned = unit_box().transformed_by(&Pose::from_isometry(&Isometry2::rotation(
+    fn a_rotated_square_fits_its_box() {
+        let rotated = unit_box().transformed_by(&Pose::from_isometry(&Isometry2::rotation(
             std::f64::consts::FRAC_PI_4,
         )));
         let half = std::f64::consts::FRAC_1_SQRT_2;
-        assert!((turned.maxs() - P::new(half, 2.0 * half)).norm() < 8e-15, "{turned:?}");
+        assert!((rotated.maxs() - P::new(half, 2.0 * half)).norm() < 8e-15, "{rotated:?}");
     }
 }

@@ -27,17 +27,17 @@ impl<N: Real, const D: usize> Aabb<N, D> {
         Self { mins: Point::from(mins), maxs: Point::from(maxs) }
     }
 
-    /// Returns the box around a solid that is symmetric about its local origin, placed at `pose`. `reach` is its extent
+    /// Returns the box around a solid that is symmetric about its local origin, placed at `pose`. `extents` is its extent
     /// along each outer axis: a sum of magnitudes with an error of at most four of its rounding units.
     #[inline(always)]
-    pub(crate) fn around_turned(pose: &Pose<N, D>, mut reach: Vector<N, D>) -> Self {
+    pub(crate) fn around_rotated(pose: &Pose<N, D>, mut extents: Vector<N, D>) -> Self {
         if !pose.is_aligned() {
             for axis in 0..D {
-                let slack = slack_of(reach[axis]);
-                reach[axis] += slack;
+                let slack = slack_of(extents[axis]);
+                extents[axis] += slack;
             }
         }
-        Self::around(Point::from(pose.translation), reach)
+        Self::around(Point::from(pose.translation), extents)
     }
 
     /// Returns the box around points that `pose` has rotated but not yet translated: `low` and `high` are the least and
@@ -47,7 +47,7 @@ impl<N: Real, const D: usize> Aabb<N, D> {
     /// A coordinate of a rotated point is a sum of D products with an error of at most D·ε·size/2 (Higham, "Accuracy
     /// and Stability of Numerical Algorithms", 2002, section 3.1).
     #[inline]
-    pub(crate) fn of_turned(
+    pub(crate) fn of_rotated(
         mut low: Vector<N, D>,
         mut high: Vector<N, D>,
         size: N,

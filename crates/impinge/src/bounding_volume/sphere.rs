@@ -172,8 +172,8 @@ impl<N: Real, const D: usize> BoundingVolume<N> for BoundingSphere<N, D> {
 
     fn swept(&self, velocity: &Vector<N, D>, max_time: N) -> Self {
         let Some((_, speed)) = unit(velocity) else { return *self };
-        let way = speed * max_time;
-        let rounding = slack_of(length_above(&self.center.coords) + way);
+        let travel = speed * max_time;
+        let rounding = slack_of(length_above(&self.center.coords) + travel);
         let radius = sum_above(self.radius, rounding);
         let moved = Self::try_new(self.center + velocity * max_time, radius);
         // An infinite path leads everywhere.
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn spheres_around_a_way() {
+    fn spheres_around_a_path() {
         let sphere = BoundingSphere::new(P::new(1.0, 0.0, 0.0), 1.0);
         let swept = sphere.swept(&Vector::<f64, 3>::new(0.0, 2.0, 0.0), 3.0);
         assert!((swept.center().y - 3.0).abs() < 1e-14, "{swept:?}");

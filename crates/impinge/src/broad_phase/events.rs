@@ -160,8 +160,8 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
         self.changes.clear();
         self.searched.clear();
-        self.moving.settle();
-        self.still.settle();
+        self.moving.commit_boxes();
+        self.still.commit_boxes();
     }
 }
 

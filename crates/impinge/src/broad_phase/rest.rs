@@ -54,7 +54,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         self.resting = resting;
         for tree in [&mut self.moving, &mut self.still] {
             tree.refit();
-            tree.settle();
+            tree.commit_boxes();
             tree.maintain();
         }
     }

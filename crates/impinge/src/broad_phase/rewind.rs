@@ -99,7 +99,7 @@ impl<N: Real, const D: usize> PairFinder<N, D> {
         }
         for tree in [&mut self.moving, &mut self.still] {
             tree.refit();
-            tree.settle();
+            tree.commit_boxes();
         }
         self.pairs.rewind(number, |_| ());
         if let Some(head) = journal.head() {

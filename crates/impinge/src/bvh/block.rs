@@ -34,15 +34,15 @@ impl<const D: usize> Block<D> {
         Bounds { lo: filled(|axis| self.lo[axis][lane]), hi: filled(|axis| self.hi[axis][lane]) }
     }
 
-    /// Returns the lane whose box has its centre nearest to `place`, the lowest of several; `None`
+    /// Returns the lane whose box has its centre nearest to `point`, the lowest of several; `None`
     /// if no centre is finite, or all squared distances overflow `f32`.
     #[inline]
-    pub(crate) fn nearest_lane(&self, place: &[f32; D]) -> Option<usize> {
+    pub(crate) fn nearest_lane(&self, point: &[f32; D]) -> Option<usize> {
         let mut squares = [0.0; LANES];
-        for ((lo, hi), place) in self.lo.iter().zip(&self.hi).zip(place) {
+        for ((lo, hi), point) in self.lo.iter().zip(&self.hi).zip(point) {
             for ((square, lo), hi) in squares.iter_mut().zip(lo).zip(hi) {
-                let way = lo * 0.5 + hi * 0.5 - place;
-                *square += way * way;
+                let offset = lo * 0.5 + hi * 0.5 - point;
+                *square += offset * offset;
             }
         }
         let (mut nearest, mut least) = (None, f32::INFINITY);

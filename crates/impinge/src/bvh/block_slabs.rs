@@ -45,19 +45,19 @@ impl<const D: usize> BlockSlab<D> {
         Vector::from_fn(|axis, _| N::lit(self.across[axis].into()))
     }
 
-    /// Returns the slab perpendicular to a sum of normals. `reach` is the extent of the contents
+    /// Returns the slab perpendicular to a sum of normals. `extent` is the extent of the contents
     /// along a direction. `None` if the slab is not thin compared with the box.
     fn around<N: Real>(
         sum: &Vector<N, D>,
         bounds: &Bounds<D>,
-        reach: impl Fn(&Vector<N, D>) -> N,
+        extent: impl Fn(&Vector<N, D>) -> N,
     ) -> Option<Self> {
         let (across, _) = unit(sum)?;
         let across = filled(|axis| across[axis].as_f32());
         // The planes are perpendicular to the rounded direction.
         let normal = Vector::from_fn(|axis, _| N::lit(f64::from(across[axis])));
-        let (low, high) = (-reach(&-normal), reach(&normal));
-        let of_box = bounds.reach(&normal) + bounds.reach(&-normal);
+        let (low, high) = (-extent(&-normal), extent(&normal));
+        let of_box = bounds.extent(&normal) + bounds.extent(&-normal);
         if (high - low) * N::lit(THINNER) > of_box {
             return None;
         }
@@ -67,15 +67,15 @@ impl<const D: usize> BlockSlab<D> {
 
 impl<const D: usize> SlabBox<'_, D> {
     /// Returns an upper bound of the extent of the contents along a direction.
-    pub(super) fn reach<N: Real>(&self, along: &Vector<N, D>) -> N {
-        let whole = self.bounds.reach(along);
+    pub(super) fn extent<N: Real>(&self, along: &Vector<N, D>) -> N {
+        let whole = self.bounds.extent(along);
         let Some(slab) = self.slab else { return whole };
         // Any multiple of the slab's normal gives a bound; this one leaves the component in its
         // plane to the box.
         let across = slab.across::<N>();
         let share = along.dot(&across);
         let height = N::lit(if share < N::ZERO { slab.low } else { slab.high }.into());
-        min(share * height + self.bounds.reach(&(along - across * share)), whole)
+        min(share * height + self.bounds.extent(&(along - across * share)), whole)
     }
 }
 
@@ -96,7 +96,7 @@ impl<const D: usize> Tree<D> {
         let slab = |((ids, sum), bounds): ((&[u32; LANES], &Vector<N, D>), &Bounds<D>)| {
             let corners: Vec<_> = in_use(ids).flat_map(&corners).collect();
             BlockSlab::around(sum, bounds, |along| {
-                corners.iter().fold(-N::INFINITY, |reach, at| max(at.coords.dot(along), reach))
+                corners.iter().fold(-N::INFINITY, |extent, at| max(at.coords.dot(along), extent))
                     + size
             })
         };
@@ -108,7 +108,8 @@ impl<const D: usize> Tree<D> {
             let slab = |(block, sum): (u32, &Vector<N, D>)| {
                 let below = || self.children(layer - 1, block);
                 BlockSlab::around(sum, &self.layers[layer].bounds[block as usize], |along| {
-                    below().fold(-N::INFINITY, |reach, below| max(below.reach(along), reach)) + size
+                    below().fold(-N::INFINITY, |extent, below| max(below.extent(along), extent))
+                        + size
                 })
             };
             let slabs = blocks.map(slab).collect();

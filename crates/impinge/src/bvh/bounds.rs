@@ -139,7 +139,7 @@ impl<const D: usize> Bounds<D> {
     }
 
     /// Returns the greatest coordinate of the box along a direction.
-    pub(super) fn reach<N: Real>(&self, along: &Vector<N, D>) -> N {
+    pub(super) fn extent<N: Real>(&self, along: &Vector<N, D>) -> N {
         (0..D).fold(N::ZERO, |sum, axis| {
             let corner = if along[axis] < N::ZERO { self.lo[axis] } else { self.hi[axis] };
             sum + along[axis] * N::lit(f64::from(corner))

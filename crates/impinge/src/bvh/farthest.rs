@@ -4,58 +4,58 @@ use super::{Bounds, LANES, Tree};
 use crate::math::{Real, Vector, filled, max};
 
 /// The search and its best result.
-struct Reach<'a, N: Real, const D: usize> {
+struct ExtentSearch<'a, N: Real, const D: usize> {
     direction: Vector<N, D>,
     /// Skips nodes that extend less than `tolerance` beyond the best extent found so far.
     tolerance: N,
     best: N,
-    reach_of: &'a mut dyn FnMut(u32) -> N,
+    extent_of: &'a mut dyn FnMut(u32) -> N,
 }
 
 impl<const D: usize> Tree<D> {
     /// Returns the extent of the objects along `direction`, rounded up: it exceeds the exact one by
-    /// at most a few `f32` rounding units of the coordinates. `reach_of` returns the extent of one
+    /// at most a few `f32` rounding units of the coordinates. `extent_of` returns the extent of one
     /// object, which must not exceed that of its box. Minus infinity for an empty tree.
     ///
     /// Branch and bound, the farthest box of each block first. The tree must be refitted.
-    pub(crate) fn reach_along<N: Real>(
+    pub(crate) fn extent_along<N: Real>(
         &self,
         direction: Vector<N, D>,
-        reach_of: &mut dyn FnMut(u32) -> N,
+        extent_of: &mut dyn FnMut(u32) -> N,
     ) -> N {
         let top = self.layers.len() - 1;
         let farthest = self.layers[top].bounds.iter().filter(|bounds| bounds.is_finite());
         let size = farthest.map(|bounds| size_along(bounds, &direction)).fold(N::ZERO, max);
         // Without the tolerance a flat floor would open all boxes, since they are equally extreme.
         let tolerance = N::lit(4.0 * f64::from(f32::EPSILON)) * size;
-        let mut reach = Reach { direction, tolerance, best: -N::INFINITY, reach_of };
+        let mut search = ExtentSearch { direction, tolerance, best: -N::INFINITY, extent_of };
         for block in 0..self.layers[top].blocks.len() {
-            self.open(top, block, &mut reach);
+            self.open(top, block, &mut search);
         }
-        reach.best + tolerance
+        search.best + tolerance
     }
 
     /// Searches a block. The recursion depth is the number of layers, at most eight.
-    fn open<N: Real>(&self, layer: usize, block: usize, reach: &mut Reach<'_, N, D>) {
+    fn open<N: Real>(&self, layer: usize, block: usize, search: &mut ExtentSearch<'_, N, D>) {
         let lanes = &self.layers[layer].blocks[block];
         let mut farthest: [(N, usize); LANES] = filled(|lane| {
             let bounds = lanes.lane(lane);
-            let far = bounds.reach(&reach.direction);
+            let far = bounds.extent(&search.direction);
             let far = if far.partial_cmp(&far).is_some() { far } else { -N::INFINITY };
             (if bounds.is_finite() { far } else { -N::INFINITY }, lane)
         });
         farthest.sort_by(|a, b| b.0.partial_cmp(&a.0).unwrap_or(core::cmp::Ordering::Equal));
         for (far, lane) in farthest {
             // False for NaN. An infinite extent ends the search.
-            let is_farther = far > reach.best + reach.tolerance;
+            let is_farther = far > search.best + search.tolerance;
             if !is_farther {
                 break;
             }
             let below = block * LANES + lane;
             if layer > 0 {
-                self.open(layer - 1, below, reach);
+                self.open(layer - 1, below, search);
             } else {
-                reach.best = max((reach.reach_of)(self.ids[below]), reach.best);
+                search.best = max((search.extent_of)(self.ids[below]), search.best);
             }
         }
     }

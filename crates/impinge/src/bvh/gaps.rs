@@ -36,17 +36,18 @@ impl<const D: usize> Gaps<D> {
     /// If coordinates are beyond the range in which `f32` differences are finite, the box is near
     /// everything.
     pub(crate) fn new<N: Real>(aabb: &Aabb<N, D>, size: f32) -> Self {
-        let mut reach = size;
+        let mut largest = size;
         for axis in 0..D {
             for face in [aabb.mins()[axis], aabb.maxs()[axis]] {
                 let magnitude = face.as_f32().abs();
-                reach = if face.is_finite_number() { f32::max(reach, magnitude) } else { reach };
+                largest =
+                    if face.is_finite_number() { f32::max(largest, magnitude) } else { largest };
             }
         }
         let lost = N::MIN_POSITIVE.as_f64();
-        if reach < LARGEST {
+        if largest < LARGEST {
             let Bounds { lo, hi } = Bounds::enclosing(aabb).clamped();
-            return Self { lo, hi, scale: 1.0 / reach.max(SMALLEST).power_of_two_below(), lost };
+            return Self { lo, hi, scale: 1.0 / largest.max(SMALLEST).power_of_two_below(), lost };
         }
         Self { lo: [-f32::MAX; D], hi: [f32::MAX; D], scale: 1.0, lost }
     }
@@ -178,7 +179,7 @@ mod tests {
         }
     }
 
-    fn asked(
+    fn proposed(
         lanes: Lanes,
         block: &Block<3>,
         gaps: &Gaps<3>,
@@ -210,9 +211,9 @@ mod tests {
             let Ok(aabb) = Aabb::try_new(corner, end) else { continue };
             let gaps = Gaps::new(&aabb, largest);
             for limit in [0.0, number(state, largest).abs(), f32::INFINITY] {
-                let expected = asked(Lanes::scalar(), &block, &gaps, gaps.limit(limit));
+                let expected = proposed(Lanes::scalar(), &block, &gaps, gaps.limit(limit));
                 for lanes in Lanes::available() {
-                    let own = asked(lanes, &block, &gaps, gaps.limit(limit));
+                    let own = proposed(lanes, &block, &gaps, gaps.limit(limit));
                     assert_eq!(own, expected, "{lanes:?} {aabb:?} {limit}");
                 }
                 let (mask, keys, least) = expected;

@@ -75,7 +75,7 @@ pub(super) struct Scratch<const D: usize> {
     /// Pairs of a query and a block of the layer below.
     pub(super) next: TaskList,
     /// Query boxes of a chunk.
-    pub(super) reaches: Vec<Bounds<D>>,
+    pub(super) swept_slots: Vec<Bounds<D>>,
 }
 
 impl<const D: usize> Scratch<D> {
@@ -83,7 +83,7 @@ impl<const D: usize> Scratch<D> {
     fn give_back(&mut self, look: Look) {
         self.tasks.give_back();
         self.next.give_back();
-        look.trim(&mut self.reaches);
+        look.trim(&mut self.swept_slots);
     }
 }
 
@@ -116,7 +116,7 @@ impl<const D: usize> Joiner<D> {
     pub(crate) fn self_join(&mut self, tree: &Tree<D>, changes: &mut Changes) {
         let sides = JoinSides { first: tree, second: tree, is_self: true };
         if tree.changed * QUERIES_BELOW < tree.live {
-            self.ask_changed(sides);
+            self.search_changed(sides);
         } else {
             self.join(sides);
         }
@@ -132,8 +132,8 @@ impl<const D: usize> Joiner<D> {
         let few = (first.changed + second.changed) * QUERIES_BELOW < all;
         match (first.changed, second.changed) {
             (0, 0) => {}
-            (_, 0) if few => self.ask_and_report(sides, changes),
-            (0, _) if few => self.ask_and_report(flipped, changes),
+            (_, 0) if few => self.search_and_report(sides, changes),
+            (0, _) if few => self.search_and_report(flipped, changes),
             _ => {
                 self.join(sides);
                 self.report(sides, changes);
@@ -142,8 +142,8 @@ impl<const D: usize> Joiner<D> {
     }
 
     /// Finds the pairs of the changed objects of the first tree by queries, and reports them.
-    fn ask_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
-        self.ask_changed(sides);
+    fn search_and_report(&mut self, sides: JoinSides<'_, D>, changes: &mut Changes) {
+        self.search_changed(sides);
         self.report(sides, changes);
     }
 
@@ -163,13 +163,13 @@ impl<const D: usize> Joiner<D> {
 
     /// Queries the second tree with each changed box of the first. The second tree must be
     /// unchanged, unless both are the same.
-    fn ask_changed(&mut self, sides: JoinSides<'_, D>) {
+    fn search_changed(&mut self, sides: JoinSides<'_, D>) {
         let mut slots = core::mem::take(&mut self.slots);
         sides.first.list_changed_slots(&mut slots);
         if !slots.is_empty() && sides.second.live > 0 {
             let run = |range: Range<usize>, out: &mut TaskList, scratch: &mut Scratch<D>| {
                 with_kernel!(sides.first.lanes, kernel => {
-                    super::query::ask(kernel, sides, &slots[range], out, scratch);
+                    super::query::search(kernel, sides, &slots[range], out, scratch);
                 });
             };
             let chunks = Chunks { count: slots.len(), size: UPPER_CHUNK };
@@ -280,9 +280,9 @@ fn expand<K: Kernel, const D: usize>(
     out: &mut TaskList,
 ) {
     let (layer_a, layer_b) = (&sides.first.layers[layer], &sides.second.layers[layer]);
-    let (blocks_a, changed_a) = (&layer_a.reaches[..], &layer_a.changed[..]);
-    let (blocks_b, changed_b) = (&layer_b.reaches[..], &layer_b.changed[..]);
-    let (bounds_b, children) = (&layer_b.reach[..], &sides.first.layers[layer - 1].reach[..]);
+    let (blocks_a, changed_a) = (&layer_a.swept_blocks[..], &layer_a.changed[..]);
+    let (blocks_b, changed_b) = (&layer_b.swept_blocks[..], &layer_b.changed[..]);
+    let (bounds_b, children) = (&layer_b.swept[..], &sides.first.layers[layer - 1].swept[..]);
     for (&a, &b) in first.iter().zip(second) {
         let block_b = &blocks_b[b as usize];
         let changed_a = u32::from(changed_a[a as usize]);
@@ -320,16 +320,16 @@ fn join_leaves<K: Kernel, const D: usize>(
     let (leaves_a, leaves_b) = (&sides.first.layers[0], &sides.second.layers[0]);
     let (blocks_a, changed_a) = (&leaves_a.blocks[..], &leaves_a.changed[..]);
     let (before_a, changed_b) = (sides.first.was(), &leaves_b.changed[..]);
-    let (reach_b, boxes) = (&leaves_b.reach[..], JoinBoxes::of(sides));
+    let (swept_b, boxes) = (&leaves_b.swept[..], JoinBoxes::of(sides));
     let lanes = &mut scratch.tasks;
     lanes.clear();
     for (&a, &b) in first.iter().zip(second) {
-        let reach = &reach_b[b as usize];
+        let swept = &swept_b[b as usize];
         let changed = u32::from(changed_a[a as usize]);
         // Lanes of `a` whose boxes, now or before, overlap the reach of `b`.
-        let mut mask = kernel.overlaps(&blocks_a[a as usize], reach);
+        let mut mask = kernel.overlaps(&blocks_a[a as usize], swept);
         if changed != 0 {
-            mask |= kernel.overlaps(&before_a[a as usize], reach);
+            mask |= kernel.overlaps(&before_a[a as usize], swept);
         }
         if changed_b[b as usize] == 0 {
             mask &= changed;
@@ -412,11 +412,11 @@ impl<const D: usize> Tree<D> {
     /// Returns the union of an object's boxes now and before; the present box alone if the object
     /// moved far.
     #[inline]
-    pub(super) fn slot_reach(&self, slot: u32) -> Bounds<D> {
+    pub(super) fn swept_of_slot(&self, slot: u32) -> Bounds<D> {
         let (block, lane) = (slot as usize / LANES, slot as usize % LANES);
         let (now, before) = (self.lane(slot as usize), self.was()[block].lane(lane));
         // The reach of an escaped block covers the present boxes alone.
-        let is_near = self.layers[0].reach[block].contains(&before);
+        let is_near = self.layers[0].swept[block].contains(&before);
         if is_near { now.merged(&before) } else { now }
     }
 }

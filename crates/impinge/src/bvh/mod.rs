@@ -13,13 +13,13 @@
 //!   layer of one block. Child and parent are computed from the index, so no links change when
 //!   objects move between slots;
 //! * each layer also has the bounds of its blocks as an array (the query side of a test of one box
-//!   against a block), and a mask of the lanes that changed since the last [`Tree::settle`];
+//!   against a block), and a mask of the lanes that changed since the last [`Tree::commit_boxes`];
 //! * layer 0 also has the boxes *before* the changes, again in blocks. A sparing tree, whose
 //!   objects seldom change, has these only while something has changed.
 //!
 //! Slots are in a balanced k-d order, so that a block holds neighbours. In each step the owner of
 //! the tree calls [`Tree::set_later`], [`Tree::insert`], [`Tree::remove`], then [`Tree::refit`],
-//! then the [`Joiner`] for the pairs that began and ended, then [`Tree::settle`] and
+//! then the [`Joiner`] for the pairs that began and ended, then [`Tree::commit_boxes`] and
 //! [`Tree::maintain`].
 //!
 //! **No set of pairs is stored.** A pair began exactly if the boxes overlap and the old ones did
@@ -48,13 +48,13 @@ mod kernel;
 mod near_first;
 mod order;
 mod ordered;
-mod place;
 mod query;
 mod ranked;
 mod refit;
 mod renewal;
 mod schedule;
 mod slabs;
+mod slot;
 mod still;
 mod stream;
 mod tree;
@@ -78,7 +78,7 @@ pub(crate) use slabs::Slabs;
 pub(crate) use stream::{RAYS, RayVisitor, Walk};
 pub(crate) use tree::{NONE, Tree};
 pub(crate) use triangles::{ShearedLine, TriangleAt, Triangles};
-pub(crate) use two::{Toward, TreeMeeting, TreePair, visit_meetings, visit_pairs};
+pub(crate) use two::{TouchQuery, Toward, TreePair, visit_pairs, visit_touching};
 
 /// Number of objects below which nothing runs in parallel: waking a thread costs more than it
 /// saves.

@@ -24,7 +24,7 @@ pub(crate) const GROUP: usize = 4;
 pub(super) trait Probe<const D: usize> {
     /// Returns the lanes that may have a key of at most `limit`, and writes lower bounds of the keys. The mask contains
     /// every lane with such a key. Keys are zero or more.
-    fn ask<K: Kernel>(
+    fn test<K: Kernel>(
         &self,
         kernel: K,
         block: &Block<D>,
@@ -36,7 +36,7 @@ pub(super) trait Probe<const D: usize> {
 /// The key is the time of entry.
 impl<const D: usize> Probe<D> for Slabs<D> {
     #[inline(always)]
-    fn ask<K: Kernel>(
+    fn test<K: Kernel>(
         &self,
         kernel: K,
         block: &Block<D>,
@@ -50,7 +50,7 @@ impl<const D: usize> Probe<D> for Slabs<D> {
 /// The key is the squared distance.
 impl<const D: usize> Probe<D> for Gaps<D> {
     #[inline(always)]
-    fn ask<K: Kernel>(
+    fn test<K: Kernel>(
         &self,
         kernel: K,
         block: &Block<D>,
@@ -209,7 +209,7 @@ impl<const D: usize> Tree<D> {
         let block = &self.layers[layer].blocks[number as usize];
         let mut keys = [0.0; LANES];
         let first = number * small(LANES);
-        let mask = self.lanes_in_use(layer, first, probe.ask(kernel, block, limit, &mut keys));
+        let mask = self.lanes_in_use(layer, first, probe.test(kernel, block, limit, &mut keys));
         Open { keys, mask, first }
     }
 

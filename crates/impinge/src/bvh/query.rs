@@ -12,7 +12,7 @@ use super::tree::small;
 /// changed slots that began or ended. If both trees are the same, a pair of two changed slots is
 /// reported by the lower one.
 #[inline(always)]
-pub(super) fn ask<K: Kernel, const D: usize>(
+pub(super) fn search<K: Kernel, const D: usize>(
     kernel: K,
     sides: JoinSides<'_, D>,
     slots: &[u32],
@@ -20,20 +20,21 @@ pub(super) fn ask<K: Kernel, const D: usize>(
     scratch: &mut Scratch<D>,
 ) {
     debug_assert!(!sides.second.is_stale, "queries need a refitted tree");
-    let Scratch { tasks, next, reaches } = scratch;
+    let Scratch { tasks, next, swept_slots } = scratch;
     tasks.clear();
-    reaches.clear();
+    swept_slots.clear();
     // Each query starts at the top block, with the reach of its slot.
     for (query, &slot) in (0..).zip(slots) {
         tasks.push(query, 0);
-        reaches.push(sides.first.slot_reach(slot));
+        swept_slots.push(sides.first.swept_of_slot(slot));
     }
     // In each layer, the children that a query overlaps become the tasks of the layer below.
     for layer in sides.second.layers.iter().skip(1).rev() {
         next.clear();
         let [queries, blocks] = tasks.parts();
         for (&query, &block) in queries.iter().zip(blocks) {
-            let mask = kernel.overlaps(&layer.reaches[block as usize], &reaches[query as usize]);
+            let mask =
+                kernel.overlaps(&layer.swept_blocks[block as usize], &swept_slots[query as usize]);
             kernel.push(next, query, block * small(LANES), mask);
         }
         core::mem::swap(tasks, next);

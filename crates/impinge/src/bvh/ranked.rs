@@ -145,12 +145,12 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
             }
         }
         let (around, mut gaps) = (self.tree.slab_box(layer, block), [-N::INFINITY; LANES]);
-        if let Some((along, reach)) = self.question.toward(&around.bounds.as_aabb()) {
-            let Some(first) = self.first(entry, -around.reach(&-along) - reach, limit) else {
+        if let Some((along, extent)) = self.question.toward(&around.bounds.as_aabb()) {
+            let Some(first) = self.first(entry, -around.extent(&-along) - extent, limit) else {
                 return;
             };
             entry = first;
-            gaps = self.gaps_along(layer, block, &along, reach);
+            gaps = self.gaps_along(layer, block, &along, extent);
         }
         self.push_all(&entry, open, &gaps, limit);
     }
@@ -167,13 +167,13 @@ impl<N: Real, const D: usize> RankedSearch<'_, '_, N, D> {
     }
 
     /// Returns lower bounds of the gaps along a direction between the query's solid and the children of a block.
-    fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, reach: N) -> [N; LANES] {
+    fn gaps_along(&self, layer: usize, block: u32, along: &Vector<N, D>, extent: N) -> [N; LANES] {
         let along = filled(|axis| along[axis].as_f32());
-        let reach = reach + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
+        let extent = extent + N::lit(f64::from(self.tree.size() * f32::EPSILON * ROUNDING));
         let block = &self.tree.layers[layer].blocks[block as usize];
         block.lowest_along(&along).mapped(|lowest| {
             let is_known = lowest.is_finite();
-            if is_known { N::lit(lowest.into()) - reach } else { -N::INFINITY }
+            if is_known { N::lit(lowest.into()) - extent } else { -N::INFINITY }
         })
     }
 
@@ -213,12 +213,12 @@ fn rank_of<N: Real>(value: N) -> i64 {
 mod tests {
     use super::*;
     use crate::bvh::{Bounds, Lanes};
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
 
-    /// A ranking in which an object near `place` has the rank of its least x coordinate, any other its distance.
+    /// A ranking in which an object near `target` has the rank of its least x coordinate, any other its distance.
     struct ByFirst<'a> {
         boxes: &'a [Aabb<f64, 3>],
-        place: Aabb<f64, 3>,
+        target: Aabb<f64, 3>,
         limit: f64,
         most: usize,
         found: Vec<u32>,
@@ -231,7 +231,7 @@ mod tests {
 
         fn of_object(&self, id: u32) -> f64 {
             let aabb = &self.boxes[id as usize];
-            let apart = aabb.distance_to_aabb(&self.place);
+            let apart = aabb.distance_to_aabb(&self.target);
             if apart > 0.0 { apart } else { aabb.mins().x - 100.0 }
         }
 
@@ -246,24 +246,25 @@ mod tests {
 
     #[test]
     fn objects_come_by_rank_up_to_the_limit() {
-        let noise = &mut Noise(9);
+        let random = &mut Xorshift(9);
         for count in [0, 1, 16, 17, 700, 5000] {
             let each = |_| {
-                let corner = Point::from(noise.vector::<f64>(20.0));
-                Aabb::new(corner, corner + noise.vector::<f64>(1.0).abs())
+                let corner = Point::from(random.vector::<f64>(20.0));
+                Aabb::new(corner, corner + random.vector::<f64>(1.0).abs())
             };
             let boxes: Vec<_> = (0..count).map(each).collect();
             let tree =
                 Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().map(Bounds::enclosing)));
-            let place = Aabb::new(Point::from([-1.0, -2.0, -3.0]), Point::from([5.0, 4.0, 3.0]));
+            let target = Aabb::new(Point::from([-1.0, -2.0, -3.0]), Point::from([5.0, 4.0, 3.0]));
             for (limit, most) in [(-90.0, 9999), (0.0, 9999), (5.0, 9999), (f64::INFINITY, 40)] {
-                let mut question = ByFirst { boxes: &boxes, place, limit, most, found: Vec::new() };
+                let mut question =
+                    ByFirst { boxes: &boxes, target, limit, most, found: Vec::new() };
                 let rank = |question: &ByFirst<'_>, id: u32| question.of_object(id);
                 let mut all: Vec<_> = (0..count).collect();
                 all.retain(|&id| rank(&question, id) <= limit);
                 all.sort_by(|&a, &b| rank(&question, a).total_cmp(&rank(&question, b)));
                 all.truncate(most);
-                visit_ranked(&tree, &place, &mut question);
+                visit_ranked(&tree, &target, &mut question);
                 let ranks =
                     |ids: &[u32]| ids.iter().map(|&id| rank(&question, id)).collect::<Vec<_>>();
                 assert_eq!(ranks(&question.found), ranks(&all), "{count} up to {limit}");

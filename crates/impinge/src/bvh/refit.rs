@@ -115,11 +115,11 @@ impl<const D: usize> Tree<D> {
 
     /// Reads the changed boxes of the listed leaf blocks, and computes bounds and reach.
     fn refit_leaves(&mut self, blocks: &[u32], by_id: &[Bounds<D>]) {
-        let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut self.layers[0];
+        let Layer { blocks: leaves, bounds, swept, changed, .. } = &mut self.layers[0];
         let (before, ids) = (&self.before[..], &self.ids[..]);
         let is_stale = self.is_stale;
         let source = RefitSource { before, ids, changed, by_id, is_stale, lanes: self.lanes };
-        let leaves = Leaves { first: 0, blocks: leaves, bounds, reach };
+        let leaves = Leaves { first: 0, blocks: leaves, bounds, swept };
         leaves.refit(&source, blocks, &mut self.escaped);
     }
 
@@ -133,7 +133,7 @@ impl<const D: usize> Tree<D> {
                 let block = block as usize;
                 let (above, lane) = (block / LANES, block % LANES);
                 parent.blocks[above].set_lane(lane, &layer.bounds[block]);
-                parent.reaches[above].set_lane(lane, &layer.reach[block]);
+                parent.swept_blocks[above].set_lane(lane, &layer.swept[block]);
                 parent.changed[above] |= u16::from(layer.changed[block] != 0) << lane;
             }
             // Bounds of parents are computed once all their lanes are written.
@@ -141,13 +141,13 @@ impl<const D: usize> Tree<D> {
             for &block in blocks.iter() {
                 let block = block as usize;
                 parent.bounds[block] = kernel.bounds(&parent.blocks[block]);
-                parent.reach[block] = kernel.bounds(&parent.reaches[block]);
+                parent.swept[block] = kernel.bounds(&parent.swept_blocks[block]);
             }
         }
     }
 
     /// Makes the present boxes the old ones, and clears all change bits.
-    pub(crate) fn settle(&mut self) {
+    pub(crate) fn commit_boxes(&mut self) {
         if self.touched.is_empty() {
             return;
         }
@@ -165,7 +165,7 @@ impl<const D: usize> Tree<D> {
         if self.changed > 0 {
             let mut dirty = core::mem::take(&mut self.touched);
             for layer in &mut self.layers {
-                dirty.iter().for_each(|&block| layer.settle(block as usize));
+                dirty.iter().for_each(|&block| layer.commit_boxes(block as usize));
                 to_parents(&mut dirty);
             }
             self.touched = dirty;
@@ -185,7 +185,7 @@ struct Leaves<'a, const D: usize> {
     first: usize,
     blocks: &'a mut [Block<D>],
     bounds: &'a mut [Bounds<D>],
-    reach: &'a mut [Bounds<D>],
+    swept: &'a mut [Bounds<D>],
 }
 
 /// Read-only input of the refit of leaf blocks.
@@ -240,11 +240,11 @@ impl<const D: usize> Leaves<'_, D> {
         }
         let now = kernel.bounds(&self.blocks[at]);
         self.bounds[at] = now;
-        self.reach[at] = now;
+        self.swept[at] = now;
         if changed != 0 {
             let both = now.merged(&kernel.bounds(&source.before[block]));
             if both.half_surface() <= FAR_MOVED * now.half_surface() {
-                self.reach[at] = both;
+                self.swept[at] = both;
             } else {
                 escaped.push(small(block));
             }
@@ -257,9 +257,9 @@ impl<const D: usize> Leaves<'_, D> {
         let (first, count) = (self.first, block - self.first);
         let (blocks1, blocks2) = self.blocks.split_at_mut(count);
         let (bounds1, bounds2) = self.bounds.split_at_mut(count);
-        let (reach1, reach2) = self.reach.split_at_mut(count);
-        let left = Leaves { first, blocks: blocks1, bounds: bounds1, reach: reach1 };
-        (left, Leaves { first: block, blocks: blocks2, bounds: bounds2, reach: reach2 })
+        let (swept1, swept2) = self.swept.split_at_mut(count);
+        let left = Leaves { first, blocks: blocks1, bounds: bounds1, swept: swept1 };
+        (left, Leaves { first: block, blocks: blocks2, bounds: bounds2, swept: swept2 })
     }
 }
 
@@ -276,11 +276,11 @@ fn fetch<const D: usize>(mut changed: u16, ids: &[u32], block: &mut Block<D>, by
 
 impl<const D: usize> Layer<D> {
     /// Clears the change bits of a block; its reach becomes its bounds.
-    fn settle(&mut self, block: usize) {
+    fn commit_boxes(&mut self, block: usize) {
         self.changed[block] = 0;
-        self.reach[block] = self.bounds[block];
-        if let Some(reaches) = self.reaches.get_mut(block) {
-            *reaches = self.blocks[block];
+        self.swept[block] = self.bounds[block];
+        if let Some(swept_blocks) = self.swept_blocks.get_mut(block) {
+            *swept_blocks = self.blocks[block];
         }
     }
 }

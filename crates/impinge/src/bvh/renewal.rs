@@ -52,7 +52,7 @@ pub(super) struct Renewal<const D: usize> {
     /// Objects that came since the renewal began. Some may be gone.
     late: Vec<u32>,
     /// Work units added by changes since the last call.
-    asked: usize,
+    owed_units: usize,
 }
 
 /// A stage, with its progress.
@@ -84,14 +84,14 @@ impl<const D: usize> Renewal<D> {
             ids: Vec::with_capacity(tree.live),
             other: tree.empty_twin(),
             late: Vec::new(),
-            asked: 0,
+            owed_units: 0,
         }
     }
 
     /// Notes that an object was inserted in this tree.
     pub(super) fn insert(&mut self, id: u32) {
         self.late.push(id);
-        self.asked += OF_INSERT;
+        self.owed_units += OF_INSERT;
     }
 
     /// Notes that an object of this tree has another box.
@@ -99,7 +99,7 @@ impl<const D: usize> Renewal<D> {
         if self.other.contains(id) {
             self.other.set_still(id, bounds);
         }
-        self.asked += OF_SET;
+        self.owed_units += OF_SET;
     }
 
     /// Notes that an object was removed from this tree.
@@ -111,7 +111,7 @@ impl<const D: usize> Renewal<D> {
 
     /// Does the next step, and more if many objects came or changed. Returns `true` if the other tree is complete.
     pub(super) fn proceed(&mut self, tree: &Tree<D>) -> bool {
-        let steps = 1 + core::mem::take(&mut self.asked) / OF_STEP;
+        let steps = 1 + core::mem::take(&mut self.owed_units) / OF_STEP;
         (0..steps).any(|_| self.step(tree))
     }
 
@@ -123,7 +123,7 @@ impl<const D: usize> Renewal<D> {
             Stage::Follow => return self.follow(tree),
         }
         self.other.refit_layers(&[]);
-        self.other.settle();
+        self.other.commit_boxes();
         false
     }
 
@@ -179,7 +179,7 @@ impl<const D: usize> Renewal<D> {
             self.add(tree, id, false);
         }
         self.other.refit();
-        self.other.settle();
+        self.other.commit_boxes();
         rest == 0
     }
 
@@ -212,10 +212,10 @@ impl<const D: usize> Tree<D> {
     /// Creates a sparing tree without objects and with memory for as many as this one.
     fn empty_twin(&self) -> Self {
         let (mut twin, blocks) = (Self::sparing(self.lanes), self.live.div_ceil(LANES) + 1);
-        let Layer { blocks: leaves, bounds, reach, changed, .. } = &mut twin.layers[0];
+        let Layer { blocks: leaves, bounds, swept, changed, .. } = &mut twin.layers[0];
         leaves.reserve(blocks);
         bounds.reserve(blocks);
-        reach.reserve(blocks);
+        swept.reserve(blocks);
         changed.reserve(blocks);
         twin.is_touched.reserve(blocks);
         twin.ids.reserve(blocks * LANES);
@@ -251,7 +251,7 @@ mod tests {
             }
         }
         tree.refit();
-        tree.settle();
+        tree.commit_boxes();
         tree.maintain();
     }
 

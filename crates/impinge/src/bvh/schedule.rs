@@ -162,7 +162,7 @@ impl<const D: usize> Tree<D> {
         self.schedule.begin(end, end);
     }
 
-    /// Does this step's share of keeping the order; must be called after [`Self::settle`].
+    /// Does this step's share of keeping the order; must be called after [`Self::commit_boxes`].
     pub(crate) fn maintain(&mut self) {
         debug_assert_eq!(self.changed, 0, "maintenance comes after settling");
         if self.live == 0 {
@@ -205,7 +205,7 @@ impl<const D: usize> Tree<D> {
     fn rebuild_at_once(&mut self) {
         self.rebuild();
         self.refit_layers(&[]);
-        self.settle();
+        self.commit_boxes();
     }
 
     /// Takes a snapshot of all objects, to be sorted in steps, if the order should be renewed.
@@ -266,7 +266,7 @@ impl<const D: usize> Tree<D> {
         self.schedule.begin(ordered, self.end);
         self.give_back();
         self.refit_layers(&[]);
-        self.settle();
+        self.commit_boxes();
     }
 }
 

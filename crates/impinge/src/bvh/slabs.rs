@@ -52,14 +52,14 @@ impl<const D: usize> Slabs<D> {
         let unit = if speed > N::ZERO { speed.power_of_two_below() } else { N::ONE };
         let direction = velocity.map(|x| (x / unit).as_f32());
         // The largest finite magnitude of a coordinate of the tree or the box.
-        let mut reach = size;
+        let mut largest = size;
         for axis in 0..D {
             for face in [moving.mins()[axis], moving.maxs()[axis]] {
                 let face = face.as_f32().abs();
-                reach = if face > reach && face < f32::INFINITY { face } else { reach };
+                largest = if face > largest && face < f32::INFINITY { face } else { largest };
             }
         }
-        let pad = PADDING * f32::EPSILON * reach + f32::MIN_POSITIVE;
+        let pad = PADDING * f32::EPSILON * largest + f32::MIN_POSITIVE;
         // Both cases are computed and then selected, since the sign of a direction is
         // unpredictable.
         let low = filled(|axis| at_most(moving.mins()[axis].as_f32(), f32::MAX) - pad);
@@ -257,21 +257,21 @@ mod tests {
             let slabs = Slabs::new(&moving, &dir, 4e32);
             let tight = Slabs::new(&moving, &dir, 0.0);
             let limit = number(state).abs();
-            let ask = |lanes: Lanes, slabs: &Slabs<3>| {
+            let test = |lanes: Lanes, slabs: &Slabs<3>| {
                 let mut keys = [0.0; LANES];
                 let limit = slabs.limit(limit);
                 (with_kernel!(lanes, kernel => kernel.enter(&block, slabs, limit, &mut keys)), keys)
             };
-            let (expected, keys) = ask(Lanes::scalar(), &tight);
+            let (expected, keys) = test(Lanes::scalar(), &tight);
             for lanes in Lanes::available() {
-                let (mask, own) = ask(lanes, &tight);
+                let (mask, own) = test(lanes, &tight);
                 assert_eq!(mask, expected, "{lanes:?} {origin} {dir} {block:?}");
                 for lane in (0..LANES).filter(|lane| mask >> lane & 1 == 1) {
                     assert_eq!(own[lane], keys[lane], "{lanes:?}, lane {lane}");
                 }
             }
             check_nearest(&block, &tight, limit, (expected, &keys));
-            let (padded, keys) = ask(Lanes::scalar(), &slabs);
+            let (padded, keys) = test(Lanes::scalar(), &slabs);
             assert_eq!(padded & expected, expected, "padding takes nothing away");
             assert_eq!(expected >> (LANES - 2), 0, "nothing is in empty lanes");
             for (lane, &key) in keys.iter().enumerate().take(LANES - 2) {

@@ -60,7 +60,7 @@ impl<const D: usize> Tree<D> {
         }
         tree.declare_ordered(tree.end);
         tree.refit_layers(&[]);
-        tree.settle();
+        tree.commit_boxes();
         tree
     }
 
@@ -70,7 +70,7 @@ impl<const D: usize> Tree<D> {
     /// An object that would enlarge its block much moves to another one.
     pub(crate) fn put(&mut self, id: u32, bounds: &Bounds<D>) {
         let slot = self.slot(id);
-        if slot.is_some_and(|slot| self.has_room_for(slot / LANES, bounds)) {
+        if slot.is_some_and(|slot| self.hardly_grows_by(slot / LANES, bounds)) {
             self.set_still(id, bounds);
         } else {
             if slot.is_some() {
@@ -79,7 +79,7 @@ impl<const D: usize> Tree<D> {
             self.insert_still(id, bounds);
         }
         self.refit();
-        self.settle();
+        self.commit_boxes();
     }
 }
 
@@ -212,17 +212,17 @@ mod tests {
 
     /// Returns unit boxes at scattered places, and every tenth a thousand times as large.
     fn boxes(count: u32) -> Vec<Bounds<3>> {
-        let place = |id: u32| {
+        let box_at = |id: u32| {
             let x = f32::from(u16::try_from(id * 7919 % 1000).expect("small"));
             let z = f32::from(u16::try_from(id * 104_729 % 977).expect("small"));
             let size = if id.is_multiple_of(10) { 1000.0 } else { 1.0 };
             Bounds { lo: [x, 0.0, z], hi: [x + size, size, z + size] }
         };
-        (0..count).map(place).collect()
+        (0..count).map(box_at).collect()
     }
 
     #[test]
-    fn every_box_has_a_place_and_every_block_is_full() {
+    fn every_box_has_a_slot_and_every_block_is_full() {
         for count in [0, 1, 15, 16, 17, 255, 256, 257, 4097, 10_000] {
             let boxes = boxes(count);
             let tree = Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().copied()));
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn boxes_at_one_place_are_halved() {
+    fn boxes_at_one_position_are_halved() {
         let one = Bounds { lo: [1.0; 2], hi: [2.0; 2] };
         let tree = Tree::of_still(Lanes::detect(), (0..1000).map(|id| (id, one)));
         assert_eq!(tree.validate(), Ok(()), "all alike");

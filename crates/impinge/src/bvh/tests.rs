@@ -38,10 +38,10 @@ pub(super) fn random_box<const D: usize>(state: &mut u64, side: u32) -> Bounds<D
     Bounds { lo, hi: lo.map(|x| x + small_float(next(state, 5)) / 2.0) }
 }
 
-/// Returns the box shifted by up to `reach` halves along each axis.
-fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, reach: u32) -> Bounds<D> {
+/// Returns the box shifted by up to `max_move` halves along each axis.
+fn near<const D: usize>(old: &Bounds<D>, state: &mut u64, max_move: u32) -> Bounds<D> {
     let shift: [f32; D] =
-        filled(|_| small_float(next(state, 2 * reach + 1)) / 2.0 - small_float(reach) / 2.0);
+        filled(|_| small_float(next(state, 2 * max_move + 1)) / 2.0 - small_float(max_move) / 2.0);
     Bounds {
         lo: filled(|axis| old.lo[axis] + shift[axis]),
         hi: filled(|axis| old.hi[axis] + shift[axis]),
@@ -69,16 +69,16 @@ impl<const D: usize> Twin<D> {
         twin
     }
 
-    /// Moves, removes or adds about one object in `rarity`; moves go up to `reach` halves along
-    /// each axis, or anywhere if `reach` is at least `2 * side`.
-    fn change(&mut self, state: &mut u64, side: u32, reach: u32, rarity: u32) {
+    /// Moves, removes or adds about one object in `rarity`; moves go up to `max_move` halves along
+    /// each axis, or anywhere if `max_move` is at least `2 * side`.
+    fn change(&mut self, state: &mut u64, side: u32, max_move: u32, rarity: u32) {
         for id in self.first..self.list.len() {
             let number = u32::try_from(id).expect("small");
             if next(state, rarity) != 0 {
                 continue;
             }
             let bounds = match &self.list[id] {
-                Some((now, _)) if reach < 2 * side => near(now, state, reach),
+                Some((now, _)) if max_move < 2 * side => near(now, state, max_move),
                 _ => random_box(state, side),
             };
             match &mut self.list[id] {
@@ -102,8 +102,8 @@ impl<const D: usize> Twin<D> {
         self.tree.validate().expect("sound after a refit");
     }
 
-    fn settle(&mut self) {
-        self.tree.settle();
+    fn commit_boxes(&mut self) {
+        self.tree.commit_boxes();
         self.tree.maintain();
         self.tree.validate().expect("sound after settling");
         self.list.iter_mut().flatten().for_each(|(now, before)| *before = *now);
@@ -159,15 +159,15 @@ fn check_changes<const D: usize>(
 }
 
 /// Checks joins over 25 steps in which about one object in `rarity1` and `rarity2` of both trees
-/// changes, and moves go up to `reach` halves.
-fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, reach: u32) {
+/// changes, and moves go up to `max_move` halves.
+fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, max_move: u32) {
     let mut state = u64::from(side * 100 + rarity1 * 10 + rarity2);
     let mut first = Twin::<D>::new(&mut state, 0, 700, side);
     let mut second = Twin::<D>::new(&mut state, 700, 90, side);
     let (mut joiner, mut found) = (Joiner::default(), (0, 0));
     for _ in 0..25 {
-        first.change(&mut state, side, reach, rarity1);
-        second.change(&mut state, side, reach, rarity2);
+        first.change(&mut state, side, max_move, rarity1);
+        second.change(&mut state, side, max_move, rarity2);
         let (mut own, mut across) = (Changes::default(), Changes::default());
         joiner.self_join(&first.tree, &mut own);
         joiner.cross_join(&first.tree, &second.tree, &mut across);
@@ -176,21 +176,21 @@ fn check_joins<const D: usize>(side: u32, rarity1: u32, rarity2: u32, reach: u32
         {
             found = (found.0 + counts.0, found.1 + counts.1);
         }
-        first.settle();
-        second.settle();
+        first.commit_boxes();
+        second.commit_boxes();
     }
     assert!(found.0 > 1000, "{} beginnings", found.0);
-    assert!(found.1 > 1000 || reach > 4, "{} ends", found.1);
+    assert!(found.1 > 1000 || max_move > 4, "{} ends", found.1);
 }
 
 #[test]
 fn joins_in_every_regime() {
-    for reach in [2, 1000] {
-        check_joins::<2>(20, 1, 1, reach);
-        check_joins::<2>(20, 40, 1000, reach);
-        check_joins::<3>(8, 1000, 2, reach);
-        check_joins::<3>(8, 30, 30, reach);
-        check_joins::<3>(8, 2, 1000, reach);
+    for max_move in [2, 1000] {
+        check_joins::<2>(20, 1, 1, max_move);
+        check_joins::<2>(20, 40, 1000, max_move);
+        check_joins::<3>(8, 1000, 2, max_move);
+        check_joins::<3>(8, 30, 30, max_move);
+        check_joins::<3>(8, 2, 1000, max_move);
     }
 }
 
@@ -201,7 +201,7 @@ fn searches_find_what_a_list_finds() {
     let mut found_any = 0;
     for _ in 0..60 {
         twin.change(&mut state, 10, 1000, 10);
-        twin.settle();
+        twin.commit_boxes();
         let mut query = random_box(&mut state, 10);
         if next(&mut state, 4) == 0 {
             query.lo[1] = f32::NEG_INFINITY;
@@ -250,13 +250,13 @@ fn emptied_and_filled() {
     let mut state = 5;
     let mut twin = Twin::<2>::new(&mut state, 0, 300, 10);
     twin.tree.refit();
-    twin.settle();
+    twin.commit_boxes();
     for round in 0..3 {
         for id in 0..300 {
             twin.tree.remove(id);
         }
         twin.tree.refit();
-        twin.tree.settle();
+        twin.tree.commit_boxes();
         twin.tree.maintain();
         twin.tree.validate().expect("sound");
         assert!(twin.tree.is_empty(), "round {round}");
@@ -266,7 +266,7 @@ fn emptied_and_filled() {
         }
         twin.tree.refit();
         assert_eq!(twin.tree.changed, 300, "all are new");
-        twin.tree.settle();
+        twin.tree.commit_boxes();
         twin.tree.validate().expect("sound");
     }
 }

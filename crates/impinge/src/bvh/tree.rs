@@ -14,21 +14,21 @@ const KEPT_LEAVES: usize = 256;
 
 /// One layer: blocks, and for each block its bounds and the mask of changed lanes.
 ///
-/// A join searches old and present overlaps, so each block also has a `reach`: the union of its
+/// A join searches old and present overlaps, so each block also has a `swept`: the union of its
 /// boxes now and before. Where nothing changed, bounds and reach are equal.
 #[derive(Debug)]
 pub(super) struct Layer<const D: usize> {
     pub(super) blocks: Vec<Block<D>>,
     pub(super) bounds: Vec<Bounds<D>>,
     /// By block: union of its boxes now and before.
-    pub(super) reach: Vec<Bounds<D>>,
+    pub(super) swept: Vec<Bounds<D>>,
     /// Above the lowest layer: the reach of the blocks below, as blocks.
-    pub(super) reaches: Vec<Block<D>>,
+    pub(super) swept_blocks: Vec<Block<D>>,
     /// By block: the lanes with a change in or below them.
     pub(super) changed: Vec<u16>,
 }
 
-clone_fields!([const D: usize] Layer<D> { blocks, bounds, reach, reaches, changed });
+clone_fields!([const D: usize] Layer<D> { blocks, bounds, swept, swept_blocks, changed });
 
 impl<const D: usize> Layer<D> {
     /// Creates a layer without blocks.
@@ -36,8 +36,8 @@ impl<const D: usize> Layer<D> {
         Self {
             blocks: Vec::new(),
             bounds: Vec::new(),
-            reach: Vec::new(),
-            reaches: Vec::new(),
+            swept: Vec::new(),
+            swept_blocks: Vec::new(),
             changed: Vec::new(),
         }
     }
@@ -46,7 +46,7 @@ impl<const D: usize> Layer<D> {
     pub(super) fn resize(&mut self, blocks: usize) {
         self.blocks.resize(blocks, Block::EMPTY);
         self.bounds.resize(blocks, Bounds::EMPTY);
-        self.reach.resize(blocks, Bounds::EMPTY);
+        self.swept.resize(blocks, Bounds::EMPTY);
         self.changed.resize(blocks, 0);
     }
 
@@ -55,11 +55,11 @@ impl<const D: usize> Layer<D> {
     pub(super) fn fit_above(&mut self, children: usize) {
         let blocks = children.div_ceil(LANES);
         self.resize(blocks);
-        self.reaches.resize(blocks, Block::EMPTY);
+        self.swept_blocks.resize(blocks, Block::EMPTY);
         let (last, used) = (blocks - 1, children - (blocks - 1) * LANES);
         for lane in used..LANES {
             self.blocks[last].set_lane(lane, &Bounds::EMPTY);
-            self.reaches[last].set_lane(lane, &Bounds::EMPTY);
+            self.swept_blocks[last].set_lane(lane, &Bounds::EMPTY);
             self.changed[last] &= !(1 << lane);
         }
     }
@@ -73,7 +73,7 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) lanes: Lanes,
     /// Layer 0 first; at least one layer, the last one with at most one block.
     pub(super) layers: Vec<Layer<D>>,
-    /// By leaf block: the boxes at the last [`Self::settle`]; see [`Self::was`].
+    /// By leaf block: the boxes at the last [`Self::commit_boxes`]; see [`Self::was`].
     pub(super) before: Vec<Block<D>>,
     /// `before` is stored only while a box has changed since the last settling. Saves memory in a
     /// tree whose objects seldom change.
@@ -90,7 +90,7 @@ pub(crate) struct Tree<const D: usize> {
     pub(super) end: usize,
     /// Number of objects.
     pub(super) live: usize,
-    /// Leaf blocks written since the last [`Self::settle`], as a list and as flags.
+    /// Leaf blocks written since the last [`Self::commit_boxes`], as a list and as flags.
     pub(super) touched: Vec<u32>,
     pub(super) is_touched: Vec<bool>,
     /// Leaf blocks whose reach does not contain the old boxes; see [`Self::escaped`].
@@ -162,7 +162,7 @@ impl<const D: usize> Tree<D> {
 
     /// Makes the tree a sparing one, for objects that seldom change. It must be settled.
     pub(crate) fn spare(&mut self) {
-        debug_assert_eq!(self.changed, 0, "a settled tree");
+        debug_assert_eq!(self.changed, 0, "a tree with committed boxes");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
         (self.loads, self.dirty, self.touched) = (Vec::new(), Vec::new(), Vec::new());
         self.give_back();
@@ -207,9 +207,9 @@ impl<const D: usize> Tree<D> {
     /// Returns the slot of an object that is probably near a point: descends to the child with the
     /// nearest centre, one block in each layer. `None` if no box is finite, or squared distances
     /// overflow `f32`.
-    pub(super) fn slot_near(&self, place: &[f32; D]) -> Option<u32> {
+    pub(super) fn slot_near(&self, point: &[f32; D]) -> Option<u32> {
         self.layers.iter().rev().try_fold(0, |at, layer| {
-            let lane = layer.blocks[at as usize].nearest_lane(place)?;
+            let lane = layer.blocks[at as usize].nearest_lane(point)?;
             Some(at * small(LANES) + small(lane))
         })
     }
@@ -226,7 +226,7 @@ impl<const D: usize> Tree<D> {
         self.layers[0].blocks.len()
     }
 
-    /// Returns the boxes at the last [`Self::settle`], by leaf block.
+    /// Returns the boxes at the last [`Self::commit_boxes`], by leaf block.
     #[inline]
     pub(super) fn was(&self) -> &[Block<D>] {
         if self.remembers { &self.before } else { &self.layers[0].blocks }
@@ -242,7 +242,7 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Returns the box of the object at the last [`Self::settle`]: empty for a new object.
+    /// Returns the box of the object at the last [`Self::commit_boxes`]: empty for a new object.
     pub(crate) fn before(&self, id: u32) -> Option<Bounds<D>> {
         self.slot(id).map(|slot| self.was()[slot / LANES].lane(slot % LANES))
     }
@@ -258,7 +258,7 @@ impl<const D: usize> Tree<D> {
         self.slot(id).expect("the object is in the tree")
     }
 
-    /// Adds an object. `before` is its box at the last [`Self::settle`]: pairs that overlapped then
+    /// Adds an object. `before` is its box at the last [`Self::commit_boxes`]: pairs that overlapped then
     /// do not begin now. It is [`Bounds::NOWHERE`] for a new object.
     ///
     /// # Panics
@@ -271,11 +271,11 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Adds an object that has had this box, in another tree, since before the last
-    /// [`Self::settle`]: no pairs begin. Returns its slot.
+    /// [`Self::commit_boxes`]: no pairs begin. Returns its slot.
     pub(crate) fn insert_still(&mut self, id: u32, bounds: &Bounds<D>) -> usize {
         assert!(!self.contains(id), "object {id} is in the tree already");
         debug_assert!(bounds.is_finite(), "trees hold bounded boxes: {bounds:?}");
-        let slot = self.find_place(bounds);
+        let slot = self.find_slot(bounds);
         self.put_at(slot, id, bounds);
         slot
     }
@@ -429,10 +429,10 @@ impl<const D: usize> Tree<D> {
 
     /// Releases surplus memory of a tree that has stopped growing.
     pub(crate) fn fit(&mut self, look: Look) {
-        let Layer { blocks, bounds, reach, changed, .. } = &mut self.layers[0];
+        let Layer { blocks, bounds, swept, changed, .. } = &mut self.layers[0];
         look.fit(blocks);
         look.fit(bounds);
-        look.fit(reach);
+        look.fit(swept);
         look.fit(changed);
         look.fit(&mut self.before);
         look.fit(&mut self.ids);

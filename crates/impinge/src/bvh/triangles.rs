@@ -93,14 +93,14 @@ impl ShearedLine {
         let unit = max_component(&ray.dir).power_of_two_below();
         let origin = axes.mapped(|axis| ray.origin[axis].as_f32());
         let share = |axis: usize| (ray.dir[axis] / ray.dir[along]).as_f32();
-        let reach = max_component(&ray.origin.coords).as_f32();
+        let farthest = max_component(&ray.origin.coords).as_f32();
         let blur = max_component(&(around.maxs() - around.mins())).as_f32();
         Self {
             axes,
             origin,
             shear: [share(axes[0]), share(axes[1])],
             inverse: (unit / ray.dir[along]).as_f32(),
-            slack: FAR * f32::EPSILON * if reach > size { reach } else { size } + blur,
+            slack: FAR * f32::EPSILON * if farthest > size { farthest } else { size } + blur,
         }
     }
 }
@@ -117,12 +117,12 @@ impl Scalar {
         let smaller = |a: f32, b: f32| if a < b { a } else { b };
         let mut mask = 0;
         for lane in 0..LANES {
-            let seen = triangles.lane(lane).mapped(|corner| {
+            let sheared = triangles.lane(lane).mapped(|corner| {
                 let at = |k: usize| corner[line.axes[k]] - line.origin[k];
                 let depth = at(2);
                 [at(0) - line.shear[0] * depth, at(1) - line.shear[1] * depth, depth]
             });
-            let [a, b, c] = seen;
+            let [a, b, c] = sheared;
             let area = |p: [f32; 3], q: [f32; 3]| p[0] * q[1] - p[1] * q[0];
             let areas = [area(b, c), area(c, a), area(a, b)];
             let wide = |p: [f32; 3]| larger(p[0].abs(), p[1].abs());
@@ -132,7 +132,7 @@ impl Scalar {
             let margin = (width + slack) * slack + f32::MIN_POSITIVE;
             let most = larger(larger(areas[0], areas[1]), areas[2]);
             let least = smaller(smaller(areas[0], areas[1]), areas[2]);
-            let times = seen.mapped(|corner| corner[2] * line.inverse);
+            let times = sheared.mapped(|corner| corner[2] * line.inverse);
             let first = smaller(smaller(times[0], times[1]), times[2]);
             let last = larger(larger(times[0], times[1]), times[2]);
             // Areas of both signs, by more than rounding: the line passes beside the triangle.
@@ -156,7 +156,8 @@ impl<S: Simd> WideBlock<S> {
     ) -> u32 {
         // Written out, since closures passed to `map` are not compiled for the instruction set.
         let [a, b, c] = &triangles.corners;
-        let (a, b, c) = (seen(self.0, a, line), seen(self.0, b, line), seen(self.0, c, line));
+        let (a, b, c) =
+            (sheared(self.0, a, line), sheared(self.0, b, line), sheared(self.0, c, line));
         let areas = [area(b, c), area(c, a), area(a, b)];
         let width = wide(a).max(wide(b)).max(wide(c));
         let depth = a[2].abs().max(b[2].abs()).max(c[2].abs());
@@ -175,7 +176,7 @@ impl<S: Simd> WideBlock<S> {
 /// Returns a corner of each triangle in the coordinates of the line: two across it and one along
 /// it.
 #[inline(always)]
-fn seen<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> [f32x16<S>; 3] {
+fn sheared<S: Simd>(simd: S, corner: &[[f32; LANES]; 3], line: &ShearedLine) -> [f32x16<S>; 3] {
     let [x, y, along] = line.axes;
     let depth = f32x16::load_array_ref(simd, &corner[along]) - line.origin[2];
     let x = f32x16::load_array_ref(simd, &corner[x]) - line.origin[0];

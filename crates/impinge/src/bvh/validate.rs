@@ -13,7 +13,7 @@ impl<const D: usize> Tree<D> {
         self.validate_leaves()?;
         if !self.is_stale {
             self.validate_layers()?;
-            self.validate_reach()?;
+            self.validate_swept()?;
         }
         self.validate_changes()
     }
@@ -70,10 +70,10 @@ impl<const D: usize> Tree<D> {
             kept == real || (!is_exact && (is_empty || kept.contains(real)))
         };
         for (index, layer) in self.layers.iter().enumerate() {
-            let lengths = [layer.bounds.len(), layer.reach.len(), layer.changed.len()];
-            // The lowest layer has no `reaches`.
-            let reaches = if index > 0 { layer.blocks.len() } else { 0 };
-            if lengths != [layer.blocks.len(); 3] || layer.reaches.len() != reaches {
+            let lengths = [layer.bounds.len(), layer.swept.len(), layer.changed.len()];
+            // The lowest layer has no `swept_blocks`.
+            let swept_blocks = if index > 0 { layer.blocks.len() } else { 0 };
+            if lengths != [layer.blocks.len(); 3] || layer.swept_blocks.len() != swept_blocks {
                 return Err(format!("the arrays of layer {index} differ in length"));
             }
             for (block, kept) in layer.blocks.iter().zip(&layer.bounds) {
@@ -93,9 +93,9 @@ impl<const D: usize> Tree<D> {
             for lane in 0..parent.blocks.len() * LANES {
                 let kept = parent.blocks[lane / LANES].lane(lane % LANES);
                 let real = layer.bounds.get(lane).copied().unwrap_or(Bounds::EMPTY);
-                let kept_reach = parent.reaches[lane / LANES].lane(lane % LANES);
-                let reach = layer.reach.get(lane).copied().unwrap_or(Bounds::EMPTY);
-                if kept != real || kept_reach != reach {
+                let kept_swept = parent.swept_blocks[lane / LANES].lane(lane % LANES);
+                let swept = layer.swept.get(lane).copied().unwrap_or(Bounds::EMPTY);
+                if kept != real || kept_swept != swept {
                     return Err(format!("lane {lane} of layer {} is not its child", index + 1));
                 }
             }
@@ -105,14 +105,14 @@ impl<const D: usize> Tree<D> {
 
     /// Checks that the reach of each leaf block contains its boxes now and, unless it is listed as
     /// escaped, before.
-    fn validate_reach(&self) -> Result<(), String> {
-        for (block, reach) in self.layers[0].reach.iter().enumerate() {
+    fn validate_swept(&self) -> Result<(), String> {
+        for (block, swept) in self.layers[0].swept.iter().enumerate() {
             let has_left = self.escaped.iter().any(|&other| other as usize == block);
             let now = bounds_of(&self.layers[0].blocks[block]);
             let before = bounds_of(&self.was()[block]);
-            let holds = |inner: &Bounds<D>| *inner == Bounds::EMPTY || reach.contains(inner);
+            let holds = |inner: &Bounds<D>| *inner == Bounds::EMPTY || swept.contains(inner);
             if !(holds(&now) && (has_left || holds(&before))) {
-                return Err(format!("the reach {reach:?} of block {block} leaves boxes out"));
+                return Err(format!("the reach {swept:?} of block {block} leaves boxes out"));
             }
         }
         Ok(())

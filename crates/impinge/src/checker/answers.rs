@@ -4,8 +4,8 @@ use crate::math::order::sort_few;
 use core::ops::Range;
 
 use super::chain::{LANES, LaneRow};
-use super::exact::{Exact, Glance};
-use super::filter::{CollisionSearch, NearPair, Other, ScanScratch, SearchMode, scan_at};
+use super::exact::{Exact, QuickDistance};
+use super::filter::{CandidatePair, CollisionSearch, Other, ScanScratch, SearchMode, scan_at};
 use super::odds::PairOdds;
 use super::{Checker, NO_PAIR, NearestColumns};
 use crate::batch::{BatchError, Control, Progress};
@@ -41,12 +41,12 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Calls `settle` with each packet of up to eight configurations, after the scan.
+    /// Calls `finish` with each packet of up to eight configurations, after the scan.
     fn each(
         &mut self,
         range: Range<usize>,
         limit: N,
-        mut settle: impl FnMut(&mut Self, Range<usize>),
+        mut finish: impl FnMut(&mut Self, Range<usize>),
     ) {
         let mut start = range.start;
         while start < range.end {
@@ -54,7 +54,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
             self.scan(&eight, limit);
             self.exact.begin(eight.clone());
             start = eight.end;
-            settle(self, eight);
+            finish(self, eight);
         }
     }
 
@@ -92,14 +92,14 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
     }
 
     /// The candidate pairs of a lane in their order; all pairs for a blind lane.
-    fn candidates(&self, lane: usize) -> Vec<NearPair> {
+    fn candidates(&self, lane: usize) -> Vec<CandidatePair> {
         if self.search.blind >> lane & 1 == 0 {
-            let near = self.search.near.iter();
-            return near.filter(|near| near.lane == lane).copied().collect();
+            let candidate = self.search.candidates.iter();
+            return candidate.filter(|candidate| candidate.lane == lane).copied().collect();
         }
         let all = self.checker.pairs_in_order();
         let mut all: Vec<_> =
-            all.map(|pair| NearPair { lane, pair, is_certain: false, lower: 0.0 }).collect();
+            all.map(|pair| CandidatePair { lane, pair, is_certain: false, lower: 0.0 }).collect();
         sort_few(&mut all, |one, other| one.pair < other.pair);
         all
     }
@@ -150,18 +150,18 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
     fn hits(&mut self, clearance: N) -> u8 {
         let mut hits = self.search.hits;
         let mut put_off = Vec::new();
-        for index in 0..self.search.near.len() {
-            let NearPair { lane, pair, .. } = self.search.near[index];
+        for index in 0..self.search.candidates.len() {
+            let CandidatePair { lane, pair, .. } = self.search.candidates[index];
             if hits >> lane & 1 == 1 {
                 continue;
             }
-            let is_hit = match self.exact.glance(pair, lane, clearance) {
-                Glance::Known(distance) => distance.is_some(),
-                Glance::Unknown if self.odds.are_poor(pair) => {
+            let is_hit = match self.exact.quick_distance(pair, lane, clearance) {
+                QuickDistance::Known(distance) => distance.is_some(),
+                QuickDistance::Unknown if self.odds.are_poor(pair) => {
                     put_off.push((lane, pair));
                     false
                 }
-                Glance::Unknown => self.search_parts(pair, lane, clearance),
+                QuickDistance::Unknown => self.search_parts(pair, lane, clearance),
             };
             hits |= u8::from(is_hit) << lane;
         }
@@ -188,10 +188,10 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
 
     /// Returns the first pair of a lane within the clearance.
     fn first(&mut self, lane: usize, clearance: N) -> Option<(u32, Other)> {
-        let found = self.candidates(lane).into_iter().find(|near| {
-            near.is_certain || self.exact.distance(near.pair, lane, clearance).is_some()
+        let found = self.candidates(lane).into_iter().find(|candidate| {
+            candidate.is_certain || self.exact.distance(candidate.pair, lane, clearance).is_some()
         });
-        found.map(|near| near.pair)
+        found.map(|candidate| candidate.pair)
     }
 }
 
@@ -251,20 +251,20 @@ impl<N: Space<D>, const D: usize> EightByEight<'_, N, D> {
     /// order. So the search ends once the best distance is below the next bound, and of two pairs
     /// that touch the first is found.
     fn nearest(&mut self, lane: usize, limit: N) -> Option<(N, (u32, Other))> {
-        let bound = |near: &NearPair| max(near.lower, 0.0);
+        let bound = |candidate: &CandidatePair| max(candidate.lower, 0.0);
         let mut candidates = self.candidates(lane);
         sort_few(&mut candidates, |one, other| {
             let order = bound(one).total_cmp(&bound(other));
             order.then(one.pair.cmp(&other.pair)).is_lt()
         });
         let mut best: Option<(N, (u32, Other))> = None;
-        for near in &candidates {
+        for candidate in &candidates {
             let so_far = best.map_or(limit, |(distance, _)| distance);
-            let is_settled = best.is_some_and(|(distance, _)| distance <= N::ZERO);
-            if is_settled || f64::from(bound(near)) > so_far.as_f64() {
+            let is_decided = best.is_some_and(|(distance, _)| distance <= N::ZERO);
+            if is_decided || f64::from(bound(candidate)) > so_far.as_f64() {
                 break;
             }
-            let pair = near.pair;
+            let pair = candidate.pair;
             let Some(found) = self.exact.distance(pair, lane, so_far) else { continue };
             let is_better = best.is_none_or(|(distance, first)| {
                 found < distance || (found == distance && pair < first)
@@ -298,10 +298,10 @@ mod tests {
         let frame = |joint| Frame { parent: None, origin: Pose::identity(), joint };
         let frames = [Joint::fixed(), Joint::prismatic(diagonal, 0)].mapped(frame);
         let tree = FrameTree::try_new(&frames, 1).expect("two frames");
-        let bodies = surfaces.iter().enumerate().map(|(index, &(size, place))| Body {
+        let bodies = surfaces.iter().enumerate().map(|(index, &(size, position))| Body {
             frame: usize::from(index + 1 == surfaces.len()),
             shape: surface(size),
-            pose: Pose::from_translation(place.into()),
+            pose: Pose::from_translation(position.into()),
         });
         Checker::try_new(tree, bodies.collect(), pairs).expect("bodies")
     }

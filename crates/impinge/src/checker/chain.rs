@@ -52,14 +52,14 @@ enum Swing<N: Real, const D: usize> {
 impl<N: Real, const D: usize> Node<N, D> {
     /// A frame with a joint at `origin` on the parent node; `None` for a fixed joint.
     pub(super) fn new(parent: usize, origin: &Pose<N, D>, frame: &Frame<N, D>) -> Option<Self> {
-        let turned = origin.rotation;
+        let rotation = origin.rotation;
         let rotation = match frame.joint.motion {
             JointMotion::Fixed => return None,
-            JointMotion::Slide(axis) => Swing::Slide(turned, turned * axis),
+            JointMotion::Slide(axis) => Swing::Slide(rotation, rotation * axis),
             JointMotion::Turn(generator) => {
                 let squared = generator * generator;
-                let still = turned * (Matrix::<N, D>::identity() + squared);
-                Swing::Turn([still, turned * generator, turned * -squared])
+                let still = rotation * (Matrix::<N, D>::identity() + squared);
+                Swing::Turn([still, rotation * generator, rotation * -squared])
             }
         };
         Some(Self { parent, origin: origin.translation, rotation })
@@ -68,7 +68,7 @@ impl<N: Real, const D: usize> Node<N, D> {
     /// Its rotation on its parent, if it is constant.
     pub(super) const fn constant_rotation(&self) -> Option<Matrix<N, D>> {
         match &self.rotation {
-            Swing::Slide(turned, _) => Some(*turned),
+            Swing::Slide(rotation, _) => Some(*rotation),
             Swing::Turn(_) => None,
         }
     }
@@ -83,7 +83,9 @@ impl<N: Real, const D: usize> Node<N, D> {
         let origin = if self.parent == 0 { self.origin - shift } else { self.origin };
         let rotation = match &self.rotation {
             Swing::Turn(parts) => Swing::Turn(parts.map(|part| part.map(N::as_f32))),
-            Swing::Slide(turned, way) => Swing::Slide(turned.map(N::as_f32), way.map(N::as_f32)),
+            Swing::Slide(rotation, axis) => {
+                Swing::Slide(rotation.map(N::as_f32), axis.map(N::as_f32))
+            }
         };
         Node { parent: self.parent, origin: origin.map(N::as_f32), rotation }
     }
@@ -100,7 +102,7 @@ impl<N: Real, const D: usize> Node<N, D> {
         filled(
             #[inline(always)]
             |row| match &self.rotation {
-                Swing::Slide(turned, _) => all(turned, row),
+                Swing::Slide(rotation, _) => all(rotation, row),
                 Swing::Turn([still, with_sine, with_cosine]) => {
                     (all(still, row) + *sine * all(with_sine, row))
                         + *cosine * all(with_cosine, row)
@@ -111,13 +113,13 @@ impl<N: Real, const D: usize> Node<N, D> {
 
     /// Its position on its parent.
     #[inline(always)]
-    fn place<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
+    fn position<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, number: V) -> [V; D] {
         filled(
             #[inline(always)]
             |row| {
                 let origin = V::all(simd, self.origin[row]);
                 match &self.rotation {
-                    Swing::Slide(_, way) => origin + V::all(simd, way[row]) * number,
+                    Swing::Slide(_, axis) => origin + V::all(simd, axis[row]) * number,
                     Swing::Turn(_) => origin,
                 }
             },
@@ -220,7 +222,7 @@ pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
             let outer = if is_inner { parent.vector(simd, &inner) } else { inner };
             store(&outer, &mut own.rotation[column]);
         }
-        let inner = node.place(simd, number);
+        let inner = node.position(simd, number);
         let outer = if is_inner { parent.point(simd, &inner) } else { inner };
         store(&outer, &mut own.translation);
     }

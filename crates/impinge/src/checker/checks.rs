@@ -61,7 +61,7 @@ pub struct Checker<N: Real, const D: usize> {
     pub(super) tree: FrameTree<N, D>,
     pub(super) bodies: Vec<Body<N, D>>,
     /// The place of each body on the node that moves it.
-    pub(super) places: Vec<OnNode<N, D>>,
+    pub(super) on_nodes: Vec<OnNode<N, D>>,
     /// Ascending, the lower number first.
     pairs: Vec<[u32; 2]>,
     pub(super) obstacles: Vec<Obstacle<N, D>>,
@@ -93,7 +93,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
         let mut pairs: Vec<_> = pairs.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        let places = bodies.iter().map(|body| tree.frames[body.frame].then(&body.pose)).collect();
+        let on_nodes = bodies.iter().map(|body| tree.frames[body.frame].then(&body.pose)).collect();
         let robot = entries::robot(&tree, &bodies, &pairs);
         let surroundings = entries::surroundings(&tree, &robot, &[], &[]);
         let hulls = BodyHulls::new(bodies.len());
@@ -101,7 +101,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
             tree,
             bodies,
             hulls,
-            places,
+            on_nodes,
             pairs,
             obstacles: Vec::new(),
             robot,
@@ -183,7 +183,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
             return Err(BatchError::Length { argument: "poses", given: poses.len(), needed });
         }
         entries::place(
-            (&self.tree, &self.places),
+            (&self.tree, &self.on_nodes),
             configurations,
             control,
             RowsOf::new(poses, width),
@@ -293,8 +293,8 @@ pub(super) fn robot<N: Space<D>, const D: usize>(
     pairs: &[[u32; 2]],
 ) -> RobotFilter<D> {
     let placed = bodies.iter().map(|body| {
-        let place = tree.frames[body.frame].then(&body.pose);
-        (&*body.shape, place)
+        let on_node = tree.frames[body.frame].then(&body.pose);
+        (&*body.shape, on_node)
     });
     RobotFilter::new(tree, placed, pairs)
 }

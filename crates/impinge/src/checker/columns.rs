@@ -37,11 +37,11 @@ impl<N: Real> NearestColumns<'_, N> {
 
     /// Writes the result of one configuration to the columns that are not empty.
     pub(super) fn put(&mut self, slot: usize, distance: N, pair: [u32; 2]) {
-        if let Some(place) = self.distance.get_mut(slot) {
-            *place = distance;
+        if let Some(element) = self.distance.get_mut(slot) {
+            *element = distance;
         }
-        if let Some(place) = self.pair.get_mut(slot) {
-            *place = pair;
+        if let Some(element) = self.pair.get_mut(slot) {
+            *element = pair;
         }
     }
 }

@@ -57,22 +57,27 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
     }
 
     /// Computes the distance of a pair up to a limit, unless that needs a search of parts.
-    pub(super) fn glance(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Glance<N> {
+    pub(super) fn quick_distance(
+        &mut self,
+        pair: (u32, Other),
+        lane: usize,
+        limit: N,
+    ) -> QuickDistance<N> {
         let [(one, number1), (other, number2)] = self.solids(pair, lane);
         let is_convex = |solid: &Placed<'_, N, D>| solid.shape.as_composite().is_none();
         if is_convex(&one) && is_convex(&other) {
-            return Glance::Known(distance_within(&one, &other, limit));
+            return QuickDistance::Known(distance_within(&one, &other, limit));
         }
         let hulls = &self.checker.hulls;
         let is_beyond = hulls.are_beyond([(&one, number1), (&other, number2)], limit);
-        if is_beyond { Glance::Known(None) } else { Glance::Unknown }
+        if is_beyond { QuickDistance::Known(None) } else { QuickDistance::Unknown }
     }
 
     /// The distance of a pair in a configuration; `None` beyond a limit.
     pub(super) fn distance(&mut self, pair: (u32, Other), lane: usize, limit: N) -> Option<N> {
-        match self.glance(pair, lane, limit) {
-            Glance::Known(distance) => distance,
-            Glance::Unknown => self.searched(pair, lane, limit),
+        match self.quick_distance(pair, lane, limit) {
+            QuickDistance::Known(distance) => distance,
+            QuickDistance::Unknown => self.searched(pair, lane, limit),
         }
     }
 
@@ -92,7 +97,7 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
         let rows = self.rows();
         let body = |number: u32| {
             let index = number as usize;
-            let pose = checker.places[index].at(rows, lane);
+            let pose = checker.on_nodes[index].at(rows, lane);
             let placed = Placed::of_pose(&pose, checker.bodies[index].shape.geometry());
             (placed, Some(number))
         };
@@ -107,9 +112,9 @@ impl<'a, N: Space<D>, const D: usize> Exact<'a, N, D> {
     }
 }
 
-/// The result of [`Exact::glance`]: the distance up to a limit, or unknown without a search of
+/// The result of [`Exact::quick_distance`]: the distance up to a limit, or unknown without a search of
 /// parts.
-pub(super) enum Glance<N> {
+pub(super) enum QuickDistance<N> {
     Known(Option<N>),
     Unknown,
 }

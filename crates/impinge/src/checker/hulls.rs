@@ -20,7 +20,7 @@ const ROUNDING_ERRORS: f64 = 1024.0;
 
 /// How often a hull is requested before it is computed, which costs as much as some descents: a
 /// query of a single configuration does not wait for it.
-const ASKED_BEFORE: u32 = 16;
+const REQUESTS_BEFORE: u32 = 16;
 
 /// The hulls of the bodies of a robot, each computed after some requests. They change no answer.
 #[derive(Clone, Debug)]
@@ -28,14 +28,14 @@ pub(super) struct BodyHulls<N: Real, const D: usize>(Vec<LazyHull<N, D>>);
 
 #[derive(Debug)]
 struct LazyHull<N: Real, const D: usize> {
-    asked: AtomicU32,
+    requests: AtomicU32,
     /// `None` inside for a body that is not made of corners, or whose hull has no volume.
     made: OnceLock<Option<ShapeHandle<N, D>>>,
 }
 
 impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
     pub(super) fn new(bodies: usize) -> Self {
-        let hull = |_| LazyHull { asked: AtomicU32::new(0), made: OnceLock::new() };
+        let hull = |_| LazyHull { requests: AtomicU32::new(0), made: OnceLock::new() };
         Self((0..bodies).map(hull).collect())
     }
 
@@ -53,7 +53,7 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
         }
         let [one, other] = [hull1.unwrap_or(*one), hull2.unwrap_or(*other)];
         let between = (other.pose.translation - one.pose.translation).norm();
-        let lengths = reach(&one.shape) + reach(&other.shape) + between + limit;
+        let lengths = bounding_radius(&one.shape) + bounding_radius(&other.shape) + between + limit;
         let slack = lengths * N::lit(ROUNDING_ERRORS) * N::EPSILON;
         slack.is_finite_number() && distance_within(&one, &other, limit + slack).is_none()
     }
@@ -68,7 +68,9 @@ impl<N: Space<D>, const D: usize> BodyHulls<N, D> {
 
 impl<N: Space<D>, const D: usize> LazyHull<N, D> {
     fn get(&self, parts: &dyn CompositeShape<N, D>) -> Option<&ShapeHandle<N, D>> {
-        if self.made.get().is_none() && self.asked.fetch_add(1, Ordering::Relaxed) < ASKED_BEFORE {
+        if self.made.get().is_none()
+            && self.requests.fetch_add(1, Ordering::Relaxed) < REQUESTS_BEFORE
+        {
             return None;
         }
         self.made.get_or_init(|| hull_of(parts)).as_ref()
@@ -77,13 +79,13 @@ impl<N: Space<D>, const D: usize> LazyHull<N, D> {
 
 impl<N: Real, const D: usize> Clone for LazyHull<N, D> {
     fn clone(&self) -> Self {
-        let asked = AtomicU32::new(self.asked.load(Ordering::Relaxed));
-        Self { asked, made: self.made.clone() }
+        let requests = AtomicU32::new(self.requests.load(Ordering::Relaxed));
+        Self { requests, made: self.made.clone() }
     }
 }
 
 /// An upper bound of the distance of a solid's points from the origin of its frame.
-fn reach<N: Real, const D: usize>(shape: &Geometry<'_, N, D>) -> N {
+fn bounding_radius<N: Real, const D: usize>(shape: &Geometry<'_, N, D>) -> N {
     let Some(parts) = shape.as_composite() else { return shape.extent() };
     let bounds = parts.search().bounds();
     (bounds.center().coords.abs() + bounds.half_extents()).norm()
@@ -115,8 +117,11 @@ mod tests {
     use crate::math::{Mapped, Pose};
     use crate::shape::{Ball, Polyline, Shape, TriMesh};
 
-    fn at<'a, const D: usize>(place: [f64; D], shape: &'a dyn Shape<f64, D>) -> Placed<'a, f64, D> {
-        Placed { pose: Pose::from_translation(place.into()), shape: shape.geometry() }
+    fn at<'a, const D: usize>(
+        position: [f64; D],
+        shape: &'a dyn Shape<f64, D>,
+    ) -> Placed<'a, f64, D> {
+        Placed { pose: Pose::from_translation(position.into()), shape: shape.geometry() }
     }
 
     /// The answer after enough requests for the hull to be computed.
@@ -128,7 +133,7 @@ mod tests {
     where
         f64: Space<D>,
     {
-        (0..=ASKED_BEFORE).fold(false, |_, _| hulls.are_beyond(solids, limit))
+        (0..=REQUESTS_BEFORE).fold(false, |_, _| hulls.are_beyond(solids, limit))
     }
 
     #[test]
@@ -154,7 +159,7 @@ mod tests {
         assert!(!last_of(&hulls, [(&flat, Some(0)), (&ball, None)], 0.0), "it has no volume");
         let made: Vec<_> =
             hulls.0.iter().map(|hull| hull.made.get().map(Option::is_some)).collect();
-        assert_eq!(made, [Some(false), Some(true), None], "when they are asked for");
+        assert_eq!(made, [Some(false), Some(true), None], "after enough requests");
     }
 
     #[test]

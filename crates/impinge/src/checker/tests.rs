@@ -40,8 +40,8 @@ fn arm<N: Space<D>, const D: usize>(turn: fn(usize) -> Joint<N, D>) -> Checker<N
         ShapeHandle::new(Cuboid::new(half * N::TWO)),
         ShapeHandle::new(Plane::<N, D>::new(axis(1))),
     ];
-    let places = [at(0, 1.0), at(1, 1.5), at(0, -1.0), at(1, 0.75), at(1, -1.0)];
-    let obstacles = shapes.into_iter().zip(places).map(|(shape, pose)| Obstacle { shape, pose });
+    let poses = [at(0, 1.0), at(1, 1.5), at(0, -1.0), at(1, 0.75), at(1, -1.0)];
+    let obstacles = shapes.into_iter().zip(poses).map(|(shape, pose)| Obstacle { shape, pose });
     checker.try_set_obstacles(obstacles.collect(), &[[0, 4]]).expect("obstacles");
     checker
 }

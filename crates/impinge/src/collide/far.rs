@@ -45,7 +45,7 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
     pub(crate) fn is_known_beyond(&self, limit: N) -> Option<bool> {
         if let [Kind::Ball(one), Kind::Ball(other)] = self.shapes.mapped(|shape| shape.0) {
             let extents = one.radius() + other.radius();
-            return Some(exceeds(self.between.norm_squared(), reach(extents, limit)));
+            return Some(exceeds(self.between.norm_squared(), max_distance(extents, limit)));
         }
         (!self.has_balls()).then_some(false)
     }
@@ -62,7 +62,7 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
     /// `false` proves nothing; it is the answer for half-spaces, composites and users' support
     /// maps, for which no ball is known.
     pub(crate) fn is_beyond(&self, limit: N) -> bool {
-        exceeds(self.between.norm_squared(), reach(self.extents(), limit))
+        exceeds(self.between.norm_squared(), max_distance(self.extents(), limit))
     }
 
     /// Sum of the radii of the balls.
@@ -83,10 +83,10 @@ impl<N: Real, const D: usize> Apart<'_, N, D> {
             return false;
         }
         let nearest = if is_still { N::ZERO } else { -along / speed_squared };
-        let way = self.between + velocity * max(min(nearest, end), N::ZERO);
+        let offset = self.between + velocity * max(min(nearest, end), N::ZERO);
         // The vector has an error of some epsilon of the distance that it began with.
         let rounding = max_component(&self.between) * N::lit(4096.0) * N::EPSILON;
-        exceeds(way.norm_squared(), reach(self.extents(), limit) + rounding)
+        exceeds(offset.norm_squared(), max_distance(self.extents(), limit) + rounding)
     }
 }
 
@@ -129,7 +129,7 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
     /// Returns [`Apart::is_beyond`] for the shapes with these bounds.
     #[inline]
     pub(crate) fn is_clear_of(&self, other: &Self, between: &Vector<N, D>, limit: N) -> bool {
-        exceeds(between.norm_squared(), reach(self.extent + other.extent, limit))
+        exceeds(between.norm_squared(), max_distance(self.extent + other.extent, limit))
     }
 
     /// Returns whether the boxes are farther apart than `limit` along an axis of one of them, by
@@ -160,16 +160,16 @@ impl<N: Real, const D: usize> ReachBounds<N, D> {
 
 /// Largest distance of the origins at which the shapes can be within `limit`.
 #[inline]
-fn reach<N: Real>(extents: N, limit: N) -> N {
+fn max_distance<N: Real>(extents: N, limit: N) -> N {
     extents + max(limit, N::ZERO)
 }
 
-/// Returns whether the square exceeds that of `reach` by `ROOM`. Subnormal squares are not precise
+/// Returns whether the square exceeds that of `distance` by `ROOM`. Subnormal squares are not precise
 /// and never exceed. NaN and infinity on the right are never exceeded; infinity on the left exceeds
 /// finite numbers.
 #[inline]
-fn exceeds<N: Real>(squared: N, reach: N) -> bool {
-    squared > reach * reach * N::lit(ROOM) && squared > N::MIN_POSITIVE
+fn exceeds<N: Real>(squared: N, distance: N) -> bool {
+    squared > distance * distance * N::lit(ROOM) && squared > N::MIN_POSITIVE
 }
 
 /// Calls [`Apart::is_beyond`] out of line.
@@ -204,7 +204,7 @@ mod tests {
     /// A solid of any kind that has a ball, with sizes from zero to one.
     type Draw<N, const D: usize> = fn(&mut Random, usize) -> Box<dyn Shape<N, D>>;
 
-    fn of_plane<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
+    fn solid_2d<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 2>> {
         let mut point = || Point::from(random.vector::<N>().xy());
         let [a, b, c] = [point(), point(), point()];
         let (one, other) = (a.x.abs(), a.y.abs());
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    fn of_space<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 3>> {
+    fn solid_3d<N: Real>(random: &mut Random, kind: usize) -> Box<dyn Shape<N, 3>> {
         let mut point = || Point::from(random.vector::<N>());
         let [a, b, c] = [point(), point(), point()];
         let (one, other) = (a.x.abs(), a.y.abs());
@@ -260,11 +260,11 @@ mod tests {
             let shapes = [shapes[0].geometry(), shapes[1].geometry()];
             let apart = Apart { shapes, between: Vector::<N, D>::zeros() };
             let limit = N::lit([0.0, 0.25, -0.1][round % 3]);
-            let reach = reach(apart.extents(), limit);
+            let max_distance = max_distance(apart.extents(), limit);
             let pose12 = turn(random);
             let share =
                 N::lit(0.97 + 0.0005 * f64::from(u32::try_from(round % 120).expect("small")));
-            let away = pose12.translation.normalize() * (reach * share);
+            let away = pose12.translation.normalize() * (max_distance * share);
             // Computed as from positions that far from the world's origin.
             let far = Vector::<N, D>::repeat(N::lit([0.0, 1e6][round % 2]));
             let between = (far + away) - far;
@@ -321,10 +321,10 @@ mod tests {
 
     #[test]
     fn what_is_rejected_is_beyond_for_the_algorithms() {
-        rejects_no_more::<f32, 2>((of_plane, 9), turn2);
-        rejects_no_more::<f64, 2>((of_plane, 9), turn2);
-        rejects_no_more::<f32, 3>((of_space, 11), turn3);
-        rejects_no_more::<f64, 3>((of_space, 11), turn3);
+        rejects_no_more::<f32, 2>((solid_2d, 9), turn2);
+        rejects_no_more::<f64, 2>((solid_2d, 9), turn2);
+        rejects_no_more::<f32, 3>((solid_3d, 11), turn3);
+        rejects_no_more::<f64, 3>((solid_3d, 11), turn3);
     }
 
     #[test]
@@ -334,7 +334,7 @@ mod tests {
             shapes: [Shape::<f32, 3>::geometry(ball); 2],
             between: Vector::<f32, 3>::new(x, 0.0, 0.0),
         };
-        assert!(!apart(&small, 2.2e-23).is_beyond(0.0), "squares that vanish say nothing");
+        assert!(!apart(&small, 2.2e-23).is_beyond(0.0), "squares that underflow decide nothing");
         assert!(apart(&small, 1e-18).is_beyond(0.0), "these are numbers");
         assert!(!apart(&large, 3.7e19).is_beyond(0.0), "squares that overflow on both sides");
         assert!(!apart(&small, f32::NAN).is_beyond(0.0), "NaN");

@@ -158,9 +158,9 @@ pub(crate) fn is_swapped<N: Real, const D: usize>(
     shape2: Geometry<'_, N, D>,
 ) -> bool {
     let (kind1, kind2) = (shape1.kind(), shape2.kind());
-    let way = way(pose1, pose2);
-    let is_beyond = way < N::ZERO;
-    if kind1 == kind2 && !(is_beyond | (way > N::ZERO)) {
+    let signed_distance = signed_distance(pose1, pose2);
+    let is_beyond = signed_distance < N::ZERO;
+    if kind1 == kind2 && !(is_beyond | (signed_distance > N::ZERO)) {
         return compare_at_length(pose1, shape1, pose2, shape2) == Ordering::Greater;
     }
     if kind1 == kind2 { is_beyond } else { kind1 > kind2 }
@@ -188,10 +188,10 @@ fn compare<N: Real, const D: usize>(
     if kind1 != kind2 {
         return kind1.cmp(&kind2);
     }
-    let way = way(pose1, pose2);
-    if way > N::ZERO {
+    let signed_distance = signed_distance(pose1, pose2);
+    if signed_distance > N::ZERO {
         Ordering::Less
-    } else if way < N::ZERO {
+    } else if signed_distance < N::ZERO {
         Ordering::Greater
     } else {
         compare_at_length(pose1, shape1, pose2, shape2)
@@ -201,7 +201,7 @@ fn compare<N: Real, const D: usize>(
 /// Signed distance from one solid to another along an [`askew`] direction. So the order of two
 /// solids that vibrate on each other, or stand in a grid, does not change.
 #[inline]
-fn way<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> N {
+fn signed_distance<N: Real, const D: usize>(pose1: &Pose<N, D>, pose2: &Pose<N, D>) -> N {
     askew(&(pose2.translation - pose1.translation))
 }
 
@@ -335,19 +335,19 @@ mod tests {
         let (pair, swapped) = canonical(&pose1, cuboid.geometry(), &pose2, ball.geometry());
         assert!(swapped, "the ball comes first");
         assert_eq!(Geometry(pair.first).kind(), ShapeKind::Ball, "the ball comes first");
-        assert_eq!(pair.pose12.translation.x, -3.0, "the box seen from the ball");
+        assert_eq!(pair.pose12.translation.x, -3.0, "the box in the frame of the ball");
     }
 
     #[test]
-    fn equal_kinds_come_by_place_then_size() {
+    fn equal_kinds_come_by_position_then_size() {
         let (small, large) = (Ball::new(1.0_f32), Ball::new(2.0_f32));
         let geometry = |ball| Shape::<f32, 2>::geometry(ball);
         let order = |pose1, ball1, pose2, ball2| {
             canonical(&pose1, geometry(ball1), &pose2, geometry(ball2)).1
         };
-        assert!(!order(at(0.0, 1.0), &large, at(0.0, 2.0), &small), "by place");
-        assert!(order(at(0.0, 2.0), &small, at(0.0, 1.0), &large), "by place, turned round");
-        assert!(order(at(0.0, 1.0), &large, at(0.0, 1.0), &small), "by size at one place");
-        assert!(!order(at(0.0, 1.0), &small, at(0.0, 1.0), &large), "by size at one place");
+        assert!(!order(at(0.0, 1.0), &large, at(0.0, 2.0), &small), "by position");
+        assert!(order(at(0.0, 2.0), &small, at(0.0, 1.0), &large), "by position, swapped");
+        assert!(order(at(0.0, 1.0), &large, at(0.0, 1.0), &small), "by size at one position");
+        assert!(!order(at(0.0, 1.0), &small, at(0.0, 1.0), &large), "by size at one position");
     }
 }

@@ -1,7 +1,7 @@
 //! From a good normal of an overlap to the best one nearby.
 
 use super::candidate::SupportCandidate;
-use super::difference::{Difference, Moved, noise};
+use super::difference::{Difference, Moved, rounding_error};
 use super::gjk::nearest_normal;
 use super::simplex::Simplicial;
 use crate::math::{Vector, max, unit_or};
@@ -33,7 +33,7 @@ pub(super) fn climb<N: Simplicial<D>, const D: usize>(
         if !stride(best, &step, along) {
             stride(best, &step, |normal| raised(difference, &along(normal)));
         }
-        let worth_it = best.height - before.height > noise::<N>() / N::lit(8.0);
+        let worth_it = best.height - before.height > rounding_error::<N>() / N::lit(8.0);
         if !worth_it {
             return;
         }
@@ -47,13 +47,13 @@ fn stride<N: Simplicial<D>, const D: usize>(
     step: &Vector<N, D>,
     trial: impl Fn(Vector<N, D>) -> SupportCandidate<N, D>,
 ) -> bool {
-    let (start, mut stretch) = (best.normal, N::ONE);
+    let (start, mut factor) = (best.normal, N::ONE);
     for round in 0..DOUBLINGS {
-        let normal = unit_or(&(start + step * stretch), start);
+        let normal = unit_or(&(start + step * factor), start);
         if !best.improve(&trial(normal)) {
             return round > 0;
         }
-        stretch *= N::TWO;
+        factor *= N::TWO;
     }
     true
 }

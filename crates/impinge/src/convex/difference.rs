@@ -6,7 +6,7 @@ use crate::math::{Matrix, Point, Pose, Real, Vector, max, max_component, unit_or
 use crate::shape::SupportMap;
 
 /// Returns the rounding error of arithmetic, in units of the pair.
-pub(super) fn noise<N: Real>() -> N {
+pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
@@ -15,7 +15,7 @@ pub(super) fn noise<N: Real>() -> N {
 /// Flat-faced cores are solved exactly after finitely many steps; curved ones stop at this gap:
 /// 2⁻²⁰ in `f32`, 2⁻⁴⁰ in `f64`.
 pub(super) fn tolerance<N: Real>() -> N {
-    max(noise(), N::lit(1.0 / 1_099_511_627_776.0))
+    max(rounding_error(), N::lit(1.0 / 1_099_511_627_776.0))
 }
 
 /// A point of the difference, and the points of the two cores that it comes from.
@@ -213,7 +213,7 @@ where
             let toward1 = self.rotation.tr_mul(&-normal);
             let curved = self.solid2.curved_support(&Point::from(local), &toward1);
             return curved.map_or(corner, |found| {
-                let bend = turned(&self.rotation, &(found.bend * self.shrink));
+                let bend = rotated_symmetric(&self.rotation, &(found.bend * self.shrink));
                 let on = self.rotation * (found.point.coords * self.shrink) + self.translation;
                 Branch { on, bend: Some(bend), ..corner }
             });
@@ -228,14 +228,14 @@ where
     }
 
     fn peak(&self) -> Option<Peak<N, D>> {
-        self.peaks?.best(self.shrink, noise())
+        self.peaks?.best(self.shrink, rounding_error())
     }
 }
 
 /// Rotates a symmetric matrix: `R S Rᵀ`.
 ///
 /// Written as loops, since products of small matrices are not inlined.
-fn turned<N: Real, const D: usize>(
+fn rotated_symmetric<N: Real, const D: usize>(
     rotation: &Matrix<N, D>,
     symmetric: &Matrix<N, D>,
 ) -> Matrix<N, D> {

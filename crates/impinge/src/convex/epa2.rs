@@ -18,12 +18,12 @@ use smallvec::SmallVec;
 use super::Separation;
 use super::candidate::SupportCandidate;
 use super::climb::climb;
-use super::difference::{Difference, Vertex, noise, tolerance};
+use super::difference::{Difference, Vertex, rounding_error, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
-use super::newton::settles;
+use super::newton::converges;
 use super::polish::polish;
 use super::simplex::Simplex;
-use super::witness::{Mix, locate, placed, settle};
+use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Real, Vector, cross2, perp, unit};
 
 /// Cap on the number of support points. Polygons need as many as they have sides near the origin.
@@ -45,7 +45,7 @@ type EpaRing<N> = SmallVec<[PolygonEdge<N>; 16]>;
 impl<N: Real> PolygonEdge<N> {
     fn new(start: Vertex<N, 2>, end: &Vertex<N, 2>) -> Self {
         let edge = end.point - start.point;
-        let sound = edge.norm_squared() > noise::<N>() * noise();
+        let sound = edge.norm_squared() > rounding_error::<N>() * rounding_error();
         match unit(&-perp(&edge)) {
             Some((outward, _)) if sound => {
                 Self { start, outward, offset: outward.dot(&start.point) }
@@ -90,7 +90,7 @@ fn from_simplex<N: Real>(simplex: &Simplex<N, 2>) -> Option<EpaRing<N>> {
 fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>, Separation<N, 2>> {
     let [a, b] = widest_pair(difference);
     let edge = b.point - a.point;
-    let Some((along, _)) = unit(&edge).filter(|&(_, width)| width > noise()) else {
+    let Some((along, _)) = unit(&edge).filter(|&(_, width)| width > rounding_error()) else {
         let axis = Vector::<N, 2>::new(N::ONE, N::ZERO);
         return Err(locate(difference, &best_of(difference, &[axis]), &[a]));
     };
@@ -99,7 +99,9 @@ fn from_extent<N: Real>(difference: &dyn Difference<N, 2>) -> Result<EpaRing<N>,
     let (on_right, beyond_right) = farthest(difference, &-left, &a.point);
     let corners = [(on_right, beyond_right), (b, N::INFINITY), (on_left, beyond_left)];
     let mut ring: SmallVec<[Vertex<N, 2>; 4]> = SmallVec::from_slice(&[a]);
-    ring.extend(corners.iter().filter(|(_, beyond)| *beyond > noise()).map(|(vertex, _)| *vertex));
+    ring.extend(
+        corners.iter().filter(|(_, beyond)| *beyond > rounding_error()).map(|(vertex, _)| *vertex),
+    );
     if ring.len() > 2 {
         return Ok(ring_of(&ring));
     }
@@ -120,16 +122,16 @@ fn grow<N: Real>(difference: &dyn Difference<N, 2>, ring: &mut EpaRing<N>) -> Se
             if let Some(mix) = polish(difference, &mut best, &[side.start, next]) {
                 return placed(&best, &mix, N::HALF);
             }
-            let is_closed = -candidate.height - side.offset <= noise();
+            let is_closed = -candidate.height - side.offset <= rounding_error();
             if is_closed {
                 if best.height <= before {
                     best.prefer(candidate, N::TWO * tolerance());
                 }
                 let mix = Mix::nearest(&best, &[side.start, next]);
-                return settle(difference, &best, &mix, &vertices(ring, &best));
+                return finish(difference, &best, &mix, &vertices(ring, &best));
             }
             // Flat sides are not far; smooth parts are found faster than by growing.
-            if settles(difference, &mut best) {
+            if converges(difference, &mut best) {
                 return locate(difference, &best, &vertices(ring, &best));
             }
         }

@@ -9,15 +9,15 @@
 use super::Separation;
 use super::candidate::SupportCandidate;
 use super::climb::climb;
-use super::difference::{Difference, Vertex, noise, tolerance};
+use super::difference::{Difference, Vertex, rounding_error, tolerance};
 use super::extent::{best_of, farthest, widest_pair};
 use super::hull::{EpaFace, Hull};
-use super::newton::settles;
+use super::newton::converges;
 use super::peak::at_peak;
 use super::polish::{lowest, polish};
 use super::side::better;
 use super::simplex::Simplex;
-use super::witness::{Mix, locate, placed, settle};
+use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Mapped, Real, Vector, cross, max, orthonormal_basis, unit};
 
 /// Cap on the local searches if the hull ends without an answer, and the cosine of the angle within
@@ -105,18 +105,20 @@ fn is_wide<N: Real>([a, b, c]: &[Vertex<N, 3>; 3]) -> bool {
 }
 
 fn from_segment<N: Real>(difference: &dyn Difference<N, 3>, [a, b]: [Vertex<N, 3>; 2]) -> Start<N> {
-    let Some((along, _)) = unit(&(b.point - a.point)).filter(|&(_, width)| width > noise()) else {
+    let Some((along, _)) =
+        unit(&(b.point - a.point)).filter(|&(_, width)| width > rounding_error())
+    else {
         let axis = Vector::<N, 3>::new(N::ONE, N::ZERO, N::ZERO);
         return Err(locate(difference, &best_of(difference, &[axis]), &[a]));
     };
     let (u, v) = orthonormal_basis(&along);
-    let mut side = (a, noise());
+    let mut side = (a, rounding_error());
     for across in [u, -u, v, -v] {
         let found = farthest(difference, &across, &a.point);
         side = if found.1 > side.1 { found } else { side };
     }
     let (c, found) = side;
-    if found > noise() {
+    if found > rounding_error() {
         return from_triangle(difference, [a, b, c]);
     }
     // A segment through the origin, or nearly: all directions across are equal.
@@ -133,7 +135,7 @@ fn from_triangle<N: Real>(
     };
     let (above, height) = farthest(difference, &normal, &a.point);
     let (below, depth) = farthest(difference, &-normal, &a.point);
-    if max(height, depth) > noise() {
+    if max(height, depth) > rounding_error() {
         return Ok([a, b, c, if height > depth { above } else { below }]);
     }
     // A flat disk through the origin, or nearly: its depth across is zero.
@@ -163,11 +165,11 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
         best.improve(&candidate);
         if let Some(top) = summits.beyond(difference, hull, &face, &candidate) {
             best.improve(&top);
-            hull.settle(index, -top.height);
+            hull.finalize(index, -top.height);
             continue;
         }
         if -candidate.height - face.offset <= tolerance() {
-            if face.settled {
+            if face.is_final {
                 break;
             }
             let corners = face.corners.mapped(|corner| *hull.vertex(corner));
@@ -175,23 +177,23 @@ fn grow<N: Real>(difference: &dyn Difference<N, 3>, hull: &mut Hull<N>) -> Separ
             if let Some(mix) = polish(difference, &mut best, &corners) {
                 return placed(&best, &mix, N::HALF);
             }
-            let is_closed = -candidate.height - face.offset <= noise();
+            let is_closed = -candidate.height - face.offset <= rounding_error();
             if is_closed {
                 if best.height <= before {
                     best.prefer(candidate, N::TWO * tolerance());
                 }
                 let mix = Mix::nearest(&best, &corners);
-                return settle(difference, &best, &mix, hull.vertices());
+                return finish(difference, &best, &mix, hull.vertices());
             }
             // Flat faces are not far; smooth parts are found faster than by growing.
-            if settles(difference, &mut best) {
+            if converges(difference, &mut best) {
                 hull.keep(&[best.vertex]);
                 return locate(difference, &best, hull.vertices());
             }
         }
         if hull.contains(&candidate.vertex) {
             // Rounding has bent the hull. From now on the certificate counts.
-            hull.settle(index, -candidate.height);
+            hull.finalize(index, -candidate.height);
         } else {
             hull.extend(index, candidate.vertex);
         }
@@ -226,8 +228,8 @@ impl<N: Real> Summits<N> {
         best: &SupportCandidate<N, 3>,
     ) -> Option<Separation<N, 3>> {
         let Summit { top, mix } = self.highest.as_ref()?;
-        let is_answer =
-            -nearest.offset - top.height <= tolerance() && best.height - top.height <= noise();
+        let is_answer = -nearest.offset - top.height <= tolerance()
+            && best.height - top.height <= rounding_error();
         is_answer.then(|| placed(top, mix, N::HALF))
     }
 
@@ -240,7 +242,7 @@ impl<N: Real> Summits<N> {
         candidate: &SupportCandidate<N, 3>,
     ) -> Option<SupportCandidate<N, 3>> {
         let gap = -candidate.height - face.offset;
-        if gap <= tolerance() || gap > self.coarse || face.settled {
+        if gap <= tolerance() || gap > self.coarse || face.is_final {
             return None;
         }
         if let Some(known) = self.highest.as_ref().filter(|known| known.stands_for(face, gap)) {
@@ -308,7 +310,7 @@ fn climb_on<N: Real>(
         }
         best.improve(&start);
     }
-    settles(difference, best);
+    converges(difference, best);
 }
 
 /// Returns the candidate with the larger height, the first of equals.

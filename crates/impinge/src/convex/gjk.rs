@@ -17,12 +17,12 @@ use smallvec::SmallVec;
 
 use super::Separation;
 use super::candidate::SupportCandidate;
-use super::difference::{Difference, noise, tolerance};
-use super::newton::settles;
+use super::difference::{Difference, rounding_error, tolerance};
+use super::newton::converges;
 use super::polish::{lowest, polish};
 use super::refine::{Bundle, refine};
 use super::simplex::{NearestOfSimplex, Simplex, Simplicial};
-use super::witness::{Mix, locate, placed, settle};
+use super::witness::{Mix, finish, locate, placed};
 use crate::math::{Real, Vector, max, unit_or};
 
 /// Cap on the number of support points. Flat faces take about six, curved ones up to about thirty.
@@ -162,7 +162,7 @@ pub(super) fn nearest_normal<N: Simplicial<D>, const D: usize>(
     start: &Vector<N, D>,
 ) -> Vector<N, D> {
     let mut search = GjkSearch::new(SupportCandidate::along(difference, *start));
-    (search.gap, search.for_points) = (noise(), false);
+    (search.gap, search.for_points) = (rounding_error(), false);
     search.run(difference, N::INFINITY);
     search.best.normal
 }
@@ -208,7 +208,7 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         let mut nearest = N::nearest(self.simplex.points());
         for _ in 0..ROUNDS {
             // Written so that NaN counts as an overlap, whose loops end by their caps.
-            let away = nearest.squared > noise::<N>() * noise();
+            let away = nearest.squared > rounding_error::<N>() * rounding_error();
             if nearest.enclosed || !away {
                 return Outcome::Overlap;
             }
@@ -266,10 +266,10 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     /// one solid is much larger than the other.
     fn finish(&mut self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         if self.met() {
-            return self.settled(difference);
+            return self.final_separation(difference);
         }
         let mut bundle: Bundle<N, D> = SmallVec::from_slice(self.simplex.vertices());
-        if settles(difference, &mut self.best) {
+        if converges(difference, &mut self.best) {
             bundle.push(self.best.vertex);
             return locate(difference, &self.best, &bundle);
         }
@@ -290,8 +290,8 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     /// Returns the answer if the difference contains the origin, or nearly: at once if a normal is
     /// known with the origin on its supporting plane.
     fn finish_overlap(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
-        if self.best.height >= -noise::<N>() {
-            return self.settled(difference);
+        if self.best.height >= -rounding_error::<N>() {
+            return self.final_separation(difference);
         }
         N::deepest(difference, &self.simplex)
     }
@@ -301,13 +301,13 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
     fn polished(&self, difference: &dyn Difference<N, D>) -> Option<Separation<N, D>> {
         let mut best = self.best;
         let mix = polish(difference, &mut best, self.simplex.vertices())?;
-        let is_apart = best.height > noise();
+        let is_apart = best.height > rounding_error();
         is_apart.then(|| placed(&best, &mix, N::HALF))
     }
 
     /// Returns the answer if the bounds meet. Of several valid normals, that of the nearest point
     /// is taken if its points lie across from each other along no other.
-    fn settled(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
+    fn final_separation(&self, difference: &dyn Difference<N, D>) -> Separation<N, D> {
         let (mix, mut best) = (Mix::of(&self.simplex), self.best);
         if let Some(polished) = polish(difference, &mut best, self.simplex.vertices()) {
             return placed(&best, &polished, N::HALF);
@@ -315,12 +315,12 @@ impl<N: Simplicial<D>, const D: usize> GjkSearch<N, D> {
         let raised = best.height > self.best.height;
         if !raised && !mix.meets(&best) {
             // The points of a sliver do not prove that its plane is as near as it seems.
-            if settles(difference, &mut best) {
+            if converges(difference, &mut best) {
                 return locate(difference, &best, &[best.vertex]);
             }
             best.prefer(self.last, N::TWO * gap());
         }
-        settle(difference, &best, &mix, self.simplex.vertices())
+        finish(difference, &best, &mix, self.simplex.vertices())
     }
 }
 
@@ -346,5 +346,5 @@ fn rough_gap<N: Real>() -> N {
 
 /// Gap that is good enough: 2⁻²⁰ in `f32`, 2⁻⁴⁶ in `f64`.
 fn gap<N: Real>() -> N {
-    max(noise(), N::lit(1.0 / 70_368_744_177_664.0))
+    max(rounding_error(), N::lit(1.0 / 70_368_744_177_664.0))
 }

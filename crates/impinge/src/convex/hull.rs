@@ -14,7 +14,7 @@
 
 use smallvec::SmallVec;
 
-use super::difference::{Vertex, noise};
+use super::difference::{Vertex, rounding_error};
 use crate::math::{Mapped, Real, Vector, cross, max, unit};
 
 /// A triangle, counter-clockwise seen from outside.
@@ -26,7 +26,7 @@ pub(super) struct EpaFace<N: Real> {
     /// Signed distance of the face from the origin; infinite if it is too thin to have a normal.
     pub(super) offset: N,
     /// `offset` has been set to the difference's certificate; the face grows no more.
-    pub(super) settled: bool,
+    pub(super) is_final: bool,
 }
 
 /// Directed sides of a hole in the surface, each running as in the removed face.
@@ -91,9 +91,9 @@ impl<N: Real> Hull<N> {
     }
 
     /// Moves a face outwards to `offset`, where the difference is known to end.
-    pub(super) fn settle(&mut self, index: usize, offset: N) {
+    pub(super) fn finalize(&mut self, index: usize, offset: N) {
         self.faces[index].offset = offset;
-        self.faces[index].settled = true;
+        self.faces[index].is_final = true;
     }
 
     /// Keeps points for mixing witnesses, without a face.
@@ -134,7 +134,7 @@ impl<N: Real> Hull<N> {
     fn visible(&self, from: usize, vertex: &Vertex<N, 3>) -> FaceIndices {
         let mut visible = FaceIndices::new();
         for (index, face) in self.faces.iter().enumerate() {
-            let beyond = face.outward.dot(&vertex.point) - face.offset > noise();
+            let beyond = face.outward.dot(&vertex.point) - face.offset > rounding_error();
             if index != from && (beyond || face.offset == N::INFINITY) {
                 visible.push(index);
             }
@@ -166,12 +166,12 @@ impl<N: Real> Hull<N> {
         let (e, f) = (b - a, c - a);
         let normal = cross(&e, &f);
         let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
-        let sound = normal.norm_squared() > noise::<N>() * noise() * longest;
+        let sound = normal.norm_squared() > rounding_error::<N>() * rounding_error() * longest;
         let direction = unit(&normal).filter(|_| sound);
         let (outward, offset) = direction.map_or((Vector::<N, 3>::zeros(), N::INFINITY), |found| {
             let (outward, _) = found;
             (outward, outward.dot(&a))
         });
-        EpaFace { corners, outward, offset, settled: false }
+        EpaFace { corners, outward, offset, is_final: false }
     }
 }

@@ -56,7 +56,7 @@ pub(crate) use units::Units;
 use crate::math::{Pose, Vector};
 use crate::shape::SupportMap;
 pub(crate) use difference::safe_reach;
-use difference::{CorePair, noise};
+use difference::{CorePair, rounding_error};
 use gjk::Answer;
 
 /// Returns the signed distance of two solids with radii, its normal and its points, in the frame of
@@ -267,6 +267,6 @@ where
     B: SupportMap<N, D> + ?Sized,
 {
     let core_limit = (limit + radii[0] + radii[1]) / pair.scale();
-    let slack = noise::<N>() * (N::ONE + core_limit.abs());
+    let slack = rounding_error::<N>() * (N::ONE + core_limit.abs());
     core_limit + slack
 }

@@ -1,7 +1,7 @@
 //! From a good normal to one that is accurate to rounding, where surfaces are curved.
 
 use super::candidate::SupportCandidate;
-use super::difference::{Difference, noise};
+use super::difference::{Difference, rounding_error};
 use super::simplex::Simplicial;
 use crate::math::{Vector, unit};
 
@@ -15,27 +15,27 @@ const STEPS: usize = 6;
 /// part of `w` perpendicular to `n`, and zero at the answer. Each step is judged by its certificate
 /// and by that slope: at kinks of the height (flat faces, sharp edges) steps fail and nothing is
 /// lost.
-pub(super) fn settles<N: Simplicial<D>, const D: usize>(
+pub(super) fn converges<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &mut SupportCandidate<N, D>,
 ) -> bool {
     let mut slope = across(&best.vertex.point, &best.normal);
     for _ in 0..STEPS {
-        if slope.norm() <= noise() {
+        if slope.norm() <= rounding_error() {
             return true;
         }
         let Some(step) = step(difference, best, &slope) else { return false };
         let Some((normal, _)) = unit(&(best.normal + step)) else { return false };
         let next = SupportCandidate::along(difference, normal);
         let left = across(&next.vertex.point, &normal);
-        let helps = next.height >= best.height - noise::<N>() * N::HALF
+        let helps = next.height >= best.height - rounding_error::<N>() * N::HALF
             && left.norm() < slope.norm() * N::HALF;
         if !helps {
-            return slope.norm() <= noise::<N>() * N::lit(64.0);
+            return slope.norm() <= rounding_error::<N>() * N::lit(64.0);
         }
         (*best, slope) = (next, left);
     }
-    slope.norm() <= noise::<N>() * N::lit(64.0)
+    slope.norm() <= rounding_error::<N>() * N::lit(64.0)
 }
 
 /// Returns the part of a vector perpendicular to a unit vector.

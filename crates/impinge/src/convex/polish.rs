@@ -13,7 +13,7 @@
 use smallvec::SmallVec;
 
 use super::candidate::SupportCandidate;
-use super::difference::{Branch, Difference, Vertex, noise, tolerance};
+use super::difference::{Branch, Difference, Vertex, rounding_error, tolerance};
 use super::simplex::Simplicial;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, max, min, unit};
@@ -71,7 +71,7 @@ pub(super) fn polish<N: Simplicial<D>, const D: usize>(
         // The error after a step is about the square of the step, and weights are as accurate as
         // the step. In the end no point may be outside its core by however little.
         let ends = squared <= N::EPSILON;
-        let slack = if ends { noise() } else { noise::<N>().sqrt() };
+        let slack = if ends { rounding_error() } else { rounding_error::<N>().sqrt() };
         let changed = add_lower(difference, &current, &mut sides) || drop_worst(&mut sides, slack);
         if changed {
             current = *best;
@@ -128,9 +128,9 @@ fn activate<N: Simplicial<D>, const D: usize>(
     for (index, side) in sides.iter_mut().enumerate() {
         let on = |vertex: &Vertex<N, D>| if index == 1 { vertex.on2 } else { vertex.on1 };
         side.insert(difference.branch(index == 1, &on(&best.vertex), &best.normal));
-        for (place, vertex) in vertices.iter().enumerate() {
+        for (earlier, vertex) in vertices.iter().enumerate() {
             let is_known = |other: &Vertex<N, D>| on(other) == on(vertex);
-            if !is_known(&best.vertex) && !vertices[..place].iter().any(is_known) {
+            if !is_known(&best.vertex) && !vertices[..earlier].iter().any(is_known) {
                 side.insert(difference.branch(index == 1, &on(vertex), &best.normal));
             }
         }
@@ -162,9 +162,9 @@ fn keep_extreme<N: Simplicial<D>, const D: usize>(
     while sides[0].branches.len() + sides[1].branches.len() > D + 1 {
         let mut worst = (0, 0, -N::ONE);
         for (index, side) in sides.iter().enumerate() {
-            for (place, branch) in side.branches.iter().enumerate() {
+            for (branch_index, branch) in side.branches.iter().enumerate() {
                 if side.branches.len() > 1 && lag(branch) >= worst.2 {
-                    worst = (index, place, lag(branch));
+                    worst = (index, branch_index, lag(branch));
                 }
             }
         }
@@ -215,7 +215,7 @@ impl<N: Simplicial<D>, const D: usize> ActiveSet<N, D> {
     }
 
     /// Vectors from the first point to each of the others.
-    fn ways(&self) -> impl Iterator<Item = Vector<N, D>> {
+    fn directions(&self) -> impl Iterator<Item = Vector<N, D>> {
         self.branches[1..].iter().map(|branch| branch.on - self.branches[0].on)
     }
 
@@ -248,7 +248,7 @@ fn add_lower<N: Simplicial<D>, const D: usize>(
         let outward = if index == 1 { -current.normal } else { current.normal };
         let branches = &sides[index].branches;
         let most = branches.iter().fold(-N::MAX, |most, b| max(outward.dot(&b.on), most));
-        let is_beyond = outward.dot(on) > most + noise::<N>();
+        let is_beyond = outward.dot(on) > most + rounding_error::<N>();
         if is_beyond && sides[0].branches.len() + sides[1].branches.len() <= D {
             sides[index].branches.push(difference.branch(index == 1, on, &current.normal));
             sides[index].share_evenly();
@@ -263,13 +263,13 @@ fn drop_worst<N: Simplicial<D>, const D: usize>(
     sides: &mut [ActiveSet<N, D>; 2],
     slack: N,
 ) -> bool {
-    let place = match (sides[0].worst(slack), sides[1].worst(slack)) {
+    let worst = match (sides[0].worst(slack), sides[1].worst(slack)) {
         (Some((index, one)), Some((_, two))) if one <= two => (0, index),
         (Some((index, _)), None) => (0, index),
         (_, Some((index, _))) => (1, index),
         (None, None) => return false,
     };
-    sides[place.0].drop(place.1);
+    sides[worst.0].drop(worst.1);
     true
 }
 
@@ -301,14 +301,14 @@ fn step<N: Simplicial<D>, const D: usize>(
     first.add_bend(&mut rows);
     second.add_bend(&mut rows);
     let across = |v: Vector<N, D>| v - normal * normal.dot(&v);
-    let ways = first.ways().map(|way| -way).chain(second.ways());
+    let directions = first.directions().map(|direction| -direction).chain(second.directions());
     let mut count = D;
-    for way in ways {
-        let flat = across(way);
+    for direction in directions {
+        let flat = across(direction);
         for i in 0..D {
             (rows[i][count], rows[count][i]) = (flat[i], flat[i]);
         }
-        rows[count][RIGHT] = -way.dot(normal);
+        rows[count][RIGHT] = -direction.dot(normal);
         count += 1;
     }
     let apart = across(second.branches[0].on - first.branches[0].on);
@@ -342,7 +342,7 @@ fn solve<N: Real>(mut rows: [[N; COLUMNS]; ROWS], count: usize) -> Option<[N; RO
             rows.swap(column, pivot);
         }
         let above = rows[column];
-        let usable = above[column].abs() > noise::<N>() * noise();
+        let usable = above[column].abs() > rounding_error::<N>() * rounding_error();
         if !usable {
             return None;
         }

@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::candidate::SupportCandidate;
-use super::difference::{Difference, Vertex, noise};
+use super::difference::{Difference, Vertex, rounding_error};
 use super::simplex::Simplicial;
 use crate::math::{Vector, min, unit};
 
@@ -21,16 +21,16 @@ const KEPT: usize = 8;
 /// the best normal over the bundle is computed, among those of its points, edges and facets, and
 /// its support point added, until the set agrees with the bundle. This is the cutting-plane method
 /// of J. Kelley (1960) on the sphere of normals. Over a set without the origin it is global; a set
-/// that contains the origin needs other methods. All points found are added to `seen`.
+/// that contains the origin needs other methods. All points found are added to `support_points`.
 pub(super) fn refine<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
-    seen: &mut Bundle<N, D>,
+    support_points: &mut Bundle<N, D>,
     best: &mut SupportCandidate<N, D>,
 ) {
-    let mut bundle = seen.clone();
+    let mut bundle = support_points.clone();
     for _ in 0..ROUNDS {
         let (normal, promise) = most_promising(&bundle, &best.normal);
-        let worth_it = promise > best.height + noise::<N>() * N::HALF;
+        let worth_it = promise > best.height + rounding_error::<N>() * N::HALF;
         if !worth_it {
             return;
         }
@@ -39,7 +39,7 @@ pub(super) fn refine<N: Simplicial<D>, const D: usize>(
         if bundle.iter().any(|vertex| vertex.point == candidate.vertex.point) {
             return;
         }
-        seen.push(candidate.vertex);
+        support_points.push(candidate.vertex);
         bundle.push(candidate.vertex);
         drop_idle(&mut bundle, &best.normal);
     }

@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 use super::candidate::SupportCandidate;
 use super::climb::climb;
-use super::difference::{Difference, Vertex, noise, tolerance};
+use super::difference::{Difference, Vertex, rounding_error, tolerance};
 use super::polish::polish;
 use super::witness::Mix;
 use crate::math::{Mapped, Real, Vector, cross, filled, unit};
@@ -25,7 +25,7 @@ const TOPS: usize = 3;
 /// Largest difference between the components along the axis of a normal and of the side's normals.
 const NEAR: f64 = 1.0 / 16.0;
 /// Largest difference of heights in a ring of about equal ones, for solids of about size 1.
-const LEVEL: f64 = 1.0 / 8.0;
+const MAX_UNEVENNESS: f64 = 1.0 / 8.0;
 /// Share of an interval that a step of the golden section leaves.
 const GOLDEN: f64 = 0.618_033_988_749_894_8;
 /// Cap on these steps, which shrink an interval to 1e-9 of its length.
@@ -48,9 +48,9 @@ pub(super) fn better<N: Real>(
 ) -> Option<Better<N>> {
     let mut found: Option<Better<N>> = None;
     for (axis, rise) in difference.round_sides().into_iter().flatten() {
-        let least = found.as_ref().map_or(height, |found| found.best.height) + noise();
+        let least = found.as_ref().map_or(height, |found| found.best.height) + rounding_error();
         let ring =
-            NormalRing::near(axis, rise, normal).filter(|ring| ring.is_level(difference, height));
+            NormalRing::near(axis, rise, normal).filter(|ring| ring.is_even(difference, height));
         let top = ring.and_then(|ring| ring.best(difference, least));
         found = top.map(|(ring, start)| ring.polished(difference, start)).or(found);
     }
@@ -71,9 +71,9 @@ impl<N: Real> NormalRing<N> {
     /// Returns the ring of a side, with angles from a normal near it; `None` if the normal is not
     /// near.
     fn near(axis: Vector<N, 3>, rise: N, normal: &Vector<N, 3>) -> Option<Self> {
-        let lean = normal.dot(&axis);
-        let is_near = (lean - rise).abs() <= N::lit(NEAR);
-        let (from, _) = unit(&(normal - axis * lean)).filter(|_| is_near)?;
+        let cosine = normal.dot(&axis);
+        let is_near = (cosine - rise).abs() <= N::lit(NEAR);
+        let (from, _) = unit(&(normal - axis * cosine)).filter(|_| is_near)?;
         Some(Self { axis, rise, from, aside: cross(&axis, &from) })
     }
 
@@ -84,7 +84,7 @@ impl<N: Real> NormalRing<N> {
     }
 
     /// Returns the ring with angles from another of its normals.
-    fn turned(&self, angle: N) -> Option<Self> {
+    fn rotated(&self, angle: N) -> Option<Self> {
         Self::near(self.axis, self.rise, &self.at(angle))
     }
 
@@ -94,8 +94,8 @@ impl<N: Real> NormalRing<N> {
 
     /// Returns whether the opposite normal is about as good as `height`, that of the normal at
     /// angle zero. Otherwise heights vary enough to find the best normal without the ring.
-    fn is_level(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
-        height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(LEVEL)
+    fn is_even(&self, difference: &dyn Difference<N, 3>, height: N) -> bool {
+        height - self.height(difference, N::lit(core::f64::consts::PI)) <= N::lit(MAX_UNEVENNESS)
     }
 
     /// Returns the best normal, if it is higher than `least`, and the ring with angles from it.
@@ -106,7 +106,7 @@ impl<N: Real> NormalRing<N> {
     ) -> Option<(Self, SupportCandidate<N, 3>)> {
         let mut best: Option<(Self, SupportCandidate<N, 3>)> = None;
         for top in self.tops(difference) {
-            let Some(ring) = self.turned(top).and_then(|ring| ring.risen(difference)) else {
+            let Some(ring) = self.rotated(top).and_then(|ring| ring.risen(difference)) else {
                 continue;
             };
             let found = SupportCandidate::along(difference, ring.at(N::ZERO));
@@ -133,8 +133,8 @@ impl<N: Real> NormalRing<N> {
         let mut highest = SmallVec::new();
         while highest.len() < TOPS {
             let higher = |a, b| if height(tops[b]) > height(tops[a]) { b } else { a };
-            let Some(place) = (0..tops.len()).reduce(higher) else { break };
-            highest.push(samples[tops.remove(place)].0);
+            let Some(index) = (0..tops.len()).reduce(higher) else { break };
+            highest.push(samples[tops.remove(index)].0);
         }
         highest
     }
@@ -160,7 +160,7 @@ impl<N: Real> NormalRing<N> {
                 heights = [heights[1], self.height(difference, right)];
             }
         }
-        self.turned(if heights[0] >= heights[1] { left } else { right })
+        self.rotated(if heights[0] >= heights[1] { left } else { right })
     }
 
     /// Polishes the normal at angle zero by Newton's method, over the points that are lowest to all

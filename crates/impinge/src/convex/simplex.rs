@@ -9,7 +9,7 @@
 //!
 //!    Part `i` is the volume (area, length) with corner `i` replaced by the origin. The origin lies
 //!    beyond the facet opposite to corner `i` if part `i` and the whole differ in sign. A simplex
-//!    that is flat up to `noise` has no sign, so all its facets compete.
+//!    that is flat up to `rounding_error` has no sign, so all its facets compete.
 //! ```
 //!
 //! Deciding by the signs of volumes, and falling back to the faces of a simplex instead of dividing
@@ -19,7 +19,7 @@
 //! without branches, is `collide/separation/apart/simplex.rs`.
 
 use super::Separation;
-use super::difference::{Difference, Vertex, noise};
+use super::difference::{Difference, Vertex, rounding_error};
 use crate::math::{Real, Vector};
 
 /// The scalar `Self` with the parts of the algorithms that depend on `D`.
@@ -90,7 +90,7 @@ impl<N: Real, const D: usize> NearestOfSimplex<N, D> {
 
 /// Returns the point nearest to the origin of the segment between the corners `i` and `j`.
 ///
-/// Ends closer to each other than `noise` count as one.
+/// Ends closer to each other than `rounding_error` count as one.
 pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     points: &[Vector<N, D>],
     [i, j]: [usize; 2],
@@ -101,7 +101,8 @@ pub(super) fn nearest_on_segment<N: Real, const D: usize>(
     let (along, back) = (-a.dot(&edge), b.dot(&edge));
     let a_is_nearer = along < back;
     // The test of `squared` keeps the division below safe; NaN ends here too.
-    let inside = squared > noise::<N>() * noise() && along > N::ZERO && back > N::ZERO;
+    let inside =
+        squared > rounding_error::<N>() * rounding_error() && along > N::ZERO && back > N::ZERO;
     if !inside {
         return if a_is_nearer {
             NearestOfSimplex::corner(i, a)

@@ -1,6 +1,6 @@
 //! Simplices in 2D: points, segments, triangles.
 
-use super::difference::{Difference, noise};
+use super::difference::{Difference, rounding_error};
 use super::simplex::{NearestOfSimplex, Simplex, Simplicial, nearest_on_segment};
 use super::{Separation, epa2};
 use crate::math::{Real, Vector, cross2, max, perp};
@@ -55,7 +55,7 @@ fn nearest_in_triangle<N: Real>(points: &[Vector<N, 2>]) -> NearestOfSimplex<N, 
     let area = cross2(&e, &f);
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
     // Flatter than the noise: the sign of the area is unknown, and all three sides compete.
-    let flat = area * area <= noise::<N>() * noise::<N>() * longest;
+    let flat = area * area <= rounding_error::<N>() * rounding_error::<N>() * longest;
     let (on_b, on_c) = (-cross2(&a, &f) / area, -cross2(&e, &a) / area);
     let weights = [N::ONE - on_b - on_c, on_b, on_c];
     let mut best: Option<NearestOfSimplex<N, 2>> = None;

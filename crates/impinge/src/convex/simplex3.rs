@@ -1,6 +1,6 @@
 //! Simplices in 3D: points, segments, triangles, tetrahedra.
 
-use super::difference::{Difference, noise};
+use super::difference::{Difference, rounding_error};
 use super::simplex::{NearestOfSimplex, Simplex, Simplicial, nearest_on_segment};
 use super::{Separation, epa3};
 use crate::math::{Mapped, Real, Vector, cross, max};
@@ -39,7 +39,7 @@ impl<N: Real> Simplicial<3> for N {
     }
 }
 
-/// Returns the point of a triangle nearest to the origin; one flatter than `noise` counts as its
+/// Returns the point of a triangle nearest to the origin; one flatter than `rounding_error` counts as its
 /// sides.
 fn nearest_on_triangle<N: Real>(
     points: &[Vector<N, 3>],
@@ -50,7 +50,7 @@ fn nearest_on_triangle<N: Real>(
     let normal = cross(&e, &f);
     let squared = normal.norm_squared();
     let longest = max(max(e.norm_squared(), f.norm_squared()), (c - b).norm_squared());
-    let flat = squared <= noise::<N>() * noise::<N>() * longest;
+    let flat = squared <= rounding_error::<N>() * rounding_error::<N>() * longest;
     // Coordinates of the origin in the frame of the sides from `a`: errors grow like 1/size only.
     let (on_b, on_c) = (-normal.dot(&cross(a, &f)) / squared, -normal.dot(&cross(&e, a)) / squared);
     let on_a = N::ONE - on_b - on_c;
@@ -86,7 +86,7 @@ fn nearest_in_tetrahedron<N: Real>(points: &[Vector<N, 3>]) -> NearestOfSimplex<
         largest = max(largest, normal.norm_squared());
     }
     // Lower than the noise over its largest face: signs are unknown, and all four faces compete.
-    let flat = volume * volume <= noise::<N>() * noise::<N>() * largest;
+    let flat = volume * volume <= rounding_error::<N>() * rounding_error::<N>() * largest;
     let mut best: Option<NearestOfSimplex<N, 3>> = None;
     for (part, face) in parts.into_iter().zip(FACES) {
         if flat || part * volume <= N::ZERO {

@@ -7,7 +7,7 @@
 
 use super::Separation;
 use super::candidate::SupportCandidate;
-use super::difference::{Difference, Moved, Vertex, noise, tolerance};
+use super::difference::{Difference, Moved, Vertex, rounding_error, tolerance};
 use super::gjk::nearest_simplex;
 use super::simplex::{Simplex, Simplicial};
 use crate::math::{Point, Real, Vector, max, unit};
@@ -78,7 +78,7 @@ impl<N: Simplicial<D>, const D: usize> Mix<N, D> {
     /// Returns whether the points lie across from each other and on the supporting planes, up to
     /// rounding.
     pub(super) fn meets(&self, best: &SupportCandidate<N, D>) -> bool {
-        let slack = N::TWO * noise();
+        let slack = N::TWO * rounding_error();
         self.miss(&(best.normal * best.height)) <= slack * slack
     }
 }
@@ -131,7 +131,7 @@ fn share<N: Simplicial<D>, const D: usize>(
 
 /// Returns the answer with the points of `mix`, if they fit; else with a mix of `vertices` or, if
 /// that is not enough, of points that are searched for.
-pub(super) fn settle<N: Simplicial<D>, const D: usize>(
+pub(super) fn finish<N: Simplicial<D>, const D: usize>(
     difference: &dyn Difference<N, D>,
     best: &SupportCandidate<N, D>,
     mix: &Mix<N, D>,
@@ -184,7 +184,7 @@ fn search<N: Simplicial<D>, const D: usize>(
     }
     // Points a little aside are the smaller error if the height would lose more than rounding; in
     // `f32` it never does.
-    let found = if found.height < best.height - N::TWO * noise() { *best } else { found };
+    let found = if found.height < best.height - N::TWO * rounding_error() { *best } else { found };
     let share = share(difference, &found, &mix);
     placed(&found, &mix, share)
 }
@@ -198,7 +198,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
     let mut nearest = N::nearest(simplex.points());
     let mut best = Mix::by(&simplex, &nearest.weights);
     for _ in 0..ROUNDS {
-        let away = nearest.squared > noise::<N>() * noise();
+        let away = nearest.squared > rounding_error::<N>() * rounding_error();
         if nearest.enclosed || !away {
             break;
         }
@@ -212,7 +212,7 @@ fn mix<N: Simplicial<D>, const D: usize>(
         nearest = N::nearest(simplex.points());
         // Judged by what the weights give, as slivers give poor weights.
         let mut found = Mix::by(&simplex, &nearest.weights);
-        if nearest.enclosed && found.miss(target) > noise::<N>() * noise() {
+        if nearest.enclosed && found.miss(target) > rounding_error::<N>() * rounding_error() {
             found = Mix::of_facets(&simplex, found, target);
         }
         if found.miss(target) >= best.miss(target) {

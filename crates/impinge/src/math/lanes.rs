@@ -182,7 +182,7 @@ pub(crate) fn cross<S: Simd, V: Wide<S>>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
 
 /// Rotates a vector to the frame with these axes.
 #[inline(always)]
-pub(crate) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
+pub(crate) fn rotated_into<S: Simd, V: Wide<S>, const D: usize>(
     axes: &[[V; D]; D],
     vector: &[V; D],
 ) -> [V; D] {
@@ -194,7 +194,7 @@ pub(crate) fn seen_from<S: Simd, V: Wide<S>, const D: usize>(
 
 /// Rotates vectors by the inverse of a rotation, which is the same in all lanes.
 #[inline(always)]
-pub(crate) fn turned_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+pub(crate) fn rotated_back<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     turn: &Matrix<N, 3>,
     v: &[V; 3],
@@ -299,7 +299,7 @@ impl<V, const D: usize> LanePose<V, D> {
     where
         V: Wide<S>,
     {
-        seen_from(&self.rotation, &minus(outer, &self.translation))
+        rotated_into(&self.rotation, &minus(outer, &self.translation))
     }
 
     /// `Pose::inverse_point` of the origin.

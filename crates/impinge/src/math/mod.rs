@@ -19,8 +19,6 @@ pub(crate) mod filled;
 pub(crate) mod halves;
 pub(crate) mod lanes;
 pub(crate) mod lone;
-#[cfg(test)]
-pub(crate) mod noise;
 pub(crate) mod ones;
 pub(crate) mod order;
 pub(crate) mod outward;
@@ -31,6 +29,8 @@ pub(crate) mod simd;
 mod space;
 pub(crate) mod trigonometry;
 mod vector;
+#[cfg(test)]
+pub(crate) mod xorshift;
 
 pub use nalgebra as na;
 pub use nalgebra::{Isometry, Isometry2, Isometry3, Unit};

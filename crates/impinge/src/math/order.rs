@@ -14,11 +14,11 @@ pub(crate) fn order_of<N: Real>(value: N) -> u64 {
 #[inline]
 pub(crate) fn askew<N: Real, const D: usize>(vector: &Vector<N, D>) -> N {
     const DIRECTION: [f64; 3] = [1.0, 1.6875, 2.5625];
-    let mut reach = N::ZERO;
+    let mut coordinate = N::ZERO;
     for axis in 0..D {
-        reach += vector[axis] * N::lit(DIRECTION[axis]);
+        coordinate += vector[axis] * N::lit(DIRECTION[axis]);
     }
-    reach
+    coordinate
 }
 
 /// Up to this many items are sorted by insertion.

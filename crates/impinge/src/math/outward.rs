@@ -36,8 +36,8 @@ pub(crate) fn sum_above<N: Real>(a: N, b: N) -> N {
 /// power of two; infinities or NaN beyond the range of the scalar.
 pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
     let product = a * b;
-    let is_plain = |x: N| x == N::ZERO || x.abs() == x.power_of_two_below();
-    let is_exact = (is_plain(a) || is_plain(b)) && product.abs() >= N::MIN_POSITIVE;
+    let is_zero_or_power = |x: N| x == N::ZERO || x.abs() == x.power_of_two_below();
+    let is_exact = (is_zero_or_power(a) || is_zero_or_power(b)) && product.abs() >= N::MIN_POSITIVE;
     if is_exact || a == N::ZERO || b == N::ZERO {
         return [product; 2];
     }

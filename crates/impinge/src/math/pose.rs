@@ -112,8 +112,8 @@ impl<N: Real, const D: usize> Pose<N, D> {
         let mut e = Vector::<N, D>::zeros();
         e[0] = N::ONE;
         // Every number of a rotation is a factor of some term in each rotated axis.
-        let turned = isometry.rotation.transform_vector(&e);
-        Self::from_translation(isometry.translation.vector).unless_broken(turned.as_slice())
+        let rotated = isometry.rotation.transform_vector(&e);
+        Self::from_translation(isometry.translation.vector).unless_broken(rotated.as_slice())
     }
 
     /// This pose without its rotation, for a solid that no rotation changes; see
@@ -193,14 +193,14 @@ impl<N: Real, const D: usize> Pose<N, D> {
 
     /// The extents, along each outer axis, of a rotated box about the origin.
     #[inline]
-    pub(crate) fn turned_reach(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
-        let mut reach = Vector::<N, D>::zeros();
+    pub(crate) fn rotated_extents(&self, half_extents: &Vector<N, D>) -> Vector<N, D> {
+        let mut extents = Vector::<N, D>::zeros();
         for row in 0..D {
             for column in 0..D {
-                reach[row] += self.rotation[(row, column)].abs() * half_extents[column];
+                extents[row] += self.rotation[(row, column)].abs() * half_extents[column];
             }
         }
-        reach
+        extents
     }
 
     /// Whether it maps axes to axes: every coordinate of a rotated point is plus or minus one of
@@ -283,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn quarter_turn_in_the_plane() {
+    fn quarter_turn_2d() {
         let iso = Isometry2::new(Vector::<f32, 2>::new(1.0, 0.0), std::f32::consts::FRAC_PI_2);
         let p = Pose::from_isometry(&iso).point(&Point::<f32, 2>::new(1.0, 0.0));
         assert!((p - Point::<f32, 2>::new(1.0, 1.0)).norm() < 1e-6, "{p}");

@@ -184,9 +184,10 @@ mod tests {
     fn check<N: Real>(coordinates: [N; 4]) {
         let [x, y, z, w] = coordinates;
         let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
-        let turned = Pose::from_isometry(&Isometry3::from_parts(Default::default(), rotation));
+        let expected_pose =
+            Pose::from_isometry(&Isometry3::from_parts(Default::default(), rotation));
         let found = matrix_of(&rotation);
-        for (number, expected) in found.iter().zip(turned.rotation.iter()) {
+        for (number, expected) in found.iter().zip(expected_pose.rotation.iter()) {
             assert_eq!(number.bits(), expected.bits(), "{found} of {rotation}");
         }
     }
@@ -201,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn matrices_have_the_bits_of_turned_axes() {
+    fn matrices_have_the_bits_of_rotated_axes() {
         rotations::<f32>(1e-23);
         rotations::<f64>(1e-162);
     }

@@ -139,12 +139,12 @@ mod tests {
         let mut state = 7_u64;
         let mut worst = 0.0_f64;
         for round in 0..20_000 {
-            let reach = [0.01, 1.0, 4.0, 100.0, 1e5, 1e8][round % 6];
+            let size = [0.01, 1.0, 4.0, 100.0, 1e5, 1e8][round % 6];
             let angles = [(); 8].map(|()| {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 let share =
                     f64::from(u32::try_from(state >> 32).expect("half")) / f64::from(u32::MAX);
-                N::lit(reach * (2.0 * share - 1.0))
+                N::lit(size * (2.0 * share - 1.0))
             });
             let [sines, cosines] = of(angles);
             for lane in 0..8 {

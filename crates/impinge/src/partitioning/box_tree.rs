@@ -395,24 +395,24 @@ impl<N: Real, const D: usize> BoxTree<N, D> {
             }
         }
         self.tree.refit();
-        self.tree.settle();
+        self.tree.commit_boxes();
         self.tree.maintain();
         self.boxes.copy_from_slice(boxes);
         self.bounds = around(boxes);
         Ok(())
     }
 
-    /// Returns the extent of the objects in the boxes along `direction`: the maximum of `reach_of` over all ids. The
+    /// Returns the extent of the objects in the boxes along `direction`: the maximum of `extent_of` over all ids. The
     /// result is not less, and exceeds it by at most a few `f32` rounding units of the coordinates. Minus infinity if
-    /// there are no objects. Calls `reach_of` for O(log n) objects on curved surfaces, and for more where many are
+    /// there are no objects. Calls `extent_of` for O(log n) objects on curved surfaces, and for more where many are
     /// almost equally extreme.
-    pub(crate) fn reach_along(
+    pub(crate) fn extent_along(
         &self,
         direction: Vector<N, D>,
-        mut reach_of: impl FnMut(u32) -> N,
+        mut extent_of: impl FnMut(u32) -> N,
     ) -> N {
-        let reach = self.tree.reach_along(direction, &mut reach_of);
-        self.unbounded.iter().fold(reach, |reach, &id| max(reach_of(id), reach))
+        let extent = self.tree.extent_along(direction, &mut extent_of);
+        self.unbounded.iter().fold(extent, |extent, &id| max(extent_of(id), extent))
     }
 
     pub(crate) fn answer(&self, question: &Question<'_, N, D>, found: &mut dyn FnMut(u32)) {

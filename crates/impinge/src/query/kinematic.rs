@@ -203,7 +203,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
 
     /// The kinematic in the frames of two shapes whose parts the solids are: `pose1` and `pose2`
     /// are the poses of the solids in these frames, `turns` is whether rotations change the shapes.
-    pub(super) fn seen_from(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
+    pub(super) fn in_frames(&self, [pose1, pose2]: [&Pose<N, D>; 2], turns: [bool; 2]) -> Self {
         Self {
             turns,
             local1: pose1.point(&self.local1),
@@ -251,7 +251,7 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
     /// perpendicular to the line is near it: a quick sufficient test. Of two nearly parallel lines
     /// only the first counts.
     fn is_steep(&self) -> bool {
-        let leans = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
+        let is_tilted = |geometry: NeighborhoodGeometry<N, D>, normal: &Vector<N, D>, least: N| {
             match geometry {
                 NeighborhoodGeometry::Line(along) => along.dot(normal).abs() > least,
                 _ => false,
@@ -259,8 +259,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
         };
         let least = N::TWO * least_angle();
         let nearly_parallel = N::lit(MIN_SINE_SQUARED).sqrt();
-        leans(self.geometry1, &self.normal1, least)
-            || leans(self.geometry2, &self.normal2, least + N::TWO * nearly_parallel)
+        is_tilted(self.geometry1, &self.normal1, least)
+            || is_tilted(self.geometry2, &self.normal2, least + N::TWO * nearly_parallel)
     }
 
     fn normal(
@@ -348,12 +348,13 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
     fn rule(&mut self) -> NormalRule<N, D> {
         let (side1, side2) = (&self.side1, &self.side2);
         *self.rule.get_or_insert_with(|| {
-            let (lean1, lean2) = (side1.lean(), side2.lean());
-            let has_face = min(lean1, lean2) <= least_angle();
-            let edges = if has_face { None } else { level_edges(side1, side2, self.pose12) };
+            let (tilt1, tilt2) = (side1.tilt(), side2.tilt());
+            let has_face = min(tilt1, tilt2) <= least_angle();
+            let edges =
+                if has_face { None } else { perpendicular_edges(side1, side2, self.pose12) };
             match edges {
                 Some((edge1, edge2)) => NormalRule::Edges(edge1, edge2),
-                None if lean2 < lean1 => NormalRule::Second,
+                None if tilt2 < tilt1 => NormalRule::Second,
                 None => NormalRule::First,
             }
         })
@@ -361,12 +362,12 @@ impl<'a, N: Real, const D: usize> KinematicSides<'a, N, D> {
 }
 
 /// Edges of the two solids, each in its own frame, whose crossing defines the manifold's normal.
-fn level_edges<N: Real, const D: usize>(
+fn perpendicular_edges<N: Real, const D: usize>(
     side1: &KinematicSide<N, D>,
     side2: &KinematicSide<N, D>,
     pose12: &Pose<N, D>,
 ) -> Option<(Vector<N, D>, Vector<N, D>)> {
-    let (edge1, edge2) = (side1.level_edge()?, side2.level_edge()?);
+    let (edge1, edge2) = (side1.perpendicular_edge()?, side2.perpendicular_edge()?);
     let across = edge1.dot(&pose12.vector(&edge2));
     (across * across < N::ONE - N::lit(MIN_SINE_SQUARED)).then_some((edge1, edge2))
 }
@@ -416,30 +417,30 @@ impl<N: Real, const D: usize> SlideLines<N, D> {
     }
 
     /// A unit vector projected perpendicular to the lines and normalised.
-    fn upright(&self, usual: &Vector<N, D>) -> Vector<N, D> {
-        unit(&self.reject(usual)).map_or(*usual, |(upright, _)| upright)
+    fn upright(&self, fallback: &Vector<N, D>) -> Vector<N, D> {
+        unit(&self.reject(fallback)).map_or(*fallback, |(upright, _)| upright)
     }
 
     /// The unit vector of the shortest connection of two points that may slide along the lines, on
-    /// the side of `usual`. Returns `usual` itself, projected perpendicular, if the connection
+    /// the side of `fallback`. Returns `fallback` itself, projected perpendicular, if the connection
     /// vanishes or two lines leave no choice.
     fn connection(
         &self,
         point1: &Point<N, D>,
         point2: &Point<N, D>,
-        usual: &Vector<N, D>,
+        fallback: &Vector<N, D>,
     ) -> Vector<N, D> {
         if self.are_two {
-            return self.upright(usual);
+            return self.upright(fallback);
         }
         let Some((along, length)) = unit(&self.reject(&(point2 - point1))) else {
-            return self.upright(usual);
+            return self.upright(fallback);
         };
         let size = point1.coords.norm() + point2.coords.norm();
         if length <= N::lit(16.0) * N::EPSILON * size {
-            return self.upright(usual);
+            return self.upright(fallback);
         }
-        if along.dot(usual) < N::ZERO { -along } else { along }
+        if along.dot(fallback) < N::ZERO { -along } else { along }
     }
 }
 

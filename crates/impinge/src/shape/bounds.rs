@@ -52,7 +52,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         // If the rotation gives NaN, there are no extents and the box is unbounded.
         let extents = extents(Level::new(), &self.blocks, &pose.rotation);
         extents.map_or_else(Aabb::unbounded, |[low, high]| {
-            Aabb::of_turned(low, high, self.reach(), pose)
+            Aabb::of_rotated(low, high, self.reach(), pose)
         })
     }
 

@@ -80,8 +80,8 @@ mod tests {
                 _ => Vec::new(),
             }
         });
-        let reach = shape.local_aabb().half_extents();
-        assert!(found.iter().zip(reach.iter()).all(|(a, b)| a == b), "{shape:?}: {found:?}");
+        let half_extents = shape.local_aabb().half_extents();
+        assert!(found.iter().zip(half_extents.iter()).all(|(a, b)| a == b), "{shape:?}: {found:?}");
     }
 
     #[test]

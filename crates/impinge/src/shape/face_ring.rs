@@ -59,8 +59,8 @@ impl<N: Real> Cuboid<N, 3> {
     /// Returns the id of the [`core_feature`](super::SupportMap::core_feature) of a box with a
     /// volume.
     #[inline]
-    pub(crate) fn part_shown(direction: &Vector<N, 3>) -> FeatureId {
-        CuboidPart::<3>::facing(direction, Tilt::usual()).name()
+    pub(crate) fn supporting_part(direction: &Vector<N, 3>) -> FeatureId {
+        CuboidPart::<3>::toward(direction, Tilt::default_limit()).id()
     }
 
     /// Fills a blank ring with face `index`. Returns false, with the ring unchanged, if the face
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn rings_are_the_faces_that_solids_show() {
+    fn rings_are_the_supporting_faces() {
         let (mut faces, mut parts, mut feature) = (0, [0; 3], Feature::default());
         let solids = [[1.0, 2.0, 3.0], [1.0, 0.0, 3.0], [0.0, 0.0, 1.0]];
         let corner = |at: usize| {
@@ -125,29 +125,31 @@ mod tests {
         let hull = ConvexHull::from_points(&corners);
         let Kind::Polytope(hull) = hull.geometry().0 else { panic!("a hull is a polytope") };
         for at in 0..1000_usize {
-            let way = |prime: usize| (at * prime % 201) as f64 / 100.0 - 1.0;
-            let way = Vector::<f64, 3>::new(way(7), way(11), way(13)).normalize();
+            let direction = |prime: usize| (at * prime % 201) as f64 / 100.0 - 1.0;
+            let direction =
+                Vector::<f64, 3>::new(direction(7), direction(11), direction(13)).normalize();
             // Every second direction is close to a face normal.
-            let way = if at % 2 == 0 { way } else { way.map(|x| x.powi(41)).normalize() };
+            let direction =
+                if at % 2 == 0 { direction } else { direction.map(|x| x.powi(41)).normalize() };
             for half in solids {
                 let cuboid = Cuboid::new(Vector::<f64, 3>::from(half));
-                cuboid.core_feature(&way, &mut feature);
-                let part = Cuboid::<f64, 3>::part_shown(&way);
+                cuboid.core_feature(&direction, &mut feature);
+                let part = Cuboid::<f64, 3>::supporting_part(&direction);
                 let ring = ring_of(part, |face, ring| cuboid.fill_ring(face, ring));
                 faces += usize::from(same(ring, &feature, "a box"));
             }
-            hull.core_feature(&way, &mut feature);
-            let part = hull.part_shown(&way);
+            hull.core_feature(&direction, &mut feature);
+            let part = hull.supporting_part(&direction);
             let ring = ring_of(part, |face, ring| hull.fill_ring(face, ring));
             faces += usize::from(same(ring, &feature, "a hull"));
             let [a, b, c] = [corners[at % 8], corners[at / 8 % 8], corners[at / 64 % 8]];
             let triangle = Triangle::new(a, b, c);
-            triangle.core_feature(&way, &mut feature);
-            if let Some(part) = triangle.part_shown(&way) {
-                assert_eq!(part, feature.id, "a triangle shows {feature:?} to {way}");
+            triangle.core_feature(&direction, &mut feature);
+            if let Some(part) = triangle.supporting_part(&direction) {
+                assert_eq!(part, feature.id, "{feature:?} supports {direction}");
                 if let FeatureId::Face(_) = part {
                     let mut ring = FaceRing::blank();
-                    triangle.fill_ring(&way, &mut ring);
+                    triangle.fill_ring(&direction, &mut ring);
                     let normal = feature.normal.expect("of a face");
                     assert!((ring.normal - normal).norm() < 1e-14, "{ring:?} {feature:?}");
                     ring.normal = normal;

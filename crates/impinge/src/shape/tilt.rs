@@ -15,7 +15,7 @@ pub(super) struct Tilt<N: Real> {
 impl<N: Real> Tilt<N> {
     /// The limit of [`super::SupportMap::core_feature`].
     #[inline]
-    pub(super) fn usual() -> Self {
+    pub(super) fn default_limit() -> Self {
         Self { sine_squared: N::lit(FACING_SINE_SQUARED) }
     }
 
@@ -62,11 +62,13 @@ mod tests {
     #[test]
     fn limits_are_the_documented_angles() {
         let normal = Vector::<f64, 2>::new(1.0, 0.0);
-        for (tilt, limit) in [(Tilt::<f64>::usual(), 0.5_f64.atan()), (Tilt::of_angle(0.3), 0.3)] {
-            let turned = |angle: f64| Vector::<f64, 2>::new(angle.cos(), angle.sin());
-            assert!(tilt.admits_face(&normal, &turned(limit - 1e-9)), "just inside {limit}");
-            assert!(!tilt.admits_face(&normal, &turned(limit + 1e-9)), "just outside {limit}");
-            assert!(!tilt.admits_face(&normal, &-turned(0.0)), "the back of a face never faces");
+        for (tilt, limit) in
+            [(Tilt::<f64>::default_limit(), 0.5_f64.atan()), (Tilt::of_angle(0.3), 0.3)]
+        {
+            let at_angle = |angle: f64| Vector::<f64, 2>::new(angle.cos(), angle.sin());
+            assert!(tilt.admits_face(&normal, &at_angle(limit - 1e-9)), "just inside {limit}");
+            assert!(!tilt.admits_face(&normal, &at_angle(limit + 1e-9)), "just outside {limit}");
+            assert!(!tilt.admits_face(&normal, &-at_angle(0.0)), "the back of a face never faces");
         }
         assert!(Tilt::<f32>::of_angle(-1.0).admits(0.0), "no angle is below the least");
         assert!(!Tilt::<f32>::of_angle(f32::INFINITY).admits(1.0), "nothing upright faces");

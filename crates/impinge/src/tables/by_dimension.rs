@@ -4,16 +4,16 @@ use super::Here;
 use crate::batch::{SolidGroup, update_group2, update_group3};
 use crate::bounding_volume::Ray;
 use crate::collide::mesh::{
-    Arena, CompositeContacts, Nearby, PartContacts, Query, Scene, face_contacts, over2, over3,
+    Arena, CompositeContacts, CulledParts, PartContacts, Query, Scene, face_contacts, over2, over3,
     update_chain, update_on_surface,
 };
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::parts::{
-    AxisSlabs, Between, PairVerdicts, PartPairs, part_gaps2, part_gaps3, part_pairs2, part_pairs3,
+    AxisSlabs, Between, PairMasks, PartPairs, part_gaps2, part_gaps3, part_pairs2, part_pairs3,
 };
 use crate::collide::separation::{
-    Projection, distance_in_plane, distance_in_space, seen_in_plane, seen_in_space,
-    separation_in_plane, separation_in_space,
+    Projection, distance_2d, distance_3d, project_on_solid_2d, project_on_solid_3d, separation_2d,
+    separation_3d,
 };
 use crate::collide::{
     ConvexPair, ManifoldRequest, OnFace, Pair, PairQuestion, RawManifold, Solid, between2, build3,
@@ -49,7 +49,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     fn face_contacts(
         query: &Query<'_, N, D>,
         scene: &Scene<'_, N, D>,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
         prediction: N,
         contacts: &mut PartContacts<N, D>,
         arena: &mut Arena<N, D>,
@@ -59,7 +59,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
 
     /// Classifies eight pairs of parts: beyond a limit, or within it.
-    fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairVerdicts;
+    fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairMasks;
 
     /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a surface (3D); `false` if
     /// the pair needs the generic path.
@@ -84,7 +84,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     );
 
     /// Projects a point on a solid; `None` if there is no closed form.
-    fn seen(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
+    fn project_on_solid(solid: Kind<'_, N, D>, point: &Point<N, D>) -> Option<Projection<N, D>>;
 
     /// Computes the contact points of a pair: by the SIMD kernel of its kinds if there is one, else from the
     /// separation.
@@ -119,7 +119,7 @@ pub trait ByDimension<N: Real, const D: usize>:
     );
 
     /// Computes contacts along the normal of a triangle; `false` if there are none.
-    fn on_face(pair: &Pair<'_, N, D>, asked: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
+    fn on_face(pair: &Pair<'_, N, D>, query: &OnFace<N, D>, out: &mut RawManifold<N, D>) -> bool;
 
     /// Updates some pairs of a group in SIMD lanes; `false` if there is no kernel for their kinds.
     fn update_lanes(solids: [&Solid<N, D>; 2], due: &mut DueContacts<'_, '_, N, D>) -> bool
@@ -184,13 +184,13 @@ pub trait ByDimension<N: Real, const D: usize>:
 #[expect(private_interfaces, reason = "for this crate alone")]
 impl<N: Real> ByDimension<N, 2> for Here {
     fn separation(pair: &Pair<'_, N, 2>, limit: N) -> Option<Separation<N, 2>> {
-        separation_in_plane(pair, limit)
+        separation_2d(pair, limit)
     }
 
     fn face_contacts(
         _: &Query<'_, N, 2>,
         _: &Scene<'_, N, 2>,
-        _: &Nearby<N>,
+        _: &CulledParts<N>,
         _: N,
         _: &mut PartContacts<N, 2>,
         _: &mut Arena<N, 2>,
@@ -202,7 +202,7 @@ impl<N: Real> ByDimension<N, 2> for Here {
         part_gaps2(slabs, tiles, limit)
     }
 
-    fn part_pairs(pairs: &PartPairs<N, 2>, limit: N) -> PairVerdicts {
+    fn part_pairs(pairs: &PartPairs<N, 2>, limit: N) -> PairMasks {
         part_pairs2(pairs, limit)
     }
 
@@ -215,7 +215,7 @@ impl<N: Real> ByDimension<N, 2> for Here {
     }
 
     fn distance(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
-        distance_in_plane(pair, limit)
+        distance_2d(pair, limit)
     }
 
     fn distances(pairs: &mut [ConvexPair<'_, N, 2>], limit: N, out: &mut [Option<N>]) {
@@ -230,8 +230,8 @@ impl<N: Real> ByDimension<N, 2> for Here {
         separations2(pairs, limit, out);
     }
 
-    fn seen(solid: Kind<'_, N, 2>, point: &Point<N, 2>) -> Option<Projection<N, 2>> {
-        seen_in_plane(solid, point)
+    fn project_on_solid(solid: Kind<'_, N, 2>, point: &Point<N, 2>) -> Option<Projection<N, 2>> {
+        project_on_solid_2d(solid, point)
     }
 
     fn contacts_of_separation(
@@ -255,8 +255,8 @@ impl<N: Real> ByDimension<N, 2> for Here {
         between2(pair, separation, request, out);
     }
 
-    fn on_face(pair: &Pair<'_, N, 2>, asked: &OnFace<N, 2>, out: &mut RawManifold<N, 2>) -> bool {
-        on_face2(pair, asked, out)
+    fn on_face(pair: &Pair<'_, N, 2>, query: &OnFace<N, 2>, out: &mut RawManifold<N, 2>) -> bool {
+        on_face2(pair, query, out)
     }
 
     fn update_lanes(solids: [&Solid<N, 2>; 2], due: &mut DueContacts<'_, '_, N, 2>) -> bool {
@@ -330,25 +330,25 @@ impl<N: Real> ByDimension<N, 2> for Here {
 #[expect(private_interfaces, reason = "for this crate alone")]
 impl<N: Real> ByDimension<N, 3> for Here {
     fn separation(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
-        separation_in_space(pair, limit)
+        separation_3d(pair, limit)
     }
 
     fn face_contacts(
         query: &Query<'_, N, 3>,
         scene: &Scene<'_, N, 3>,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
         prediction: N,
         contacts: &mut PartContacts<N, 3>,
         arena: &mut Arena<N, 3>,
     ) -> bool {
-        face_contacts(query, scene, nearby, prediction, contacts, arena)
+        face_contacts(query, scene, culled, prediction, contacts, arena)
     }
 
     fn part_gaps(slabs: &AxisSlabs<N, 3>, tiles: &PartPacket<N, 3>, limit: N) -> [N; LANES] {
         part_gaps3(slabs, tiles, limit)
     }
 
-    fn part_pairs(pairs: &PartPairs<N, 3>, limit: N) -> PairVerdicts {
+    fn part_pairs(pairs: &PartPairs<N, 3>, limit: N) -> PairMasks {
         part_pairs3(pairs, limit)
     }
 
@@ -361,7 +361,7 @@ impl<N: Real> ByDimension<N, 3> for Here {
     }
 
     fn distance(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
-        distance_in_space(pair, limit)
+        distance_3d(pair, limit)
     }
 
     fn distances(pairs: &mut [ConvexPair<'_, N, 3>], limit: N, out: &mut [Option<N>]) {
@@ -376,8 +376,8 @@ impl<N: Real> ByDimension<N, 3> for Here {
         separations3(pairs, limit, out);
     }
 
-    fn seen(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> Option<Projection<N, 3>> {
-        seen_in_space(solid, point)
+    fn project_on_solid(solid: Kind<'_, N, 3>, point: &Point<N, 3>) -> Option<Projection<N, 3>> {
+        project_on_solid_3d(solid, point)
     }
 
     fn contacts_of_separation(
@@ -401,8 +401,8 @@ impl<N: Real> ByDimension<N, 3> for Here {
         build3(pair, separation, request, out);
     }
 
-    fn on_face(pair: &Pair<'_, N, 3>, asked: &OnFace<N, 3>, out: &mut RawManifold<N, 3>) -> bool {
-        on_face3(pair, asked, out)
+    fn on_face(pair: &Pair<'_, N, 3>, query: &OnFace<N, 3>, out: &mut RawManifold<N, 3>) -> bool {
+        on_face3(pair, query, out)
     }
 
     fn update_lanes(solids: [&Solid<N, 3>; 2], due: &mut DueContacts<'_, '_, N, 3>) -> bool {

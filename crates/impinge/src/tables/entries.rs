@@ -257,7 +257,7 @@ compiled! {
     fn ray_within(ray: &Ray<N, D>, pose: &Pose<N, D>) -> Ray<N, D> = Ray::inverse_transformed_by;
 
     /// Rotates a direction to the world frame.
-    fn turned_vector(pose: &Pose<N, D>, local: &Vector<N, D>) -> Vector<N, D> = Pose::vector;
+    fn rotated_vector(pose: &Pose<N, D>, local: &Vector<N, D>) -> Vector<N, D> = Pose::vector;
 
     /// Transforms a point to the frame of a shape at `pose`.
     fn point_within(pose: &Pose<N, D>, outer: &Point<N, D>) -> Point<N, D> = Pose::inverse_point;

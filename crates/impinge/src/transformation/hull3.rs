@@ -61,16 +61,16 @@ const ROUNDS: usize = 8;
 /// assert_eq!(convex_hull3(&cube).map(|hull| hull.faces.len()), Ok(6));
 /// ```
 pub fn convex_hull3<N: Real>(points: &[Point<N, 3>]) -> Result<IndexedHull<N>, ShapeError> {
-    let HullFaces { named, faces } = hull_of(points)?;
-    let ring = |ring: &[u32]| ring.iter().map(|&vertex| named[vertex as usize]).collect();
+    let HullFaces { point_indices, faces } = hull_of(points)?;
+    let ring = |ring: &[u32]| ring.iter().map(|&vertex| point_indices[vertex as usize]).collect();
     let normals = faces.normals.iter().map(|normal| normal.map(N::lit)).collect();
-    Ok(IndexedHull { faces: faces.rings().map(ring).collect(), normals, vertices: named })
+    Ok(IndexedHull { faces: faces.rings().map(ring).collect(), normals, vertices: point_indices })
 }
 
 /// A hull in terms of its own vertices.
 struct HullFaces {
     /// The index of the point of each vertex, ascending.
-    named: Vec<usize>,
+    point_indices: Vec<usize>,
     faces: FaceRings,
 }
 
@@ -86,16 +86,16 @@ fn hull_of<N: Real>(points: &[Point<N, 3>]) -> Result<HullFaces, ShapeError> {
         grown = next;
     }
     let mut faces = faces(&grown.facets, &grown.vertices);
-    let (used, places) = numbered(grown.named.len(), faces.corners.iter().copied());
-    faces.corners.iter_mut().for_each(|corner| *corner = places[at(*corner)]);
-    let named = used.into_iter().map(|vertex| grown.named[vertex]).collect();
-    Ok(HullFaces { named, faces })
+    let (used, new_indices) = numbered(grown.point_indices.len(), faces.corners.iter().copied());
+    faces.corners.iter_mut().for_each(|corner| *corner = new_indices[at(*corner)]);
+    let point_indices = used.into_iter().map(|vertex| grown.point_indices[vertex]).collect();
+    Ok(HullFaces { point_indices, faces })
 }
 
 /// The hull of some points, as triangles.
 struct Grown {
     /// The index of the point of each vertex, ascending.
-    named: Vec<usize>,
+    point_indices: Vec<usize>,
     /// The positions of the vertices.
     vertices: Scaled<3>,
     facets: Vec<Facet>,
@@ -107,34 +107,34 @@ impl Grown {
         let facets = HullSurface::grown(&scaled.points, first, 2.0 * scaled.unit);
         let mut facets = facets.ok_or(ShapeError::Degenerate { dimension: 2 })?;
         let corners = facets.iter().flat_map(|facet| facet.corners);
-        let (named, places) = numbered(scaled.points.len(), corners);
+        let (point_indices, new_indices) = numbered(scaled.points.len(), corners);
         for facet in &mut facets {
-            facet.corners = facet.corners.mapped(|corner| places[at(corner)]);
+            facet.corners = facet.corners.mapped(|corner| new_indices[at(corner)]);
         }
-        let points = named.iter().map(|&index| scaled.points[index]).collect();
-        Ok(Self { named, vertices: Scaled { points, unit: scaled.unit }, facets })
+        let points = point_indices.iter().map(|&index| scaled.points[index]).collect();
+        Ok(Self { point_indices, vertices: Scaled { points, unit: scaled.unit }, facets })
     }
 
     /// The hull without some vertices.
     fn without(&self, redundant: &[u32]) -> Result<Self, ShapeError> {
         let is_kept = |&vertex: &usize| redundant.binary_search(&index_of(vertex)).is_err();
-        let kept: Vec<usize> = (0..self.named.len()).filter(is_kept).collect();
+        let kept: Vec<usize> = (0..self.point_indices.len()).filter(is_kept).collect();
         let points = kept.iter().map(|&vertex| self.vertices.points[vertex]).collect();
         let mut next = Self::of(&Scaled { points, unit: self.vertices.unit })?;
-        next.named.iter_mut().for_each(|name| *name = self.named[kept[*name]]);
+        next.point_indices.iter_mut().for_each(|index| *index = self.point_indices[kept[*index]]);
         Ok(next)
     }
 }
 
 /// Returns the used vertices, ascending, and the index of each among them.
 fn numbered(count: usize, corners: impl Iterator<Item = u32>) -> (Vec<usize>, Vec<u32>) {
-    let (mut places, mut used) = (vec![0; count], Vec::with_capacity(count));
-    corners.for_each(|corner| places[at(corner)] = 1);
-    for (vertex, place) in places.iter_mut().enumerate().filter(|(_, place)| **place == 1) {
-        *place = index_of(used.len());
+    let (mut new_indices, mut used) = (vec![0; count], Vec::with_capacity(count));
+    corners.for_each(|corner| new_indices[at(corner)] = 1);
+    for (vertex, index) in new_indices.iter_mut().enumerate().filter(|(_, index)| **index == 1) {
+        *index = index_of(used.len());
         used.push(vertex);
     }
-    (used, places)
+    (used, new_indices)
 }
 
 impl<N: Real> ConvexHull<N> {
@@ -143,8 +143,8 @@ impl<N: Real> ConvexHull<N> {
     /// # Errors
     /// For fewer than four points, a coordinate that is not finite, and points that span no volume.
     pub fn try_from_points(points: &[Point<N, 3>]) -> Result<Self, ShapeError> {
-        let HullFaces { named, faces } = hull_of(points)?;
-        let corners = named.iter().map(|&index| points[index]).collect();
+        let HullFaces { point_indices, faces } = hull_of(points)?;
+        let corners = point_indices.iter().map(|&index| points[index]).collect();
         let normals = faces.normals.iter().map(|normal| normal.map(N::lit));
         let solid = Self::from_closed_faces(corners, normals.zip(faces.rings()));
         solid.ok_or(ShapeError::Degenerate { dimension: 2 })

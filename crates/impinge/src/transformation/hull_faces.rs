@@ -56,10 +56,10 @@ fn ring_around(vertex: u32, first: u32, facets: &[Facet]) -> Vec<u32> {
     let (mut ring, mut facet) = (Vec::new(), first);
     loop {
         let Facet { corners, neighbors, .. } = &facets[at(facet)];
-        let place = corners.iter().position(|&corner| corner == vertex);
-        let place = place.expect("facets around a vertex have it as a corner");
-        ring.push(corners[(place + 1) % 3]);
-        facet = neighbors[(place + 2) % 3];
+        let index = corners.iter().position(|&corner| corner == vertex);
+        let index = index.expect("facets around a vertex have it as a corner");
+        ring.push(corners[(index + 1) % 3]);
+        facet = neighbors[(index + 2) % 3];
         if facet == first {
             break;
         }
@@ -194,8 +194,8 @@ impl FaceRings {
 
 /// Whether a vertex of a ring lies on the segment between those before and after it.
 fn is_straight(ring: &[u32], vertex: u32, scaled: &Scaled<3>) -> bool {
-    let Some(place) = ring.iter().position(|&corner| corner == vertex) else { return false };
-    let corner = |step: usize| &scaled.points[at(ring[(place + step) % ring.len()])];
+    let Some(index) = ring.iter().position(|&corner| corner == vertex) else { return false };
+    let corner = |step: usize| &scaled.points[at(ring[(index + step) % ring.len()])];
     distance_from_segment(corner(0), corner(ring.len() - 1), corner(1)) <= scaled.flat()
 }
 
@@ -291,9 +291,9 @@ impl<'a> Merger<'a> {
         // back.
         let far = facet.corners[(shared + 1) % 3];
         let Scaled { points, .. } = self.scaled;
-        let is_level = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();
+        let is_coplanar = || self.facets[at(seed)].height(points, far).abs() <= self.scaled.flat();
         let is_free = self.in_face_of[at(far)] != seed + 1;
-        if !(is_free && is_level() && self.stays_convex(seed, position, far)) {
+        if !(is_free && is_coplanar() && self.stays_convex(seed, position, far)) {
             return false;
         }
         self.is_taken[at(beyond)] = true;

@@ -8,10 +8,10 @@ use crate::shape::{ConvexPolygon, ShapeError};
 
 type P2 = Point<f64, 2>;
 
-/// Removes points of a ring that lie, within `noise`, between their neighbours.
-pub(super) fn thinned(points: &[P2], ring: Vec<usize>, noise: f64) -> Vec<usize> {
+/// Removes points of a ring that lie, within `tolerance`, between their neighbours.
+pub(super) fn thinned(points: &[P2], ring: Vec<usize>, tolerance: f64) -> Vec<usize> {
     let adds_nothing = |before: usize, at: usize, after: usize| {
-        distance_from_segment(&points[at], &points[before], &points[after]) <= noise
+        distance_from_segment(&points[at], &points[before], &points[after]) <= tolerance
     };
     let mut kept: Vec<usize> = Vec::with_capacity(ring.len());
     for index in ring {
@@ -39,8 +39,8 @@ pub(super) fn thinned(points: &[P2], ring: Vec<usize>, noise: f64) -> Vec<usize>
 ///
 /// Checks that every corner turns left and the outline goes around once: its upward sides form one
 /// unbroken run.
-fn outline(points: &[P2], noise: f64) -> Result<Vec<usize>, ShapeError> {
-    let mut ring = thinned(points, (0..points.len()).collect(), noise);
+fn outline(points: &[P2], tolerance: f64) -> Result<Vec<usize>, ShapeError> {
+    let mut ring = thinned(points, (0..points.len()).collect(), tolerance);
     let doubled: f64 = (0..ring.len())
         .map(|at| (points[ring[at]], points[ring[(at + 1) % ring.len()]]))
         .map(|(a, b)| {

@@ -14,7 +14,7 @@ type P3 = Point<f64, 3>;
 
 const NONE: u32 = u32::MAX;
 
-/// The value of `seen` of a facet that was removed from the surface.
+/// The value of `visited` of a facet that was removed from the surface.
 const GONE: u32 = u32::MAX;
 
 /// 2⁻⁴⁰: heights above the plane of a facet beyond this have the right sign and a magnitude
@@ -38,24 +38,24 @@ pub(super) struct Facet {
     /// The first of the points on its list.
     waiting: u32,
     /// The number of the last search that visited it.
-    seen: u32,
+    visited: u32,
 }
 
 impl Facet {
     fn new(points: &[P3], corners: [u32; 3], neighbors: [u32; 3]) -> Self {
-        let places = corners.mapped(|corner| &points[at(corner)]);
-        let [a, b, c] = places;
+        let corner_points = corners.mapped(|corner| &points[at(corner)]);
+        let [a, b, c] = corner_points;
         let (u, v) = (b - a, c - a);
         let mut across = u.cross(&v);
         // The rounding error is 2⁻⁵⁰ of the product of the lengths: 2⁻⁴⁵ of an area that is 1/32 of
         // it.
         if across.norm_squared() * 1024.0 < u.norm_squared() * v.norm_squared() {
-            across = area_vector(places);
+            across = area_vector(corner_points);
         }
         let doubled_area = across.norm();
         let normal = across * (1.0 / doubled_area);
         let offset = normal.dot(&a.coords);
-        Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, seen: 0 }
+        Self { corners, neighbors, normal, offset, doubled_area, waiting: NONE, visited: 0 }
     }
 
     /// The height of a point in front of it, within [`DOUBT`].
@@ -176,8 +176,8 @@ impl<'a> HullSurface<'a> {
     /// replaced it.
     #[inline]
     fn assign(&mut self, point: u32, first: u32) {
-        let place = self.points[at(point)];
-        let (mut best, mut top) = self.highest(first, |facet| facet.rough_height(&place));
+        let position = self.points[at(point)];
+        let (mut best, mut top) = self.highest(first, |facet| facet.rough_height(&position));
         if top.abs() <= DOUBT {
             (best, top) = self.highest(first, |facet| facet.height(self.points, point));
         }
@@ -228,7 +228,7 @@ impl<'a> HullSurface<'a> {
 
     /// Extends the surface to the point with the largest height over a facet.
     fn raise(&mut self, facet: u32, pending: &mut Vec<u32>) {
-        if self.facets[at(facet)].seen == GONE {
+        if self.facets[at(facet)].visited == GONE {
             return;
         }
         let Some(point) = self.farthest(facet) else { return };
@@ -236,7 +236,7 @@ impl<'a> HullSurface<'a> {
         let first = self.replace(point);
         for index in 0..self.visible.len() {
             let facet = &mut self.facets[at(self.visible[index])];
-            facet.seen = GONE;
+            facet.visited = GONE;
             let mut next = facet.waiting;
             while next != NONE {
                 let orphan = next;
@@ -255,7 +255,7 @@ impl<'a> HullSurface<'a> {
         self.searches += 1;
         self.visible.clear();
         self.horizon.clear();
-        self.facets[at(first)].seen = self.searches;
+        self.facets[at(first)].visited = self.searches;
         self.visible.push(first);
         let mut next = 0;
         while let Some(&facet) = self.visible.get(next) {
@@ -264,11 +264,11 @@ impl<'a> HullSurface<'a> {
             for side in 0..3 {
                 let neighbor = neighbors[side];
                 let beyond = &mut self.facets[at(neighbor)];
-                if beyond.seen == self.searches {
+                if beyond.visited == self.searches {
                     continue;
                 }
                 if beyond.height(self.points, point) > 0.0 {
-                    beyond.seen = self.searches;
+                    beyond.visited = self.searches;
                     self.visible.push(neighbor);
                 } else {
                     let (from, to) = (corners[side], corners[(side + 1) % 3]);
@@ -304,7 +304,7 @@ impl<'a> HullSurface<'a> {
     /// later facets may turn below them.
     fn promote(&mut self, pending: &mut Vec<u32>) {
         for facet in 0..index_of(self.facets.len()) {
-            if self.facets[at(facet)].seen == GONE {
+            if self.facets[at(facet)].visited == GONE {
                 continue;
             }
             let mut next = core::mem::replace(&mut self.facets[at(facet)].waiting, NONE);
@@ -343,31 +343,31 @@ impl<'a> HullSurface<'a> {
     fn distance(&self, facet: u32, point: u32) -> f64 {
         let facet = &self.facets[at(facet)];
         let [a, b, c] = facet.corners.mapped(|corner| &self.points[at(corner)]);
-        let place = &self.points[at(point)];
+        let position = &self.points[at(point)];
         let sides = [(a, b), (b, c), (c, a)];
         let is_inside = |(from, to): &(&P3, &P3)| {
-            facet.normal.cross(&(*to - *from)).dot(&(place - *from)) >= 0.0
+            facet.normal.cross(&(*to - *from)).dot(&(position - *from)) >= 0.0
         };
         if sides.iter().all(is_inside) {
             return facet.height(self.points, point);
         }
-        let distances = sides.mapped(|(from, to)| distance_from_segment(place, from, to));
+        let distances = sides.mapped(|(from, to)| distance_from_segment(position, from, to));
         distances.into_iter().fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the facets that are left, renumbered.
     fn compacted(mut self) -> Vec<Facet> {
-        let mut renamed = vec![NONE; self.facets.len()];
+        let mut new_indices = vec![NONE; self.facets.len()];
         let mut count = 0;
-        for (facet, name) in self.facets.iter().zip(&mut renamed) {
-            if facet.seen != GONE {
-                *name = count;
+        for (facet, new_index) in self.facets.iter().zip(&mut new_indices) {
+            if facet.visited != GONE {
+                *new_index = count;
                 count += 1;
             }
         }
-        self.facets.retain(|facet| facet.seen != GONE);
+        self.facets.retain(|facet| facet.visited != GONE);
         for facet in &mut self.facets {
-            facet.neighbors = facet.neighbors.mapped(|neighbor| renamed[at(neighbor)]);
+            facet.neighbors = facet.neighbors.mapped(|neighbor| new_indices[at(neighbor)]);
         }
         self.facets
     }

@@ -94,8 +94,9 @@ fn flat_polygon<N: Space<3>>(
 ) -> Option<ShapeHandle<N, 3>> {
     let [a, b, c] = first_three(scaled).ok()?.map(|index| scaled.points[index]);
     let across = (b - a).cross(&(c - a)).iamax();
-    let seen = points.iter().map(|p| Point::<N, 2>::new(p[(across + 1) % 3], p[(across + 2) % 3]));
-    let ring = convex_hull2(&seen.collect::<Vec<_>>()).ok()?;
+    let projected =
+        points.iter().map(|p| Point::<N, 2>::new(p[(across + 1) % 3], p[(across + 2) % 3]));
+    let ring = convex_hull2(&projected.collect::<Vec<_>>()).ok()?;
     let corners: Vec<_> = ring.iter().map(|&index| points[index]).collect();
     if let [a, b, c] = corners[..] {
         return Triangle::try_new(a, b, c).ok().map(ShapeHandle::new);

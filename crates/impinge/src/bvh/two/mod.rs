@@ -1,10 +1,10 @@
 //! Searches of two trees, each in its own frame: near pairs of objects, near ones first
-//! ([`near_pairs`]), and pairs that may touch, in no order ([`meeting`]).
+//! ([`near_pairs`]), and pairs that may touch, in no order ([`touching`]).
 
 mod agenda;
-mod meeting;
 mod near_pairs;
 mod regions;
+mod touching;
 
-pub(crate) use meeting::{TreeMeeting, visit_meetings};
 pub(crate) use near_pairs::{Toward, TreePair, visit_pairs};
+pub(crate) use touching::{TouchQuery, visit_touching};

@@ -72,10 +72,10 @@ pub(crate) trait TreePair<N: Real, const D: usize> {
 
     /// Upper bound of the extent of an object of the first (0) or the second (1) tree along a unit
     /// vector.
-    fn reach(&self, which: usize, id: u32, along: &Vector<N, D>) -> N;
+    fn extent(&self, which: usize, id: u32, along: &Vector<N, D>) -> N;
 
     /// Lower bound of the signed distance of objects with these extents toward each other.
-    fn gap(&self, toward: &Toward<N, D>, reaches: [N; 2]) -> N;
+    fn gap(&self, toward: &Toward<N, D>, extents: [N; 2]) -> N;
 
     /// Receives two objects that are likely to be near, before the search; [`NONE`] where a descent
     /// failed. They are visited again.
@@ -193,8 +193,8 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
     /// Lower bound of the signed distance of the contents of two blocks, by the gap along a
     /// direction.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &BlockPair) -> N {
-        let reaches = [0, 1].mapped(|which| self.slab_box(which, pair).reach(&toward[which]));
-        self.question.gap(toward, reaches)
+        let extents = [0, 1].mapped(|which| self.slab_box(which, pair).extent(&toward[which]));
+        self.question.gap(toward, extents)
     }
 
     /// The gap along the direction of the nearest objects so far, if the boxes of two blocks are
@@ -273,9 +273,9 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
                 return;
             }
             let is_beyond = sides.iter().any(|(toward, of_others)| {
-                let mut reaches = [*of_others; 2];
-                reaches[which] = self.question.reach(which, id, &toward[which]);
-                self.question.gap(toward, reaches) > self.question.limit()
+                let mut extents = [*of_others; 2];
+                extents[which] = self.question.extent(which, id, &toward[which]);
+                self.question.gap(toward, extents) > self.question.limit()
             });
             if is_beyond {
                 continue;
@@ -299,11 +299,11 @@ impl<N: Real, const D: usize> PairSearch<'_, '_, N, D> {
         let across = across.into_iter().flat_map(|across| [across, -across]);
         let across = across.filter_map(|across| self.question.toward(which, &across));
         let mut sides: SmallVec<_> =
-            across.map(|toward| (toward, block.reach(&toward[which]))).collect();
+            across.map(|toward| (toward, block.extent(&toward[which]))).collect();
         if let Some(toward) = self.question.best().filter(|_| self.question.limit() > N::ZERO) {
             let ids = &self.trees[which].leaves()[pair.blocks[which] as usize];
-            let reaches = in_use(ids).map(|id| self.question.reach(which, id, &toward[which]));
-            sides.insert(0, (toward, reaches.fold(-N::INFINITY, max)));
+            let extents = in_use(ids).map(|id| self.question.extent(which, id, &toward[which]));
+            sides.insert(0, (toward, extents.fold(-N::INFINITY, max)));
         }
         sides
     }
@@ -361,7 +361,7 @@ mod tests {
     use super::*;
     use crate::bounding_volume::BoundingVolume;
     use crate::bvh::Lanes;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::math::{Point, Vector};
 
     /// The second tree is translated by `shift` along the first axis.
@@ -411,7 +411,7 @@ mod tests {
             self.toward(0, &unit(&(points[1] + shift - points[0]))?.0)
         }
 
-        fn reach(&self, which: usize, id: u32, along: &Vector<f64, 3>) -> f64 {
+        fn extent(&self, which: usize, id: u32, along: &Vector<f64, 3>) -> f64 {
             let aabb = &self.boxes[which][id as usize];
             aabb.center().coords.dot(along) + aabb.half_extents().dot(&along.abs())
         }
@@ -430,19 +430,19 @@ mod tests {
         }
     }
 
-    fn boxes(noise: &mut Noise, count: usize) -> Vec<Aabb<f64, 3>> {
+    fn boxes(random: &mut Xorshift, count: usize) -> Vec<Aabb<f64, 3>> {
         let each = |_| {
-            let corner = Point::from(noise.vector::<f64>(20.0));
-            Aabb::new(corner, corner + noise.vector::<f64>(1.0).abs())
+            let corner = Point::from(random.vector::<f64>(20.0));
+            Aabb::new(corner, corner + random.vector::<f64>(1.0).abs())
         };
         (0..count).map(each).collect()
     }
 
     #[test]
     fn no_near_pair_is_missed() {
-        let noise = &mut Noise(4);
+        let random = &mut Xorshift(4);
         for (count1, count2) in [(0, 9), (1, 1), (5, 300), (700, 12), (400, 900)] {
-            let all = [boxes(noise, count1), boxes(noise, count2)];
+            let all = [boxes(random, count1), boxes(random, count2)];
             let tree = |boxes: &[Aabb<f64, 3>]| {
                 Tree::of_still(Lanes::detect(), (0..).zip(boxes.iter().map(Bounds::enclosing)))
             };

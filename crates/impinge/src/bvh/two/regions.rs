@@ -3,8 +3,8 @@
 //!
 //! ```text
 //!    own frame            the other tree's frame
-//!   +--------+               /\_               along the axes of both frames ([`TurnedBox::bounds`], `slabs`)
-//!   |  box   |  -- Turn -->  \  \_   gap  [ ]  across the slab of what is in the box
+//!   +--------+               /\_               along the axes of both frames ([`RotatedBox::bounds`], `slabs`)
+//!   |  box   |  -- pose -->  \  \_   gap  [ ]  across the slab of what is in the box
 //!   +--------+                \__/ ------>[ ]  along the line to the centre of each box ([`Extent`])
 //! ```
 //!
@@ -24,7 +24,7 @@ const HALF: usize = LANES / 2;
 
 /// The pose of one tree in the frame of the other.
 #[derive(Clone, Copy)]
-pub(super) struct Turn<const D: usize> {
+pub(super) struct TreePose<const D: usize> {
     /// Columns of the rotation.
     axes: [[f32; D]; D],
     pub(super) shift: [f32; D],
@@ -32,7 +32,7 @@ pub(super) struct Turn<const D: usize> {
 
 /// A convex region in the frame of the blocks it is compared with: a box and slabs, all widened by
 /// the reach and the rounding error.
-pub(super) struct TurnedBox<const D: usize> {
+pub(super) struct RotatedBox<const D: usize> {
     bounds: Bounds<D>,
     /// Along the axes of the own frame, and across a slab.
     slabs: SmallVec<[BlockSlab<D>; 4]>,
@@ -41,12 +41,12 @@ pub(super) struct TurnedBox<const D: usize> {
 }
 
 /// The extent of a region along any direction: the hull of some points plus the segments from `-w`
-/// to `w` for each `w` of `wider`, widened by `room`.
+/// to `w` for each `w` of `wider`, widened by `margin`.
 struct Extent<const D: usize> {
     middle: [f32; D],
     points: SmallVec<[[f32; D]; 3]>,
     wider: SmallVec<[[f32; D]; 3]>,
-    room: f32,
+    margin: f32,
 }
 
 /// The boxes of a block that a region may touch, as a bit mask.
@@ -57,7 +57,7 @@ pub(super) struct Held {
     pub(super) gaps: [f32; LANES],
 }
 
-impl<const D: usize> Turn<D> {
+impl<const D: usize> TreePose<D> {
     /// Rounds a pose to `f32`.
     pub(super) fn of<N: Real>(pose: &Pose<N, D>) -> Self {
         let axes = filled(|axis| filled(|row| pose.rotation[(row, axis)].as_f32()));
@@ -70,30 +70,30 @@ impl<const D: usize> Turn<D> {
     }
 
     /// Transforms a box of one tree, and its slab, into the frame of the other tree, widened by
-    /// `room`.
-    pub(super) fn turned(
+    /// `margin`.
+    pub(super) fn region_of(
         &self,
         bounds: &Bounds<D>,
         slab: Option<&BlockSlab<D>>,
-        room: f32,
+        margin: f32,
         is_for_nearest: bool,
-    ) -> TurnedBox<D> {
+    ) -> RotatedBox<D> {
         let half: [f32; D] = filled(|axis| bounds.hi[axis] * 0.5 - bounds.lo[axis] * 0.5);
-        let turned: [f32; D] = self.vector(&bounds.center());
-        let center: [f32; D] = filled(|row| turned[row] + self.shift[row]);
+        let rotated: [f32; D] = self.vector(&bounds.center());
+        let center: [f32; D] = filled(|row| rotated[row] + self.shift[row]);
         let extents: [f32; D] = filled(|row| {
-            room + (0..D).map(|axis| self.axes[axis][row].abs() * half[axis]).sum::<f32>()
+            margin + (0..D).map(|axis| self.axes[axis][row].abs() * half[axis]).sum::<f32>()
         });
         let mut slabs = SmallVec::new();
         for (across, half) in self.axes.iter().zip(half) {
             let height = dot(across, &center);
-            let (low, high) = (height - half - room, height + half + room);
+            let (low, high) = (height - half - margin, height + half + margin);
             slabs.push(BlockSlab { across: *across, low, high });
         }
         if let Some(slab) = slab {
             let across = self.vector(&slab.across);
             let height = dot(&across, &self.shift);
-            let (low, high) = (height + slab.low - room, height + slab.high + room);
+            let (low, high) = (height + slab.low - margin, height + slab.high + margin);
             slabs.push(BlockSlab { across, low, high });
         }
         let bounds = Bounds {
@@ -105,9 +105,9 @@ impl<const D: usize> Turn<D> {
             middle: center,
             points: SmallVec::from_slice(&[center]),
             wider: wider.collect(),
-            room,
+            margin,
         });
-        TurnedBox { bounds, slabs, extent }
+        RotatedBox { bounds, slabs, extent }
     }
 }
 
@@ -115,19 +115,19 @@ fn dot<const D: usize>(a: &[f32; D], b: &[f32; D]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-impl<const D: usize> TurnedBox<D> {
+impl<const D: usize> RotatedBox<D> {
     /// Takes a box around an object and, if given, its corners, in the frame of the blocks; all
-    /// widened by `room`.
+    /// widened by `margin`.
     pub(super) fn of_object<N: Real>(
         bounds: &Bounds<D>,
         corners: Option<[Vector<N, D>; 3]>,
-        room: f32,
+        margin: f32,
     ) -> Self {
         let bounds = Bounds {
-            lo: filled(|axis| bounds.lo[axis] - room),
-            hi: filled(|axis| bounds.hi[axis] + room),
+            lo: filled(|axis| bounds.lo[axis] - margin),
+            hi: filled(|axis| bounds.hi[axis] + margin),
         };
-        let extent = corners.map(|corners| Extent::of_corners(&corners, room));
+        let extent = corners.map(|corners| Extent::of_corners(&corners, margin));
         Self { bounds, slabs: SmallVec::new(), extent }
     }
 
@@ -180,27 +180,27 @@ impl<const D: usize> TurnedBox<D> {
 
 impl<const D: usize> Extent<D> {
     /// The hull of the corners of a part.
-    fn of_corners<N: Real>(corners: &[Vector<N, D>; 3], room: f32) -> Self {
+    fn of_corners<N: Real>(corners: &[Vector<N, D>; 3], margin: f32) -> Self {
         let points: [[f32; D]; 3] = filled(|at: usize| filled(|axis| corners[at][axis].as_f32()));
         let middle = filled(|axis| points.iter().map(|corner| corner[axis] / 3.0).sum());
-        Self { middle, points: SmallVec::from_slice(&points), wider: SmallVec::new(), room }
+        Self { middle, points: SmallVec::from_slice(&points), wider: SmallVec::new(), margin }
     }
 
     /// The gaps to eight boxes of a block along the line from `middle` to the centre of each.
     #[inline(always)]
     fn gaps<S: Simd>(&self, simd: S, [lo, hi]: &[[S::F32x8; D]; 2]) -> S::F32x8 {
         let (half, zero) = (S::F32x8::all(simd, 0.5), S::F32x8::all(simd, 0.0));
-        let (mut way, mut squared, mut low) = ([zero; D], zero, zero);
+        let (mut offset, mut squared, mut low) = ([zero; D], zero, zero);
         for axis in 0..D {
             let middle = (lo[axis] + hi[axis]) * half;
-            way[axis] = middle - S::F32x8::all(simd, self.middle[axis]);
-            squared = way[axis] * way[axis] + squared;
-            low = low + way[axis] * middle - way[axis].abs() * ((hi[axis] - lo[axis]) * half);
+            offset[axis] = middle - S::F32x8::all(simd, self.middle[axis]);
+            squared = offset[axis] * offset[axis] + squared;
+            low = low + offset[axis] * middle - offset[axis].abs() * ((hi[axis] - lo[axis]) * half);
         }
         let along = |vector: &[f32; D]| {
             let mut height = zero;
             for axis in 0..D {
-                height = way[axis] * S::F32x8::all(simd, vector[axis]) + height;
+                height = offset[axis] * S::F32x8::all(simd, vector[axis]) + height;
             }
             height
         };
@@ -211,6 +211,6 @@ impl<const D: usize> Extent<D> {
         for wider in &self.wider {
             high += along(wider).abs();
         }
-        (low - high) / squared.sqrt() - S::F32x8::all(simd, self.room)
+        (low - high) / squared.sqrt() - S::F32x8::all(simd, self.margin)
     }
 }

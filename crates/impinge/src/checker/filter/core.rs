@@ -1,6 +1,6 @@
 //! Distances of points from an obstacle, eight points at a time.
 
-use crate::math::lanes::{dot, lit, minus, norm, seen_from, times};
+use crate::math::lanes::{dot, lit, minus, norm, rotated_into, times};
 use crate::math::simd::Simd;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, Wide, filled};
 use crate::shape::{Kind, Shape};
@@ -11,7 +11,7 @@ pub(super) enum Core<const D: usize> {
     Point([f32; D]),
     Segment {
         start: [f32; D],
-        way: [f32; D],
+        axis: [f32; D],
         /// One over its squared length; zero without length.
         inverse_squared: f32,
     },
@@ -101,10 +101,10 @@ fn cuboid_at<N: Real, const D: usize>(
 /// A segment in the outer frame.
 fn between<N: Real, const D: usize>(pose: &Pose<N, D>, ends: [&Point<N, D>; 2]) -> Core<D> {
     let [start, end] = ends.mapped(|end| pose.point(end).coords);
-    let way = (end - start).map(N::as_f32);
-    let squared = way.norm_squared();
+    let axis = (end - start).map(N::as_f32);
+    let squared = axis.norm_squared();
     let inverse_squared = if squared > f32::MIN_POSITIVE { 1.0 / squared } else { 0.0 };
-    Core::Segment { start: numbers(&start), way: way.into(), inverse_squared }
+    Core::Segment { start: numbers(&start), axis: axis.into(), inverse_squared }
 }
 
 pub(super) fn numbers<N: Real, const D: usize>(vector: &Vector<N, D>) -> [f32; D] {
@@ -126,12 +126,12 @@ impl<const D: usize> Core<D> {
                 let away = minus(points, &all(simd, center));
                 dot(&away, &away)
             }
-            Self::Segment { start, way, inverse_squared } => {
-                let (away, way): ([V; D], [V; D]) =
-                    (minus(points, &all(simd, start)), all(simd, way));
-                let along = dot(&away, &way) * V::all(simd, *inverse_squared);
+            Self::Segment { start, axis, inverse_squared } => {
+                let (away, axis): ([V; D], [V; D]) =
+                    (minus(points, &all(simd, start)), all(simd, axis));
+                let along = dot(&away, &axis) * V::all(simd, *inverse_squared);
                 let along = along.larger(zero).smaller(lit(simd, 1.0));
-                let away = minus(&away, &times(&way, along));
+                let away = minus(&away, &times(&axis, along));
                 dot(&away, &away)
             }
             Self::Cuboid { axes, center, half } => {
@@ -179,5 +179,5 @@ fn local<S: Simd, V: Wide<S, Scalar = f32>, const D: usize>(
         #[inline(always)]
         |axis| all(simd, &axes[axis]),
     );
-    seen_from(&axes, &minus(points, &all(simd, center)))
+    rotated_into(&axes, &minus(points, &all(simd, center)))
 }

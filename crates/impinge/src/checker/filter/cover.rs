@@ -58,22 +58,27 @@ fn small(count: usize) -> f64 {
 /// M. Bădoiu and K. L. Clarkson, "Smaller core-sets for balls" (2003): each step goes towards the
 /// farthest.
 pub(super) fn around<N: Real, const D: usize>(balls: &[CoverBall<N, D>]) -> CoverBall<N, D> {
-    let reach =
+    let radius_around =
         |center: &Vector<N, D>, ball: &CoverBall<N, D>| (ball.center - center).norm() + ball.radius;
-    let radius =
-        |center: &Vector<N, D>| balls.iter().fold(N::ZERO, |r, ball| max(reach(center, ball), r));
+    let radius = |center: &Vector<N, D>| {
+        balls.iter().fold(N::ZERO, |r, ball| max(radius_around(center, ball), r))
+    };
     let points: Vec<_> = balls.iter().map(|ball| Point::from(ball.center)).collect();
     let mut center = crate::math::centroid(&points).coords;
     let mut best = CoverBall { center, radius: radius(&center) };
     for step in 1..STEPS {
         let farthest = balls.iter().fold(&balls[0], |best, ball| {
-            if reach(&center, ball) > reach(&center, best) { ball } else { best }
+            if radius_around(&center, ball) > radius_around(&center, best) { ball } else { best }
         });
         let away = farthest.center - center;
         let length = away.norm();
         // Towards the farthest point of that ball.
-        let way = if length > N::ZERO { away * (reach(&center, farthest) / length) } else { away };
-        center += way / N::lit(small(step + 1));
+        let shift = if length > N::ZERO {
+            away * (radius_around(&center, farthest) / length)
+        } else {
+            away
+        };
+        center += shift / N::lit(small(step + 1));
         let found = radius(&center);
         if found < best.radius {
             best = CoverBall { center, radius: found };

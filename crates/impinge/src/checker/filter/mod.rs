@@ -26,7 +26,7 @@ mod search;
 pub(super) use self::obstacles::Surroundings;
 pub(super) use self::robot::RobotFilter;
 pub(super) use self::scan::{ScanScratch, scan_at};
-pub(super) use self::search::{CollisionSearch, NearPair, Other, SearchMode};
+pub(super) use self::search::{CandidatePair, CollisionSearch, Other, SearchMode};
 
 use crate::math::Real;
 

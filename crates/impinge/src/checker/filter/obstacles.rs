@@ -1,7 +1,7 @@
 //! The obstacles that the bodies of a robot may touch.
 
 use super::core::RoundedCore;
-use super::robot::{BallGroup, RobotFilter, shift_of, way_to};
+use super::robot::{BallGroup, RobotFilter, path_to, shift_of};
 use super::{MAX_LENGTH, margin};
 use crate::checker::body::Obstacle;
 use crate::checker::frames::FrameTree;
@@ -16,7 +16,7 @@ use crate::shape::{Ball, Shape};
 pub(in crate::checker) struct Surroundings<const D: usize> {
     pub(super) obstacles: Vec<LaneObstacle<D>>,
     /// For each group its obstacles, nearest first.
-    pub(super) within: Vec<Vec<InReach>>,
+    pub(super) within: Vec<Vec<CloseObstacle>>,
     /// Pairs of a body and an obstacle that may touch, ascending.
     ignored: Vec<[u32; 2]>,
 }
@@ -30,7 +30,7 @@ pub(super) struct LaneObstacle<const D: usize> {
 
 /// An obstacle in the reach of a group.
 #[derive(Clone, Debug)]
-pub(super) struct InReach {
+pub(super) struct CloseObstacle {
     /// A lower bound of their distance, if nothing slides.
     pub(super) gap: f32,
     pub(super) obstacle: usize,
@@ -54,21 +54,21 @@ impl<const D: usize> Surroundings<D> {
         let in_lanes = obstacles.iter().map(|obstacle| in_f32(tree, obstacle));
         let mut all = Self { obstacles: in_lanes.collect(), within: Vec::new(), ignored };
         all.within = (0..robot.groups.len())
-            .map(|group| all.in_reach(tree, robot, obstacles, group))
+            .map(|group| all.close_obstacles(tree, robot, obstacles, group))
             .collect();
         all
     }
 
     /// The obstacles of a group, sorted by their distance from all points that it can reach.
-    fn in_reach<N: Space<D>>(
+    fn close_obstacles<N: Space<D>>(
         &self,
         tree: &FrameTree<N, D>,
         robot: &RobotFilter<D>,
         obstacles: &[Obstacle<N, D>],
         group: usize,
-    ) -> Vec<InReach> {
+    ) -> Vec<CloseObstacle> {
         let group = &robot.groups[group];
-        let way = way_to(tree, group.node, (&group.center, group.radius));
+        let path = path_to(tree, group.node, (&group.center, group.radius));
         let mut all = Vec::new();
         for (index, obstacle) in obstacles.iter().enumerate() {
             let number = u32::try_from(index).expect("32 bits can number the obstacles");
@@ -80,13 +80,13 @@ impl<const D: usize> Surroundings<D> {
             let margin = margin + group.margin;
             let radius = group.radius + outline.radius + margin;
             let gap =
-                distance_from(&way.anchor, obstacle).as_f64() - way.length - f64::from(margin);
+                distance_from(&path.anchor, obstacle).as_f64() - path.length - f64::from(margin);
             let gap = N::lit(gap).as_f32_below();
             // NaN, from unbounded obstacles, counts as near everything.
             let gap = if gap.is_nan() { -f32::INFINITY } else { gap };
-            all.push(InReach { gap, obstacle: index, number, wanted, radius });
+            all.push(CloseObstacle { gap, obstacle: index, number, wanted, radius });
         }
-        let key = |within: &InReach| (order_of(within.gap), within.obstacle);
+        let key = |within: &CloseObstacle| (order_of(within.gap), within.obstacle);
         sort_few(&mut all, |one, other| key(one) < key(other));
         all
     }

@@ -62,7 +62,7 @@ struct Covered<N: Real, const D: usize> {
 }
 
 /// The region that a group can reach.
-pub(super) struct Way<N: Real, const D: usize> {
+pub(super) struct NodePath<N: Real, const D: usize> {
     /// The position of the first joint that rotates, or the center if none does, with all slides at
     /// zero.
     pub(super) anchor: Vector<N, D>,
@@ -82,9 +82,9 @@ struct Builder<'a, N: Real, const D: usize> {
     shift: Vector<N, D>,
     filter: RobotFilter<D>,
     /// The reach of each group: all of it is within the length of the anchor.
-    ways: Vec<Way<N, D>>,
+    paths: Vec<NodePath<N, D>>,
     /// The group and the balls, as bits, of each body, in the user's order.
-    places: Vec<(usize, u8)>,
+    memberships: Vec<(usize, u8)>,
 }
 
 impl<const D: usize> RobotFilter<D> {
@@ -94,10 +94,10 @@ impl<const D: usize> RobotFilter<D> {
         bodies: impl Iterator<Item = (&'s dyn Shape<N, D>, OnNode<N, D>)>,
         pairs: &[[u32; 2]],
     ) -> Self {
-        let covered = bodies.enumerate().map(|(number, (shape, place))| {
-            let pose = place.pose.unwrap_or_else(Pose::identity);
+        let covered = bodies.enumerate().map(|(number, (shape, on_node))| {
+            let pose = on_node.pose.unwrap_or_else(Pose::identity);
             let (balls, is_ball) = cover(shape, &pose);
-            Covered { number, node: place.node, balls, is_ball }
+            Covered { number, node: on_node.node, balls, is_ball }
         });
         let covered: Vec<_> = covered.collect();
         let mut builder = Builder::new(tree, covered.len());
@@ -123,11 +123,11 @@ pub(super) fn shift_of<N: Real, const D: usize>(tree: &FrameTree<N, D>) -> Vecto
 }
 
 /// The chain of joints to a ball on a node; the center is relative to [`shift_of`] on the world.
-pub(super) fn way_to<N: Real, const D: usize>(
+pub(super) fn path_to<N: Real, const D: usize>(
     tree: &FrameTree<N, D>,
     node: usize,
     (center, radius): (&[f32; D], f32),
-) -> Way<N, D> {
+) -> NodePath<N, D> {
     let mut center = Vector::<N, D>::from_fn(|axis, _| N::lit(f64::from(center[axis])));
     if node == 0 {
         center += shift_of(tree);
@@ -148,16 +148,16 @@ pub(super) fn way_to<N: Real, const D: usize>(
         pose.rotation *= rotation.unwrap_or_else(Matrix::<N, D>::identity);
         rotation.is_some()
     });
-    let is_turned = turning.next().is_some();
+    let is_rotated = turning.next().is_some();
     let beyond: f64 = turning.map(|node| node.origin.norm().as_f64()).sum();
     let center_at_zero = pose.point(&Point::from(center)).coords;
-    let (anchor, length) = if is_turned {
+    let (anchor, length) = if is_rotated {
         (pose.translation, own + beyond)
     } else {
         (center_at_zero, f64::from(radius))
     };
     let first = chain.last().map_or(center, |node| node.origin);
-    Way { anchor, length, first, from_first, joints: chain.len() }
+    NodePath { anchor, length, first, from_first, joints: chain.len() }
 }
 
 impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
@@ -169,7 +169,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
             crossings: Vec::new(),
             slide_margin: margin::<N>(tree.nodes.len(), 1.0, 1.0),
         };
-        Self { tree, shift, filter, ways: Vec::new(), places: vec![(0, 0); bodies] }
+        Self { tree, shift, filter, paths: Vec::new(), memberships: vec![(0, 0); bodies] }
     }
 
     /// Groups the bodies of one node: one group, or those of the two halves along the longest axis.
@@ -204,22 +204,22 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
                 all.push(ball);
             }
             let bits = (from..group.count).fold(0, |bits, ball| bits | 1 << ball);
-            self.places[body.number] = (self.filter.groups.len(), bits);
+            self.memberships[body.number] = (self.filter.groups.len(), bits);
         }
         (group.center, group.radius) = in_f32(&around(&all));
-        let way = way_to(self.tree, node, (&group.center, group.radius));
-        let near = way.from_first + (way.first - self.shift).norm().as_f64();
+        let path = path_to(self.tree, node, (&group.center, group.radius));
+        let near = path.from_first + (path.first - self.shift).norm().as_f64();
         let far = near + self.shift.norm().as_f64();
-        group.margin = margin::<N>(way.joints, near, far);
+        group.margin = margin::<N>(path.joints, near, far);
         self.filter.groups.push(group);
-        self.ways.push(way);
+        self.paths.push(path);
     }
 
     /// Collects the pairs of bodies by their groups.
     fn cross(&mut self, pairs: &[[u32; 2]]) {
         let mut by_groups = BTreeMap::<[usize; 2], [u8; LANES]>::new();
         for pair in pairs {
-            let [one, other] = pair.mapped(|body| self.places[body as usize]);
+            let [one, other] = pair.mapped(|body| self.memberships[body as usize]);
             let ((group1, balls1), (group2, balls2)) = (one.min(other), one.max(other));
             let wanted = by_groups.entry([group1, group2]).or_default();
             for (ball, others) in wanted.iter_mut().enumerate() {
@@ -242,7 +242,7 @@ impl<'a, N: Space<D>, const D: usize> Builder<'a, N, D> {
 
     /// A lower bound of the distance between the regions that two groups can reach.
     fn gap_between(&self, groups: [usize; 2]) -> f32 {
-        let [one, other] = groups.mapped(|group| &self.ways[group]);
+        let [one, other] = groups.mapped(|group| &self.paths[group]);
         let apart = (one.anchor - other.anchor).norm().as_f64();
         N::lit(apart - one.length - other.length).as_f32_below()
     }
@@ -253,8 +253,8 @@ fn gap_on_node<const D: usize>([one, other]: [&BallGroup<D>; 2], wanted: &[u8; L
     let mut least = f32::INFINITY;
     for (ball1, others) in wanted.iter().enumerate() {
         for ball2 in (0..LANES).filter(|ball| others >> ball & 1 == 1) {
-            let way = one.center_of(ball1) - other.center_of(ball2);
-            least = least.min(way.norm() - one.radii[ball1] - other.radii[ball2]);
+            let offset = one.center_of(ball1) - other.center_of(ball2);
+            least = least.min(offset.norm() - one.radii[ball1] - other.radii[ball2]);
         }
     }
     least
@@ -301,8 +301,8 @@ impl<const D: usize> BallGroup<D> {
 /// The axis along which the centers are spread farthest.
 fn longest_axis<N: Real, const D: usize>(bodies: &[&Covered<N, D>]) -> usize {
     let spread = |axis: usize| {
-        let places = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
-        let (low, high) = places
+        let coordinates = bodies.iter().map(|body| body.balls[0].center[axis].as_f64());
+        let (low, high) = coordinates
             .fold((f64::INFINITY, -f64::INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         high - low
     };

@@ -6,7 +6,7 @@
 //! ```
 
 use super::MAX_LENGTH;
-use super::obstacles::{InReach, LaneObstacle, Surroundings};
+use super::obstacles::{CloseObstacle, LaneObstacle, Surroundings};
 use super::robot::{BallGroup, GroupPair, RobotFilter};
 use super::search::{CollisionSearch, Distances, Other};
 use crate::checker::chain::{LANES, LaneRow, PoseRows, forward, store};
@@ -106,15 +106,15 @@ impl<const D: usize> Scan<'_, D> {
         (index, lane): (usize, usize),
         scratch: &mut ScanScratch<D>,
     ) -> [V; D] {
-        let place = &mut scratch.balls[index][lane];
+        let cached = &mut scratch.balls[index][lane];
         if scratch.placed[index] >> lane & 1 == 1 {
-            return load(simd, place);
+            return load(simd, cached);
         }
         scratch.placed[index] |= 1 << lane;
         let group = &self.robot.groups[index];
         let local: [V; D] = load(simd, &group.centers);
         let centers = scratch.rows[group.node].points_in(simd, lane, &local);
-        store(&centers, place);
+        store(&centers, cached);
         centers
     }
 
@@ -135,10 +135,10 @@ impl<const D: usize> Scan<'_, D> {
                 }
                 let outline = &self.around.obstacles[within.obstacle].outline;
                 let squared = outline.core.squared(simd, &center);
-                let mut near = search.near_lanes(simd, squared, within.radius);
-                while near != 0 {
-                    let lane = near.trailing_zeros() as usize;
-                    near &= near - 1;
+                let mut lanes = search.candidate_lanes(simd, squared, within.radius);
+                while lanes != 0 {
+                    let lane = lanes.trailing_zeros() as usize;
+                    lanes &= lanes - 1;
                     let balls: [V; D] = self.balls(simd, (index, lane), scratch);
                     self.meet_obstacle::<S, V>(simd, lane, (group, &balls, within), search);
                 }
@@ -152,7 +152,7 @@ impl<const D: usize> Scan<'_, D> {
         self,
         simd: S,
         lane: usize,
-        (group, balls, within): (&BallGroup<D>, &[V; D], &InReach),
+        (group, balls, within): (&BallGroup<D>, &[V; D], &CloseObstacle),
         search: &mut CollisionSearch,
     ) {
         let LaneObstacle { outline, margin } = &self.around.obstacles[within.obstacle];
@@ -163,7 +163,7 @@ impl<const D: usize> Scan<'_, D> {
             wanted: within.wanted,
             exact: if outline.is_exact { group.exact } else { 0 },
         };
-        search.settle(
+        search.record(
             simd,
             lane,
             &distances,
@@ -190,10 +190,10 @@ impl<const D: usize> Scan<'_, D> {
             let [first, second] = crossing.groups;
             let center: [V; D] = load(simd, &scratch.centers[first]);
             let squared = squared_between(&center, &load(simd, &scratch.centers[second]));
-            let mut near = search.near_lanes(simd, squared, crossing.radius);
-            while near != 0 {
-                let lane = near.trailing_zeros() as usize;
-                near &= near - 1;
+            let mut lanes = search.candidate_lanes(simd, squared, crossing.radius);
+            while lanes != 0 {
+                let lane = lanes.trailing_zeros() as usize;
+                lanes &= lanes - 1;
                 self.cross::<S, V>(simd, (crossing, lane), scratch, search);
             }
         }
@@ -214,16 +214,17 @@ impl<const D: usize> Scan<'_, D> {
         let there: [V; D] = spread_lane(simd, &scratch.centers[second], lane);
         let margin = one.margin + other.margin;
         let radii = (V::load(simd, &one.radii), other.radius + margin);
-        let mut near =
-            search.near_balls(simd, lane, squared_between(&there, &balls), radii) & one.present();
-        if near == 0 {
+        let mut balls_left =
+            search.candidate_balls(simd, lane, squared_between(&there, &balls), radii)
+                & one.present();
+        if balls_left == 0 {
             return;
         }
         let balls: [V; D] = self.balls(simd, (second, lane), scratch);
         let radii = V::load(simd, &other.radii);
-        while near != 0 && search.is_live(lane) {
-            let ball = near.trailing_zeros() as usize;
-            near &= near - 1;
+        while balls_left != 0 && search.is_live(lane) {
+            let ball = balls_left.trailing_zeros() as usize;
+            balls_left &= balls_left - 1;
             let centers = &scratch.balls[first][lane];
             let center: [V; D] = spread_lane(simd, centers, ball);
             let distances = Distances {
@@ -234,7 +235,7 @@ impl<const D: usize> Scan<'_, D> {
                 exact: if one.exact >> ball & 1 == 1 { other.exact } else { 0 },
             };
             let body = one.bodies[ball];
-            search.settle(
+            search.record(
                 simd,
                 lane,
                 &distances,
@@ -250,8 +251,8 @@ impl<const D: usize> Scan<'_, D> {
 
 #[inline(always)]
 fn squared_between<S: Simd, V: Wide<S>, const D: usize>(one: &[V; D], other: &[V; D]) -> V {
-    let way = minus(other, one);
-    dot(&way, &way)
+    let offset = minus(other, one);
+    dot(&offset, &offset)
 }
 
 #[inline(always)]

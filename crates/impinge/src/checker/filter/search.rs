@@ -19,7 +19,7 @@ pub(in crate::checker) enum SearchMode {
 
 /// A pair that is not certainly farther apart than the limit in a configuration.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::checker) struct NearPair {
+pub(in crate::checker) struct CandidatePair {
     pub(in crate::checker) lane: usize,
     pub(in crate::checker) pair: (u32, Other),
     /// Whether it certainly is within the limit.
@@ -28,7 +28,7 @@ pub(in crate::checker) struct NearPair {
     pub(in crate::checker) lower: f32,
 }
 
-impl NearPair {
+impl CandidatePair {
     /// The sort key: by lane, then by pair.
     #[inline]
     fn key(&self) -> u128 {
@@ -75,7 +75,7 @@ pub(in crate::checker) struct CollisionSearch {
     pub(super) farthest: f32,
     pub(super) slide: f32,
     /// Sorted by lane and pair after [`Self::tidy`].
-    pub(in crate::checker) near: Vec<NearPair>,
+    pub(in crate::checker) candidates: Vec<CandidatePair>,
 }
 
 /// The distances of up to eight balls of a group from one ball or obstacle.
@@ -104,7 +104,7 @@ impl CollisionSearch {
             slack: zero,
             farthest: 0.0,
             slide: 0.0,
-            near: Vec::new(),
+            candidates: Vec::new(),
         }
     }
 
@@ -126,7 +126,7 @@ impl CollisionSearch {
             self.inner[lane] = limit - rounding - self.slack[lane];
             self.slide = max(slide, self.slide);
         }
-        self.near.clear();
+        self.candidates.clear();
     }
 
     /// Excludes lanes whose numbers are too large, together with their limits.
@@ -155,33 +155,33 @@ impl CollisionSearch {
     /// The live lanes in which two balls or cores with these radii and distances are not certainly
     /// farther apart than the limit, as for NaN.
     #[inline(always)]
-    pub(super) fn near_lanes<S: Simd, V: Wide<S, Scalar = f32>>(
+    pub(super) fn candidate_lanes<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
         simd: S,
         squared: V,
         radius: f32,
     ) -> u8 {
-        let reach = V::all(simd, radius) + V::load(simd, &self.outer);
-        !bits(squared.simd_gt(reach * reach)) & self.live
+        let max_distance = V::all(simd, radius) + V::load(simd, &self.outer);
+        !bits(squared.simd_gt(max_distance * max_distance)) & self.live
     }
 
     /// The balls that are near a ball of this radius in a configuration; the radius includes the
     /// margin.
     #[inline(always)]
-    pub(super) fn near_balls<S: Simd, V: Wide<S, Scalar = f32>>(
+    pub(super) fn candidate_balls<S: Simd, V: Wide<S, Scalar = f32>>(
         &self,
         simd: S,
         lane: usize,
         squared: V,
         (radii, radius): (V, f32),
     ) -> u8 {
-        let reach = radii + V::all(simd, radius + self.outer[lane]);
-        !bits(squared.simd_gt(reach * reach))
+        let max_distance = radii + V::all(simd, radius + self.outer[lane]);
+        !bits(squared.simd_gt(max_distance * max_distance))
     }
 
     /// Records the balls that are near in a configuration; `pair_of` returns the pair of a ball.
     #[inline(always)]
-    pub(super) fn settle<S: Simd, V: Wide<S, Scalar = f32>>(
+    pub(super) fn record<S: Simd, V: Wide<S, Scalar = f32>>(
         &mut self,
         simd: S,
         lane: usize,
@@ -189,29 +189,29 @@ impl CollisionSearch {
         pair_of: impl Fn(usize) -> (u32, Other),
     ) {
         let radii = (distances.radius, distances.margin);
-        let near = self.near_balls(simd, lane, distances.squared, radii) & distances.wanted;
-        if near == 0 {
+        let mask = self.candidate_balls(simd, lane, distances.squared, radii) & distances.wanted;
+        if mask == 0 {
             return;
         }
         let inner = distances.radius + V::all(simd, self.inner[lane] - distances.margin);
         let is_within = distances.squared.simd_lt(inner * inner) & inner.simd_gt(V::all(simd, 0.0));
-        let certain = bits(is_within) & near & distances.exact;
+        let certain = bits(is_within) & mask & distances.exact;
         if certain != 0 && self.mode == SearchMode::Any {
             self.hits |= 1 << lane;
             self.live &= !(1 << lane);
             return;
         }
-        let lower = self.bounds(simd, lane, distances, near);
-        let mut balls = near;
+        let lower = self.bounds(simd, lane, distances, mask);
+        let mut balls = mask;
         while balls != 0 {
             let ball = balls.trailing_zeros() as usize;
             balls &= balls - 1;
             let (is_certain, lower) = (certain >> ball & 1 == 1, lower[ball]);
-            let found = NearPair { lane, pair: pair_of(ball), is_certain, lower };
+            let found = CandidatePair { lane, pair: pair_of(ball), is_certain, lower };
             // Balls of one body mostly follow each other.
-            match self.near.last_mut() {
+            match self.candidates.last_mut() {
                 Some(last) if last.key() == found.key() => last.merge(&found),
-                _ => self.near.push(found),
+                _ => self.candidates.push(found),
             }
         }
     }
@@ -224,7 +224,7 @@ impl CollisionSearch {
         simd: S,
         lane: usize,
         distances: &Distances<V>,
-        near: u8,
+        mask: u8,
     ) -> LaneRow<f32> {
         let mut bounds = [0.0; LANES];
         if self.mode != SearchMode::Nearest {
@@ -234,7 +234,7 @@ impl CollisionSearch {
         let lower =
             distances.squared.sqrt() - distances.radius - V::all(simd, distances.margin + slack);
         lower.store(&mut bounds);
-        let exact = (0..LANES).filter(|ball| (near & distances.exact) >> ball & 1 == 1);
+        let exact = (0..LANES).filter(|ball| (mask & distances.exact) >> ball & 1 == 1);
         let upper = exact.fold(f32::INFINITY, |upper, ball| min(bounds[ball], upper));
         // Twice the margin above the lower bound, and once for slides; no distance is negative.
         let upper = max(upper + 2.0 * (distances.margin + slack), 0.0) + slack;
@@ -247,10 +247,10 @@ impl CollisionSearch {
     pub(in crate::checker) fn tidy(&mut self) {
         if self.mode == SearchMode::Nearest {
             let outer = self.outer;
-            self.near.retain(|near| near.lower <= outer[near.lane]);
+            self.candidates.retain(|candidate| candidate.lower <= outer[candidate.lane]);
         }
-        sort_few(&mut self.near, |one, other| one.key() < other.key());
-        self.near.dedup_by(|later, kept| {
+        sort_few(&mut self.candidates, |one, other| one.key() < other.key());
+        self.candidates.dedup_by(|later, kept| {
             let is_same = later.key() == kept.key();
             if is_same {
                 kept.merge(later);

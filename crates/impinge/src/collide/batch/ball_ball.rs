@@ -33,12 +33,12 @@ impl<N: Real, const D: usize> Form<N, D> for BallBall {
         inputs: &Inputs<N, D, L>,
         found: &mut LaneContacts<N, D, L>,
     ) {
-        let (normal, apart, is_usual) = unit(simd, &inputs.away::<S, V>(simd));
+        let (normal, apart, is_in_range) = unit(simd, &inputs.away::<S, V>(simd));
         let (radius1, radius2) = (inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1));
         let distance = apart - radius1 - radius2;
         let point1 = times(&normal, radius1);
         radius1.smaller(radius2).store(&mut found.size);
-        found.put(simd, inputs, (distance, is_usual), [&normal, &point1]);
+        found.put(simd, inputs, (distance, is_in_range), [&normal, &point1]);
     }
 
     #[inline(always)]

@@ -47,18 +47,18 @@ impl<N: Real, const D: usize> Form<N, D> for BallCuboid {
         let normal = negated(&pose12.vector(&outward));
         let point1 = times(&normal, radius);
         let (reach, is_box) = length_of(simd, &half);
-        let noise = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
+        let rounding_error = rounding_of::<S, N, V>(simd, radius + reach + pose12.apart());
         // To the frame of the ball and back, with the rounding that the builder for one pair has.
         let touched = pose12.inverse_point(&pose12.point(&clamped));
         radius.smaller(reach).store(&mut found.size);
-        let is_thick = found.put_part(simd, [&touched, &half], noise);
-        let is_usual = is_outside & is_box & is_thick;
-        found.put(simd, inputs, (away - radius, is_usual), [&normal, &point1]);
+        let is_thick = found.put_part(simd, [&touched, &half], rounding_error);
+        let is_certain = is_outside & is_box & is_thick;
+        found.put(simd, inputs, (away - radius, is_certain), [&normal, &point1]);
     }
 
     #[inline(always)]
     fn features(parts: u8) -> [FeatureId; 2] {
-        [FeatureId::Face(0), Cuboid::<N, D>::part_named(parts)]
+        [FeatureId::Face(0), Cuboid::<N, D>::id_of_bits(parts)]
     }
 }
 
@@ -70,13 +70,13 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         &mut self,
         simd: S,
         [point, half]: [&[V; D]; 2],
-        noise: V,
+        rounding_error: V,
     ) -> V::Mask {
-        let thin = lit::<S, N, V>(simd, 4.0) * noise;
+        let thin = lit::<S, N, V>(simd, 4.0) * rounding_error;
         let mut is_thick = half[0].simd_gt(thin);
-        let mut is_inside = point[0].abs().simd_lt(half[0] - noise);
+        let mut is_inside = point[0].abs().simd_lt(half[0] - rounding_error);
         for axis in 0..D {
-            let is_free = point[axis].abs().simd_lt(half[axis] - noise);
+            let is_free = point[axis].abs().simd_lt(half[axis] - rounding_error);
             is_thick &= half[axis].simd_gt(thin);
             is_inside &= is_free;
             self.parts[axis] = bits(is_free);

@@ -48,19 +48,19 @@ impl<N: Real, const D: usize> Form<N, D> for BallSegment {
         let outward = either(near.is_inside, &sideways, &direct);
         let normal = negated(&pose12.vector(&outward));
         let point1 = times(&normal, radius);
-        let (reach, is_moderate) = farther(simd, &ends);
+        let (reach, is_in_range) = farther(simd, &ends);
         let size = radius + (reach + rounding) + pose12.apart();
         radius.smaller(lit::<S, N, V>(simd, 0.5) * length + rounding).store(&mut found.size);
-        let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
+        let rounding_error = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
         // A segment no longer than the noise has no ends, only its edge.
-        let (slack, is_edge) = (noise * length, length.simd_le(noise));
+        let (slack, is_edge) = (rounding_error * length, length.simd_le(rounding_error));
         let is_first = near.from_first.simd_le(slack) & !is_edge;
         let is_last = near.to_last.simd_le(slack) & !is_edge;
         found.parts[0] = bits(is_first);
         found.parts[1] = bits(is_last & !is_first);
         let is_known = (near.is_inside & is_beside) | (!near.is_inside & is_off);
         let distance = away - rounding - radius;
-        found.put(simd, inputs, (distance, is_known & is_long & is_moderate), [&normal, &point1]);
+        found.put(simd, inputs, (distance, is_known & is_long & is_in_range), [&normal, &point1]);
     }
 
     #[inline(always)]

@@ -9,13 +9,13 @@
 //!     2, 3                          then D signs                  2: likewise
 //!     4 .. 8                                                      second contact: likewise
 //!
-//!   `turned`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
+//!   `per_pair`: row r, bit lane  -->  byte lane, bit r, which `Form::features` decodes
 //! ```
 
 use core::marker::PhantomData;
 
 use super::gather::Inputs;
-use super::masks::turned;
+use super::masks::per_pair;
 use super::vectors::{bits, is_finite};
 use super::{Batch, PairQuestion};
 use crate::collide::manifold::ids::{PairPose, is_same_point};
@@ -73,17 +73,17 @@ impl<F: Form<N, D>, N: Space<D>, const D: usize> Batch<N, D> for ClosedForm<F> {
         F::find::<S, V, L>(simd, inputs, found);
         found.is_found &= inputs.is_usable;
         found.is_apart &= inputs.is_usable;
-        found.parts = turned(found.parts);
+        found.parts = per_pair(found.parts);
     }
 
     #[inline(always)]
-    fn settle<const L: usize>(
+    fn write_manifold<const L: usize>(
         found: &LaneContacts<N, D, L>,
         lane: usize,
         _: usize,
         raw: &mut RawManifold<N, D>,
     ) -> bool {
-        found.settle::<F>(lane & (L - 1), raw)
+        found.write_manifold::<F>(lane & (L - 1), raw)
     }
 }
 
@@ -129,20 +129,20 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
         }
     }
 
-    /// Stores the distances, normals and points on the first solid, and sets the masks. `is_usual`
+    /// Stores the distances, normals and points on the first solid, and sets the masks. `is_certain`
     /// are the lanes where they hold.
     #[inline(always)]
     pub(super) fn put<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
         inputs: &Inputs<N, D, L>,
-        (distance, is_usual): (V, V::Mask),
+        (distance, is_certain): (V, V::Mask),
         [normal, point1]: [&[V; D]; 2],
     ) {
         let prediction = inputs.prediction::<S, V>(simd);
-        let is_usual = is_usual & is_finite(simd, distance);
-        self.is_apart = bits(distance.simd_gt(prediction) & is_usual);
-        self.is_found = bits(distance.simd_le(prediction) & is_usual);
+        let is_certain = is_certain & is_finite(simd, distance);
+        self.is_apart = bits(distance.simd_gt(prediction) & is_certain);
+        self.is_found = bits(distance.simd_le(prediction) & is_certain);
         distance.store(&mut self.gap);
         for axis in 0..D {
             normal[axis].store(&mut self.normal[axis]);
@@ -152,7 +152,7 @@ impl<N: Real, const D: usize, const L: usize> LaneContacts<N, D, L> {
 
     /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
-    fn settle<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
+    fn write_manifold<F: Form<N, D>>(&self, lane: usize, raw: &mut RawManifold<N, D>) -> bool {
         let [is_found, is_apart, is_two] =
             [self.is_found, self.is_apart, self.is_two].mapped(|lanes| lanes >> lane & 1 == 1);
         if is_apart {

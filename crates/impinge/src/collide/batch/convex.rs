@@ -18,7 +18,7 @@ use crate::collide::Pair;
 use crate::collide::separation::segments::nearest::core;
 use crate::collide::separation::segments::segment_segment::of_points;
 use crate::collide::separation::{
-    apart, distance_in_plane, distance_in_space, is_usual, separation_in_plane, separation_in_space,
+    apart, distance_2d, distance_3d, is_square_in_range, separation_2d, separation_3d,
 };
 use crate::convex::Separation;
 use crate::math::lanes::{load, with_vectors};
@@ -50,7 +50,7 @@ pub(crate) fn distances2<N: Real>(
     out: &mut [Option<N>],
 ) {
     for ConvexPair { slot, pair, .. } in pairs {
-        out[*slot] = distance_in_plane(pair, limit);
+        out[*slot] = distance_2d(pair, limit);
     }
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn separations2<N: Real>(
     out: &mut [Option<Separation<N, 2>>],
 ) {
     for ConvexPair { slot, pair, .. } in pairs {
-        out[*slot] = separation_in_plane(pair, limit);
+        out[*slot] = separation_2d(pair, limit);
     }
 }
 
@@ -79,7 +79,7 @@ pub(crate) fn distances3<N: Real>(
         } else {
             [None; LANES]
         };
-        fill(packet, out, found, |pair| distance_in_space(pair, limit));
+        fill(packet, out, found, |pair| distance_3d(pair, limit));
     });
 }
 
@@ -97,7 +97,7 @@ pub(crate) fn separations3<N: Real>(
         } else {
             [None; LANES]
         };
-        fill(packet, out, found, |pair| separation_in_space(pair, limit));
+        fill(packet, out, found, |pair| separation_3d(pair, limit));
     });
 }
 
@@ -192,7 +192,7 @@ impl<N: Real> SegmentPacket<N> {
     ) {
         let ends1: [[V; 3]; 2] = [load(simd, &ends[0][0]), load(simd, &ends[0][1])];
         let ends2: [[V; 3]; 2] = [load(simd, &ends[1][0]), load(simd, &ends[1][1])];
-        let (points, is_moderate) = nearest_of_segments(simd, &ends1, &ends2);
+        let (points, has_scale) = nearest_of_segments(simd, &ends1, &ends2);
         let between = minus(&points[1], &points[0]);
         let squared = dot(&between, &between);
         squared.sqrt().store(&mut self.distances);
@@ -202,7 +202,7 @@ impl<N: Real> SegmentPacket<N> {
             }
         }
         // Squared distances close to underflow or overflow are computed alone.
-        self.is_known = bits(is_moderate & is_usual(simd, squared));
+        self.is_known = bits(has_scale & is_square_in_range(simd, squared));
     }
 
     /// Applies `answer` to each lane with known nearest points.

@@ -8,7 +8,7 @@
 //!   radius         pair i   pair i+1 ...        `is_usable` has no bit of theirs
 //! ```
 
-use super::vectors::{minus, seen_from};
+use super::vectors::{minus, rotated_into};
 use super::{Batch, KeptPairs, PairQuestion};
 use crate::math::lanes::{LanePose, load};
 use crate::math::simd::Simd;
@@ -161,12 +161,12 @@ impl<N: Real, const D: usize, const L: usize> Inputs<N, D, L> {
     #[inline(always)]
     pub(super) fn pose12<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> LanePose<V, D> {
         let axes = load_all::<S, N, V, D, L>(simd, &self.rotations[0]);
-        let turned = load_all::<S, N, V, D, L>(simd, &self.rotations[1]);
+        let rotations = load_all::<S, N, V, D, L>(simd, &self.rotations[1]);
         let rotation = filled(
             #[inline(always)]
-            |column| seen_from(&axes, &turned[column]),
+            |column| rotated_into(&axes, &rotations[column]),
         );
-        LanePose { rotation, translation: seen_from(&axes, &self.away(simd)) }
+        LanePose { rotation, translation: rotated_into(&axes, &self.away(simd)) }
     }
 }
 

@@ -1,12 +1,12 @@
 //! Bits of eight pairs side by side.
 //!
 //! ```text
-//!   row r, bit lane   ---turned--->   byte lane, bit r
+//!   row r, bit lane   --per_pair-->   byte lane, bit r
 //! ```
 
 /// Transposes eight masks, a bit for each pair, into a byte for each pair.
 #[inline(always)]
-pub(super) const fn turned(rows: [u8; 8]) -> [u8; 8] {
+pub(super) const fn per_pair(rows: [u8; 8]) -> [u8; 8] {
     transposed(u64::from_le_bytes(rows)).to_le_bytes()
 }
 

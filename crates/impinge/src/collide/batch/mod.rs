@@ -129,7 +129,7 @@ trait Batch<N: Real, const D: usize> {
 
     /// Replaces the manifold of one pair by at most `max_points` points; returns `false` if the
     /// pair has to fall back.
-    fn settle<const L: usize>(
+    fn write_manifold<const L: usize>(
         found: &Self::Found<L>,
         lane: usize,
         max_points: usize,
@@ -237,7 +237,7 @@ impl<N: Space<D>, const D: usize> Task<N, D> for One<'_, '_, N, D> {
         let (mut inputs, mut found) = (Inputs::<N, D, 1>::new(), B::blank::<1>());
         inputs.put::<B>(0, question);
         LonePair.find::<B, N, D>(&inputs, &mut found);
-        B::settle(&found, 0, question.request.max_points, raw)
+        B::write_manifold(&found, 0, question.request.max_points, raw)
     }
 }
 
@@ -313,7 +313,7 @@ fn update<B: Batch<N, D>, P: KeptPairs<N, D>, N: Space<D>, const D: usize, const
         lanes.find::<B, N, D>(now, &mut found);
         for lane in 0..now.count {
             let index = now.first + lane;
-            if !B::settle(&found, lane, now.max_points[lane & (L - 1)], pairs.raw(index)) {
+            if !B::write_manifold(&found, lane, now.max_points[lane & (L - 1)], pairs.raw(index)) {
                 let (question, raw) = pairs.parts(index);
                 question.fall_back(raw);
             }

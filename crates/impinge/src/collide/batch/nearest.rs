@@ -43,9 +43,9 @@ pub(super) fn farther<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     [first, last]: &[[V; D]; 2],
 ) -> (V, V::Mask) {
-    let ((length1, is_usual1), (length2, is_usual2)) =
+    let ((length1, is_in_range1), (length2, is_in_range2)) =
         (length_of(simd, first), length_of(simd, last));
-    (length1.larger(length2), is_usual1 & is_usual2)
+    (length1.larger(length2), is_in_range1 & is_in_range2)
 }
 
 /// Returns half the distance between two points.

@@ -1,5 +1,5 @@
 //! Segments and capsules in 2D: the overlap interval of their cores along the tangent, as
-//! `stretch.rs` computes it for all flat-sided solids, in lanes.
+//! `interval.rs` computes it for all flat-sided solids, in lanes.
 //!
 //! ```text
 //!      normal
@@ -49,7 +49,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
         let radii = [inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1)];
         let apart = SegmentGap::of(simd, [&ends1, &ends2]);
-        let ((reach1, is_usual1), (reach2, is_usual2)) =
+        let ((reach1, is_in_range1), (reach2, is_in_range2)) =
             (farther(simd, &ends1), farther(simd, &local2));
         let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
@@ -72,7 +72,7 @@ impl<N: Real> Form<N, 2> for Segments2 {
         contacts.store(found);
         line.tolerance.store(&mut found.tolerance);
         let is_apart = apart.is_known & line.distance.simd_gt(line.prediction);
-        let is_fit = apart.is_known & is_usual1 & is_usual2 & contacts.is_known;
+        let is_fit = apart.is_known & is_in_range1 & is_in_range2 & contacts.is_known;
         found.put(
             simd,
             inputs,
@@ -127,9 +127,9 @@ impl<V> ContactLine<V> {
         let distance = distance.larger(self.distance);
         let is_near = distance.simd_le(self.prediction);
         let is_at = distance.simd_le(self.prediction + self.tolerance);
-        let is_turned = distance.simd_le(self.prediction + self.sine * flat.abs());
+        let is_by_rotation = distance.simd_le(self.prediction + self.sine * flat.abs());
         let beyond = is_at.select(self.prediction, distance);
-        (is_near.select(distance, beyond), is_near | is_at | is_turned)
+        (is_near.select(distance, beyond), is_near | is_at | is_by_rotation)
     }
 }
 
@@ -139,9 +139,9 @@ struct LaneSide<V, M> {
     is_first: bool,
     /// Ends in the order of their coordinates along the tangent, and these coordinates.
     ends: [PlaneLanes<V>; 2],
-    places: [V; 2],
+    coordinates: [V; 2],
     /// Lanes where that order is the opposite of the segment's.
-    is_turned: M,
+    is_reversed: M,
     /// Radius around the segment.
     radius: V,
     /// Cosine of the angle between the segment and the tangent.
@@ -172,9 +172,9 @@ impl<V, M> LaneSide<V, M> {
     {
         let [first, last] = ends;
         let flats = [line.flat(first), line.flat(last)];
-        let is_turned = flats[1].simd_lt(flats[0]);
-        let places = [flats[0].smaller(flats[1]), flats[0].larger(flats[1])];
-        let length = places[1] - places[0];
+        let is_reversed = flats[1].simd_lt(flats[0]);
+        let coordinates = [flats[0].smaller(flats[1]), flats[0].larger(flats[1])];
+        let length = coordinates[1] - coordinates[0];
         let cosine = length / norm(&minus(last, first));
         let is_point = cosine.simd_lt(lit::<S, N, V>(simd, 0.5));
         let heights = [dot(&line.normal, first), dot(&line.normal, last)];
@@ -185,9 +185,9 @@ impl<V, M> LaneSide<V, M> {
         let is_at = [flats[0].abs().simd_le(near), flats[1].abs().simd_le(near)];
         let mut side = Self {
             is_first,
-            ends: [either(is_turned, last, first), either(is_turned, first, last)],
-            places,
-            is_turned,
+            ends: [either(is_reversed, last, first), either(is_reversed, first, last)],
+            coordinates,
+            is_reversed,
             radius,
             cosine,
             top: (radius, is_last_near.select(flats[1], flats[0])),
@@ -214,11 +214,12 @@ impl<V, M> LaneSide<V, M> {
 
     /// Returns the point of the core at a coordinate along the tangent.
     #[inline(always)]
-    fn under<S: Simd, N: Real>(&self, simd: S, place: V) -> PlaneLanes<V>
+    fn under<S: Simd, N: Real>(&self, simd: S, coordinate: V) -> PlaneLanes<V>
     where
         V: Wide<S, Scalar = N>,
     {
-        let share = (place - self.places[0]) / (self.places[1] - self.places[0]);
+        let share =
+            (coordinate - self.coordinates[0]) / (self.coordinates[1] - self.coordinates[0]);
         let share = share.larger(V::all(simd, N::ZERO)).smaller(V::all(simd, N::ONE));
         plus(&self.ends[0], &times(&minus(&self.ends[1], &self.ends[0]), share))
     }
@@ -230,27 +231,27 @@ impl<V, M> LaneSide<V, M> {
         V: Wide<S, Scalar = N>,
     {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
-        let room = self.below_witness(core, line);
+        let depth = self.below_witness(core, line);
         let away = line.flat(core) - self.top.1;
         let (away_squared, radius) = (away * away, self.radius);
         // Up to this squared distance across the normal, the ball around the nearest end is higher.
         let turns_squared = radius * radius * (one - self.cosine * self.cosine);
-        let round = room - self.top.0 + (radius * radius - away_squared).sqrt();
+        let round = depth - self.top.0 + (radius * radius - away_squared).sqrt();
         let is_round = away_squared.simd_lt(turns_squared);
         let lift = is_round.select(round, radius / self.cosine);
-        let lift = lift.smaller(room).larger(zero);
+        let lift = lift.smaller(depth).larger(zero);
         radius.simd_le(zero).select(zero, lift)
     }
 
     /// Returns the lanes where the end `end`, in tangent order, is the segment's first, and its
     /// last.
     #[inline(always)]
-    fn names<S: Simd>(&self, end: usize) -> [M; 2]
+    fn end_masks<S: Simd>(&self, end: usize) -> [M; 2]
     where
         M: SimdMask<S>,
     {
-        let (turned, straight) = (self.is_turned, !self.is_turned);
-        if end == 0 { [straight, turned] } else { [turned, straight] }
+        let (reversed, straight) = (self.is_reversed, !self.is_reversed);
+        if end == 0 { [straight, reversed] } else { [reversed, straight] }
     }
 }
 
@@ -274,7 +275,7 @@ impl<V, M> LaneContact<V, M> {
         line: &ContactLine<V>,
         sides: &[LaneSide<V, M>; 2],
         end: usize,
-        place: V,
+        coordinate: V,
     ) -> Self
     where
         V: Wide<S, Scalar = N, Mask = M>,
@@ -283,9 +284,9 @@ impl<V, M> LaneContact<V, M> {
         let [first, second] = sides;
         let is_at = [first, second].map(|side| {
             // The segment ends here, up to rounding.
-            (side.places[end] - place).abs().simd_le(line.tolerance)
+            (side.coordinates[end] - coordinate).abs().simd_le(line.tolerance)
         });
-        let cores = [first.under(simd, place), second.under(simd, place)];
+        let cores = [first.under(simd, coordinate), second.under(simd, coordinate)];
         // Both points are moved halfway, so that they lie across from each other along the normal.
         let gap = minus(&cores[1], &cores[0]);
         let across = minus(&gap, &times(&line.normal, dot(&line.normal, &gap)));
@@ -295,12 +296,12 @@ impl<V, M> LaneContact<V, M> {
         let distance = dot(&line.normal, &minus(&cores[1], &cores[0])) - lifts[0] - lifts[1];
         let point1 = plus(&cores[0], &times(&line.normal, lifts[0]));
         let (distance, is_admitted) = line.admit(distance, line.flat(&point1));
-        let (names1, names2) = (first.names(end), second.names(end));
+        let (end_masks1, end_masks2) = (first.end_masks(end), second.end_masks(end));
         let parts = [
-            is_at[0] & names1[0],
-            is_at[0] & names1[1],
-            is_at[1] & names2[0],
-            is_at[1] & names2[1],
+            is_at[0] & end_masks1[0],
+            is_at[0] & end_masks1[1],
+            is_at[1] & end_masks2[0],
+            is_at[1] & end_masks2[1],
         ];
         Self { point1, distance, is_admitted, parts }
     }
@@ -348,8 +349,8 @@ impl<V, M> SegmentContacts<V, M> {
         M: SimdMask<S>,
     {
         let [first, second] = sides;
-        let from = first.places[0].larger(second.places[0]);
-        let to = first.places[1].smaller(second.places[1]);
+        let from = first.coordinates[0].larger(second.coordinates[0]);
+        let to = first.coordinates[1].smaller(second.coordinates[1]);
         // Overlaps and gaps of a few tolerances are decided by rounding: such lanes are not known.
         let few = lit::<S, N, V>(simd, 4.0) * line.tolerance;
         let is_side = !first.is_point & !second.is_point;

@@ -41,29 +41,29 @@ impl<N: Real> Form<N, 3> for Segments3 {
         let local2 = [inputs.end::<S, V>(simd, 1, 0), inputs.end::<S, V>(simd, 1, 1)];
         let ends2 = [pose12.point(&local2[0]), pose12.point(&local2[1])];
         let radii = [inputs.radius::<S, V>(simd, 0), inputs.radius::<S, V>(simd, 1)];
-        let (points, is_moderate) = nearest_of_segments(simd, &ends1, &ends2);
+        let (points, has_scale) = nearest_of_segments(simd, &ends1, &ends2);
         let (normal, distance, is_best) = best_normal(simd, [&ends1, &ends2], &points);
         let rounded = [
             plus(&points[0], &times(&normal, radii[0])),
             minus(&points[1], &times(&normal, radii[1])),
         ];
-        let ((reach1, is_usual1), (reach2, is_usual2)) =
+        let ((reach1, is_in_range1), (reach2, is_in_range2)) =
             (farther(simd, &ends1), farther(simd, &local2));
         let size = (reach1 + radii[0]) + (reach2 + radii[1]) + pose12.apart();
         let sizes = [half_length(simd, &ends1) + radii[0], half_length(simd, &local2) + radii[1]];
         sizes[0].smaller(sizes[1]).store(&mut found.size);
-        let noise = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
+        let rounding_error = lit::<S, N, V>(simd, 2.0) * rounding_of::<S, N, V>(simd, size);
         // From the surface back to the core, with the rounding that the builder for one pair has.
         let core1 = minus(&rounded[0], &times(&normal, radii[0]));
         let core2 = plus(&rounded[1], &times(&normal, radii[1]));
         // Nearly parallel segments may touch in two points: they fall back.
         let is_crossing = is_crossing(simd, [&ends1, &ends2], &normal, inputs.sine(simd));
-        let has_part1 = found.put_end_or_side(0, &core1, &ends1, noise);
-        let has_part2 = found.put_end_or_side(2, &core2, &ends2, noise);
+        let has_part1 = found.put_end_or_side(0, &core1, &ends1, rounding_error);
+        let has_part2 = found.put_end_or_side(2, &core2, &ends2, rounding_error);
         let signed = distance - radii[0] - radii[1];
-        let is_apart = is_moderate & signed.simd_gt(inputs.prediction::<S, V>(simd));
+        let is_apart = has_scale & signed.simd_gt(inputs.prediction::<S, V>(simd));
         let is_found =
-            is_moderate & is_best & is_usual1 & is_usual2 & is_crossing & has_part1 & has_part2;
+            has_scale & is_best & is_in_range1 & is_in_range2 & is_crossing & has_part1 & has_part2;
         found.put(simd, inputs, (signed, is_found | is_apart), [&normal, &rounded[0]]);
     }
 
@@ -128,8 +128,8 @@ pub(super) fn nearest_of_segments<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     for points in [[ends1[1], on2[1]], [on1[0], ends2[0]], [on1[1], ends2[1]]] {
         best = best.or_nearer(&SegmentPoints::new(points), None);
     }
-    let (common, is_common, is_moderate) = common_perpendicular(simd, ends1, ends2);
-    (best.or_nearer(&SegmentPoints::new(common), Some(is_common)).points, is_moderate)
+    let (common, is_common, has_scale) = common_perpendicular(simd, ends1, ends2);
+    (best.or_nearer(&SegmentPoints::new(common), Some(is_common)).points, has_scale)
 }
 
 /// Returns the power of two at or below a number from 2⁻¹⁶ to 2¹⁶; the mask has the lanes in that
@@ -153,9 +153,9 @@ fn power_of_two_below<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 #[inline(always)]
 fn scaled<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, v: &[V; 3]) -> ([V; 3], V, V::Mask) {
     let largest = v[2].abs().larger(v[1].abs().larger(v[0].abs()));
-    let (size, is_moderate) = power_of_two_below(simd, largest);
+    let (size, has_scale) = power_of_two_below(simd, largest);
     let inverse = V::all(simd, N::ONE) / size;
-    (times(v, inverse), inverse, is_moderate)
+    (times(v, inverse), inverse, has_scale)
 }
 
 /// Computes `common_perpendicular`: its ends, the lanes where it meets both segments, and the lanes
@@ -167,8 +167,8 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     ends2: &SegmentEnds<V>,
 ) -> (SegmentEnds<V>, V::Mask, V::Mask) {
     let (along1, along2) = (minus(&ends1[1], &ends1[0]), minus(&ends2[1], &ends2[0]));
-    let (toward1, inverse1, is_moderate1) = scaled(simd, &along1);
-    let (toward2, inverse2, is_moderate2) = scaled(simd, &along2);
+    let (toward1, inverse1, has_scale1) = scaled(simd, &along1);
+    let (toward2, inverse2, has_scale2) = scaled(simd, &along2);
     let across = cross(&toward1, &toward2);
     let squared = dot(&across, &across);
     let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
@@ -183,7 +183,7 @@ fn common_perpendicular<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         between = minus(&points[1], &points[0]);
     }
     let is_inside = s.simd_ge(zero) & s.simd_le(one) & t.simd_ge(zero) & t.simd_le(one);
-    (points, is_inside & squared.simd_gt(least), is_moderate1 & is_moderate2)
+    (points, is_inside & squared.simd_gt(least), has_scale1 & has_scale2)
 }
 
 /// Computes `best_normal` where it is the direction between the points; also their distance.
@@ -197,12 +197,12 @@ fn best_normal<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     for end in [&ends1[0], &ends1[1], &ends2[0], &ends2[1]] {
         reach = norm(end).larger(reach);
     }
-    let noise = lit::<S, N, V>(simd, 8.0) * V::all(simd, N::EPSILON) * reach;
-    let (normal, distance, is_usual) = unit(simd, &minus(&points[1], &points[0]));
+    let rounding_error = lit::<S, N, V>(simd, 8.0) * V::all(simd, N::EPSILON) * reach;
+    let (normal, distance, is_in_range) = unit(simd, &minus(&points[1], &points[0]));
     let high = dot(&normal, &ends1[1]).larger(dot(&normal, &ends1[0]));
     let low = dot(&normal, &ends2[1]).smaller(dot(&normal, &ends2[0]));
-    let is_best = (low - high + noise / lit::<S, N, V>(simd, 4.0)).simd_ge(distance);
-    (normal, distance, is_best & is_usual)
+    let is_best = (low - high + rounding_error / lit::<S, N, V>(simd, 4.0)).simd_ge(distance);
+    (normal, distance, is_best & is_in_range)
 }
 
 /// Returns the lanes whose segments, projected along the normal, are not nearly parallel.
@@ -215,8 +215,8 @@ fn is_crossing<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 ) -> V::Mask {
     let (along1, along2) = (minus(&ends1[1], &ends1[0]), minus(&ends2[1], &ends2[0]));
     let (flat1, flat2) = (flat(&along1, normal), flat(&along2, normal));
-    let noise = lit::<S, N, V>(simd, 16.0) * V::all(simd, N::EPSILON);
-    let least = lit::<S, N, V>(simd, 2.0) * sine.larger(noise);
+    let rounding_error = lit::<S, N, V>(simd, 16.0) * V::all(simd, N::EPSILON);
+    let least = lit::<S, N, V>(simd, 2.0) * sine.larger(rounding_error);
     let turn = dot(normal, &cross(&along1, &along2));
     (turn * turn).simd_gt(least * least * flat1 * flat2)
 }
@@ -234,17 +234,17 @@ impl<N: Real, const L: usize> LaneContacts<N, 3, L> {
     #[inline(always)]
     fn put_end_or_side<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
-        place: usize,
+        slot: usize,
         point: &[V; 3],
         [first, last]: &SegmentEnds<V>,
-        noise: V,
+        rounding_error: V,
     ) -> V::Mask {
         let along = minus(last, first);
         let (squared, reached) = (dot(&along, &along), dot(&minus(point, first), &along));
-        let slack = noise * squared.sqrt();
+        let slack = rounding_error * squared.sqrt();
         let (is_first, is_last) = (reached.simd_le(slack), (squared - reached).simd_le(slack));
-        self.parts[place] = bits(is_first);
-        self.parts[place + 1] = bits(is_last);
+        self.parts[slot] = bits(is_first);
+        self.parts[slot + 1] = bits(is_last);
         !(is_first & is_last)
     }
 }

@@ -18,7 +18,7 @@ struct Case<N: Real, const D: usize> {
     solids: [Solid<N, D>; 2],
     request: ManifoldRequest<N>,
     /// The pair is to be updated.
-    is_due: bool,
+    is_pending: bool,
 }
 
 impl<N: Real, const D: usize> Case<N, D> {
@@ -33,7 +33,7 @@ impl<N: Real, const D: usize> Case<N, D> {
 struct Kept<'a, N: Real, const D: usize> {
     cases: &'a [Case<N, D>],
     /// Indices of the cases to update.
-    due: Vec<usize>,
+    pending: Vec<usize>,
     /// Manifolds of all cases.
     raws: &'a mut [RawManifold<N, D>],
     /// Pairs without points that began and that fell back, and all that ended.
@@ -43,28 +43,28 @@ struct Kept<'a, N: Real, const D: usize> {
 impl<N: Real, const D: usize> Kept<'_, N, D> {
     /// Returns whether the pair had no points.
     fn is_new(&self, index: usize) -> bool {
-        self.raws[self.due[index]].points.is_empty()
+        self.raws[self.pending[index]].points.is_empty()
     }
 }
 
 impl<N: Real, const D: usize> KeptPairs<N, D> for Kept<'_, N, D> {
     fn len(&self) -> usize {
-        self.due.len()
+        self.pending.len()
     }
 
     fn begin(&mut self, index: usize) -> PairQuestion<'_, N, D> {
         self.counts[0] += usize::from(self.is_new(index));
-        self.cases[self.due[index]].question()
+        self.cases[self.pending[index]].question()
     }
 
     fn parts(&mut self, index: usize) -> (PairQuestion<'_, N, D>, &mut RawManifold<N, D>) {
         self.counts[1] += usize::from(self.is_new(index));
-        let place = self.due[index];
-        (self.cases[place].question(), &mut self.raws[place])
+        let case_index = self.pending[index];
+        (self.cases[case_index].question(), &mut self.raws[case_index])
     }
 
     fn raw(&mut self, index: usize) -> &mut RawManifold<N, D> {
-        &mut self.raws[self.due[index]]
+        &mut self.raws[self.pending[index]]
     }
 
     fn end(&mut self, index: usize) {
@@ -133,7 +133,8 @@ fn compare<F: Batch<N, D>, N: Space<D>, const D: usize>(
         sums = [0; 3];
         for (step, cases) in steps.iter().enumerate() {
             let alone = lone.iter_mut().zip(&mut expected);
-            for (case, (one, other)) in cases.iter().zip(alone).filter(|(case, _)| case.is_due) {
+            for (case, (one, other)) in cases.iter().zip(alone).filter(|(case, _)| case.is_pending)
+            {
                 compute_alone(case, [one, other]);
             }
             let [begun, declined] = in_lanes::<F, N, D>(level, cases, &mut found);
@@ -158,11 +159,11 @@ fn in_lanes<F: Batch<N, D>, N: Space<D>, const D: usize>(
     cases: &[Case<N, D>],
     raws: &mut [RawManifold<N, D>],
 ) -> [usize; 2] {
-    let due = (0..cases.len()).filter(|&index| cases[index].is_due).collect();
-    let mut kept = Kept { cases, due, raws, counts: [0; 3] };
+    let pending = (0..cases.len()).filter(|&index| cases[index].is_pending).collect();
+    let mut kept = Kept { cases, pending, raws, counts: [0; 3] };
     Many { level, pairs: &mut kept }.run::<F>();
     let [begun, declined, ended] = kept.counts;
-    assert_eq!(kept.due.len(), ended, "all that began ended");
+    assert_eq!(kept.pending.len(), ended, "all that began ended");
     [begun, declined]
 }
 
@@ -182,7 +183,7 @@ struct Draw<const D: usize> {
     radii: [f64; 2],
     /// Ends of a segment; for a box, the magnitudes of the last are the half extents.
     ends: [[Vector<f64, D>; 2]; 2],
-    places: [Vector<f64, D>; 2],
+    positions: [Vector<f64, D>; 2],
     turns: [[f64; 3]; 2],
 }
 
@@ -191,19 +192,19 @@ impl<const D: usize> Draw<D> {
     fn new(random: &mut Random, sorts: [Sort; 2], snapped: bool) -> Self {
         let snap = |x: f64| if snapped { (x * 2.0).round() / 2.0 } else { x };
         let mut vector = |by: f64| Vector::<f64, D>::from_fn(|_, _| snap(random.between(-by, by)));
-        let place = vector(9.0);
+        let position = vector(9.0);
         let (ends, aside) = ([[vector(1.0), vector(1.0)], [vector(1.0), vector(1.0)]], vector(1.2));
         let radii = [snap(random.between(0.1, 0.8)), snap(random.between(0.1, 0.8))];
         let mut turn = || [0.0; 3].map(|_: f64| random.between(-3.0, 3.0));
         let turns = if snapped { [[0.0; 3]; 2] } else { [turn(), turn()] };
-        Self { sorts, radii, ends, places: [place, place + aside], turns }
+        Self { sorts, radii, ends, positions: [position, position + aside], turns }
     }
 
     /// Moves the solids a little.
     fn shaken(&self, random: &mut Random, by: f64) -> Self {
         let mut shaken = self.clone();
         for which in 0..2 {
-            shaken.places[which] += Vector::<f64, D>::from_fn(|_, _| random.between(-by, by));
+            shaken.positions[which] += Vector::<f64, D>::from_fn(|_, _| random.between(-by, by));
             shaken.turns[which] = shaken.turns[which].map(|x| x + random.between(-by, by));
         }
         shaken
@@ -212,7 +213,7 @@ impl<const D: usize> Draw<D> {
     /// Converts to a case with another unit of length.
     fn case<N: Scene<D>>(&self, unit: f64, request: ManifoldRequest<N>) -> Case<N, D> {
         let vector = |v: &Vector<f64, D>| v.map(|x| N::lit(x * unit));
-        let poses = [0, 1].map(|at| N::pose(vector(&self.places[at]), self.turns[at]));
+        let poses = [0, 1].map(|at| N::pose(vector(&self.positions[at]), self.turns[at]));
         let solids = [0, 1].map(|at| {
             let radius = N::lit(self.radii[at] * unit);
             let ends = self.ends[at].map(|end| Point::from(vector(&end)));
@@ -225,7 +226,7 @@ impl<const D: usize> Draw<D> {
                 Sort::Cuboid => Solid::Cuboid(Cuboid::new(ends[1].coords.abs())),
             }
         });
-        Case { poses, solids, request, is_due: true }
+        Case { poses, solids, request, is_pending: true }
     }
 }
 
@@ -240,10 +241,10 @@ fn drawn<N: Scene<D>, const D: usize>(
     let mut draws: Vec<_> = snaps.map(|snap| Draw::new(&mut random, sorts, snap)).collect();
     let mut steps = Vec::new();
     for (step, by) in [0.002, 0.002, 0.4, 0.0].into_iter().enumerate() {
-        let asked = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
-        let mut cases: Vec<_> = draws.iter().map(|draw| draw.case(unit, asked)).collect();
+        let scaled = ManifoldRequest { prediction: request.prediction * N::lit(unit), ..*request };
+        let mut cases: Vec<_> = draws.iter().map(|draw| draw.case(unit, scaled)).collect();
         let rests = |index: usize| (index * 7 + step) % 11 == 3;
-        cases.iter_mut().enumerate().for_each(|(index, case)| case.is_due = !rests(index));
+        cases.iter_mut().enumerate().for_each(|(index, case)| case.is_pending = !rests(index));
         steps.push(cases);
         draws = draws.iter().map(|draw| draw.shaken(&mut random, by)).collect();
     }
@@ -356,11 +357,11 @@ fn eight_pairs_of_segments_are_as_one() {
 
 fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
     for (seed, sine) in [(1, 0.0), (2, 0.01), (3, 0.3)] {
-        for lean in [0.005, 0.1, 3.0] {
-            let steps = faced::<N, D>(seed, lean, &request(0.1, sine));
+        for tilt in [0.005, 0.1, 3.0] {
+            let steps = faced::<N, D>(seed, tilt, &request(0.1, sine));
             let [points, declined, begun] = compare::<F, N, D>(&steps, "faced");
-            assert!(points > 200, "{points} points, lean {lean}");
-            assert!(declined * 2 < begun, "{declined} of {begun} declined, lean {lean}");
+            assert!(points > 200, "{points} points, tilt {tilt}");
+            assert!(declined * 2 < begun, "{declined} of {begun} declined, tilt {tilt}");
         }
     }
     check::<F, N, D>([Sort::Cuboid, Sort::Cuboid]);
@@ -369,17 +370,17 @@ fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
 /// Boxes with faces close together, in three steps.
 fn faced<N: Scene<D>, const D: usize>(
     seed: u64,
-    lean: f64,
+    tilt: f64,
     request: &ManifoldRequest<N>,
 ) -> Vec<Vec<Case<N, D>>> {
     let mut random = Random(seed);
     let mut draw = || {
         let mut draw = Draw::<D>::new(&mut random, [Sort::Cuboid, Sort::Cuboid], false);
-        draw.turns = draw.turns.map(|turn| turn.map(|angle| angle * lean / 3.0));
+        draw.turns = draw.turns.map(|turn| turn.map(|angle| angle * tilt / 3.0));
         let [half1, half2] = draw.ends.map(|ends| ends[1].abs());
         let gap = random.between(-0.1, 0.2);
-        draw.places[1] = draw.places[0] + half1 * random.between(-0.5, 0.5);
-        draw.places[1][0] = draw.places[0][0] + half1[0] + half2[0] + gap;
+        draw.positions[1] = draw.positions[0] + half1 * random.between(-0.5, 0.5);
+        draw.positions[1][0] = draw.positions[0][0] + half1[0] + half2[0] + gap;
         draw
     };
     let mut draws: Vec<Draw<D>> = (0..203).map(|_| draw()).collect();

@@ -1,9 +1,10 @@
 //! Vectors in lanes: operations of `math`, each in the order of its scalar twin.
 
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
-use crate::collide::separation::is_usual;
+use crate::collide::separation::is_square_in_range;
 pub(super) use crate::math::lanes::{
-    bits, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus, seen_from, times,
+    bits, cross, dot, either, either_mask, lit, minus, negated, norm, over, plus, rotated_into,
+    times,
 };
 use crate::math::simd::Simd;
 use crate::math::{Real, Wide};
@@ -24,7 +25,7 @@ pub(super) fn unit<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
 ) -> ([V; D], V, V::Mask) {
     let squared = dot(v, v);
     let length = squared.sqrt();
-    (over(v, length), length, is_usual(simd, squared))
+    (over(v, length), length, is_square_in_range(simd, squared))
 }
 
 /// Returns the length of a vector; the mask has the lanes where it is zero, or its square far from
@@ -41,7 +42,7 @@ pub(super) fn length_of<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize
     }
     // Unlike the square, the sum does not underflow.
     let is_zero = sum.simd_le(V::all(simd, N::ZERO));
-    (squared.sqrt(), is_usual(simd, squared) | is_zero)
+    (squared.sqrt(), is_square_in_range(simd, squared) | is_zero)
 }
 
 /// Returns the lanes whose number is neither infinite nor NaN.

@@ -85,10 +85,10 @@ pub(crate) fn build_between<N: Space<D>, const D: usize>(
 /// known: then the nearest points are known, too.
 pub(crate) fn on_face2<N: Real>(
     pair: &Pair<'_, N, 2>,
-    asked: &OnFace<N, 2>,
+    query: &OnFace<N, 2>,
     out: &mut RawManifold<N, 2>,
 ) -> bool {
-    let OnFace { normal, least, nearest, prediction, tolerance } = *asked;
+    let OnFace { normal, least, nearest, prediction, tolerance } = *query;
     if nearest.is_some() {
         return false;
     }
@@ -104,10 +104,10 @@ pub(crate) fn on_face2<N: Real>(
 /// points.
 pub(crate) fn on_face3<N: Real>(
     pair: &Pair<'_, N, 3>,
-    asked: &OnFace<N, 3>,
+    query: &OnFace<N, 3>,
     out: &mut RawManifold<N, 3>,
 ) -> bool {
-    let OnFace { normal, least, nearest, prediction, tolerance } = *asked;
+    let OnFace { normal, least, nearest, prediction, tolerance } = *query;
     let is_served = matches!(
         (&pair.first, &pair.second),
         (Kind::Triangle(_), Kind::Cuboid(_) | Kind::Polytope(_))
@@ -138,7 +138,7 @@ pub(crate) fn on_face3<N: Real>(
             deepest.distance = nearest;
         }
     }
-    out.points.extend(candidates.iter().map(|candidate| candidate.named(0)));
+    out.points.extend(candidates.iter().map(|candidate| candidate.with_id(0)));
     true
 }
 

@@ -6,7 +6,7 @@
 
 use super::along::extremes;
 use super::frame::{Candidate, Candidates, ContactFrame, Which};
-use super::stretch::{Shared, Stretch};
+use super::interval::{FeatureInterval, Shared};
 use super::witness::beside_ball;
 use super::{Along, Pair, add_witness, deepest, tangents2};
 use crate::collide::RawPoint;
@@ -50,7 +50,7 @@ impl<N: Real> SegmentPair<'_, N> {
         }
         if let Kind::Ball(_) = self.pair.first {
             let touched = beside_ball(&self.pair, witness)?;
-            visit(Candidate::alone(witness, [FeatureId::Face(0), touched]).named(0));
+            visit(Candidate::alone(witness, [FeatureId::Face(0), touched]).with_id(0));
             return Some(());
         }
         let frame = self.frame(witness);
@@ -67,7 +67,7 @@ impl<N: Real> SegmentPair<'_, N> {
         // The smallest distance is that of the separation exactly.
         let nearest = deepest(&candidates, level);
         candidates[nearest].distance = witness.distance;
-        candidates.iter().for_each(|candidate| visit(candidate.named(0)));
+        candidates.iter().for_each(|candidate| visit(candidate.with_id(0)));
         Some(())
     }
 
@@ -90,26 +90,26 @@ impl<N: Real> SegmentPair<'_, N> {
             (false, false) => {
                 if (at1.flat - at2.flat).norm() <= N::TWO * tolerance {
                     let parts = [at1.id, at2.id];
-                    shared.push_facing(&at1.point, &at2.point, parts, &mut candidates);
+                    shared.push_pair(&at1.point, &at2.point, parts, &mut candidates);
                 }
             }
             (false, true) => {
                 if let Some(on) = second.locate(at1.flat.x, tolerance) {
                     let under = second.under(at1.flat.x);
-                    shared.push_facing(&at1.point, &under, [at1.id, on], &mut candidates);
+                    shared.push_pair(&at1.point, &under, [at1.id, on], &mut candidates);
                 }
             }
             (true, false) => {
                 if let Some(on) = first.locate(at2.flat.x, tolerance) {
                     let under = first.under(at2.flat.x);
-                    shared.push_facing(&under, &at2.point, [on, at2.id], &mut candidates);
+                    shared.push_pair(&under, &at2.point, [on, at2.id], &mut candidates);
                 }
             }
         }
         // Nearer than `least` by more than rounding: beside the face and below it.
         let kept = candidates.iter().filter(|found| found.distance >= along.least - tolerance);
         for candidate in kept {
-            let point = candidate.named(0);
+            let point = candidate.with_id(0);
             visit(RawPoint { distance: max(point.distance, along.least), ..point });
         }
         Some(())
@@ -121,15 +121,15 @@ impl<N: Real> SegmentPair<'_, N> {
 
     /// Returns the supporting feature of the first solid.
     #[inline]
-    fn first(&self, frame: &ContactFrame<N, 2>) -> Option<Stretch<N>> {
+    fn first(&self, frame: &ContactFrame<N, 2>) -> Option<FeatureInterval<N>> {
         match self.pair.first {
-            Kind::Segment(segment) => Some(Stretch::of_segment(segment, frame)),
-            other => Stretch::of(Which::First, other, None, frame),
+            Kind::Segment(segment) => Some(FeatureInterval::of_segment(segment, frame)),
+            other => FeatureInterval::of(Which::First, other, None, frame),
         }
     }
 
     #[inline]
-    fn second(&self, frame: &ContactFrame<N, 2>) -> Option<Stretch<N>> {
-        Stretch::of(Which::Second, self.pair.second, Some(&self.pair.pose12), frame)
+    fn second(&self, frame: &ContactFrame<N, 2>) -> Option<FeatureInterval<N>> {
+        FeatureInterval::of(Which::Second, self.pair.second, Some(&self.pair.pose12), frame)
     }
 }

@@ -136,8 +136,8 @@ impl<N: Real> Insides<N> {
     }
 
     /// Returns the rows of a corner, or of the nearest point at the index after the last corner.
-    fn row(&self, place: usize) -> &[SideRow<N>] {
-        &self.rows[place * self.width..][..self.width]
+    fn row(&self, index: usize) -> &[SideRow<N>] {
+        &self.rows[index * self.width..][..self.width]
     }
 
     /// Measures the corners of `other` against the sides of `own`, and last the nearest point.
@@ -152,9 +152,9 @@ impl<N: Real> Insides<N> {
         let (count, sides) = (other.map_or(0, |other| other.count), own.side_count());
         let (most, least) = (V::all(simd, tolerance), V::all(simd, -tolerance));
         self.width = own.count.div_ceil(LANES);
-        for place in 0..=count {
+        for index in 0..=count {
             let flat = match other {
-                Some(other) if place < count => other.flat(place),
+                Some(other) if index < count => other.flat(index),
                 // The nearest point is the origin of the tangents.
                 _ => Vector::<N, 2>::zeros(),
             };
@@ -258,7 +258,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     fn candidates(&self, out: &mut Candidates<N, 3>) {
         let [first, second] = &self.rings;
         if first.is_segment() && second.is_segment() && self.are_parallel() {
-            return self.common_stretch(out);
+            return self.common_interval(out);
         }
         if first.is_point() && second.is_point() {
             let [corner1, corner2] = [first.corner(0), second.corner(0)];
@@ -354,7 +354,7 @@ impl<'a, N: Real> RingClip<'a, N> {
     /// Adds the ends of the overlap interval of two nearly parallel segments: each is an end of one
     /// of them and the point beside it on the other, both moved halfway, where they meet after the
     /// turn. The points are off their segments by at most half the lever arm times the sine.
-    fn common_stretch(&self, out: &mut Candidates<N, 3>) {
+    fn common_interval(&self, out: &mut Candidates<N, 3>) {
         for (which, ring) in self.rings.iter().enumerate() {
             let other = &self.rings[1 - which];
             for corner in [ring.corner(0), ring.corner(1)] {

@@ -64,7 +64,7 @@ impl Which {
 /// Returns the height of the surface at a radius around a flat feature, above a point of the
 /// feature, along the normal.
 ///
-/// `cosine` is that of the feature's tilt. `room` and `top` are the depths of the point and of the
+/// `cosine` is that of the feature's tilt. `depth` and `top` are the depths of the point and of the
 /// feature's nearest corner below the supporting plane, `away_squared` their squared distance
 /// across the normal. Above the flat part the height is `radius / cosine`, above the corner that of
 /// the ball around it; nothing rises above the supporting plane. Exact for capsules, and where the
@@ -73,18 +73,18 @@ impl Which {
 pub(in crate::collide) fn lifted<N: Real>(
     radius: N,
     cosine: N,
-    room: N,
+    depth: N,
     top: N,
     away_squared: N,
 ) -> N {
     // Where the ball around the corner meets the flat part of the surface.
     let turns_squared = radius * radius * (N::ONE - cosine * cosine);
     let lift = if away_squared < turns_squared {
-        room - top + (radius * radius - away_squared).sqrt()
+        depth - top + (radius * radius - away_squared).sqrt()
     } else {
         radius / cosine
     };
-    max(min(lift, room), N::ZERO)
+    max(min(lift, depth), N::ZERO)
 }
 
 /// The plane through the witness perpendicular to the normal, with the limits of the request.
@@ -130,7 +130,7 @@ impl<N: Real, const D: usize> Candidate<N, D> {
         self.kept.is_some_and(|kept| kept.is_old)
     }
 
-    pub(in crate::collide) fn named(&self, id: u32) -> RawPoint<N, D> {
+    pub(in crate::collide) fn with_id(&self, id: u32) -> RawPoint<N, D> {
         let [feature1, feature2] = self.features;
         RawPoint { point1: self.point1, distance: self.distance, feature1, feature2, id, code: 0 }
     }

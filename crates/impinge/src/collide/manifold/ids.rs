@@ -50,15 +50,15 @@ pub(super) fn are_edges(features: [FeatureId; 2]) -> bool {
     features.iter().all(|id| matches!(id, FeatureId::Edge(_)))
 }
 
-/// Returns whether a point with these features that moved by `way` on the first solid is the same;
+/// Returns whether a point with these features that moved by `moved` on the first solid is the same;
 /// `size` is that of the pair.
 #[inline(always)]
 pub(in crate::collide) fn is_same_point<N: Real, const D: usize>(
     features: [FeatureId; 2],
-    way: &Vector<N, D>,
+    moved: &Vector<N, D>,
     size: impl FnOnce() -> N,
 ) -> bool {
-    !are_edges(features) || max_component(way) <= N::lit(REACH) * size()
+    !are_edges(features) || max_component(moved) <= N::lit(REACH) * size()
 }
 
 /// Reciprocal of the largest length by which a contact of a pair of this size moves in a step.
@@ -71,9 +71,9 @@ pub(in crate::collide) fn near_scale<N: Real>(size: N) -> N {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::collide) struct Anchors<N: Real, const D: usize> {
     /// Parts of composites, zero for a convex solid, and the features of the parts.
-    pub(super) names: ([u32; 2], [FeatureId; 2]),
+    pub(super) ids: ([u32; 2], [FeatureId; 2]),
     /// Position of the point on each solid, in that solid's frame.
-    pub(super) places: [Point<N, D>; 2],
+    pub(super) positions: [Point<N, D>; 2],
     /// Normal of the contact, in the frame of the first solid.
     normal: Vector<N, D>,
 }
@@ -95,13 +95,13 @@ impl<N: Real, const D: usize> PairPose<'_, N, D> {
         &self,
         point1: &Point<N, D>,
         distance: N,
-        names: ([u32; 2], [FeatureId; 2]),
+        ids: ([u32; 2], [FeatureId; 2]),
     ) -> Anchors<N, D> {
         let point2 = self.pose12.map_or_else(
             || Point::from(Vector::<N, D>::repeat(N::INFINITY)),
             |pose12| pose12.inverse_point(&(point1 + self.normal * distance)),
         );
-        Anchors { names, places: [*point1, point2], normal: *self.normal }
+        Anchors { ids, positions: [*point1, point2], normal: *self.normal }
     }
 }
 
@@ -135,18 +135,18 @@ pub(super) fn moved<N: Real, const D: usize>(
     scale: N,
 ) -> N {
     if !normals_agree(&old.normal, &new.normal) {
-        let is_same = is_one_point(old.names.1) && old.names == new.names;
+        let is_same = is_one_point(old.ids.1) && old.ids == new.ids;
         return if is_same { N::ZERO } else { N::INFINITY };
     }
     // On the same vertex of either solid it has not moved.
     let is_on_vertex = |solid: usize| {
-        let name = |point: &Anchors<N, D>| (point.names.0[solid], point.names.1[solid]);
-        matches!(name(old).1, FeatureId::Vertex(_)) && name(old) == name(new)
+        let id_of = |point: &Anchors<N, D>| (point.ids.0[solid], point.ids.1[solid]);
+        matches!(id_of(old).1, FeatureId::Vertex(_)) && id_of(old) == id_of(new)
     };
     if is_on_vertex(0) || is_on_vertex(1) {
         return N::ZERO;
     }
-    let on = |solid: usize| ((new.places[solid] - old.places[solid]) * scale).norm_squared();
+    let on = |solid: usize| ((new.positions[solid] - old.positions[solid]) * scale).norm_squared();
     let [on1, on2] = [on(0), on(1)];
     // Written so that an unknown position does not count.
     if on2 < on1 { on2 } else { on1 }
@@ -191,14 +191,14 @@ pub(in crate::collide) fn inherit_by_features<N: Real, const D: usize>(
 
 /// Gives the candidates `some` without an id those ids that none of them has, by [`each_match`];
 /// `pose` is the new pose, `size` that of the pair.
-pub(in crate::collide) fn inherit_by_place<N: Real, const D: usize>(
+pub(in crate::collide) fn inherit_by_position<N: Real, const D: usize>(
     old: &RawManifold<N, D>,
     pose: &PairPose<'_, N, D>,
     size: impl Fn() -> N,
     candidates: &mut [Candidate<N, D>],
     some: &[usize],
 ) {
-    let (mut news, mut places) = (AnchorList::new(), SmallVec::<[usize; 8]>::new());
+    let (mut news, mut indices) = (AnchorList::new(), SmallVec::<[usize; 8]>::new());
     let (mut olds, mut ids) = (AnchorList::new(), SmallVec::<[u32; 8]>::new());
     let has =
         |id: u32| some.iter().any(|&at| candidates[at].kept.is_some_and(|kept| kept.id == id));
@@ -209,11 +209,11 @@ pub(in crate::collide) fn inherit_by_place<N: Real, const D: usize>(
     for &at in some.iter().filter(|&&at| !olds.is_empty() && candidates[at].kept.is_none()) {
         let new = &candidates[at];
         news.push(pose.anchors(&new.point1, new.distance, ([0; 2], new.features)));
-        places.push(at);
+        indices.push(at);
     }
     if !news.is_empty() {
         each_match(&olds, &news, size(), &mut |at, new, is_old| {
-            candidates[places[new]].kept = Some(Inherited { id: ids[at], is_old });
+            candidates[indices[new]].kept = Some(Inherited { id: ids[at], is_old });
         });
     }
 }
@@ -278,10 +278,10 @@ pub(in crate::collide) fn in_order<N: Real, const D: usize>(
     // Nearly always there are four at most, and mostly none.
     let mut order = SmallVec::<[(N, usize); 8]>::new();
     for (number, point) in points {
-        let reach = askew(&point.coords);
+        let coordinate = askew(&point.coords);
         let mut at = order.len();
-        order.push((reach, number));
-        while at > 0 && order[at - 1].0 > reach {
+        order.push((coordinate, number));
+        while at > 0 && order[at - 1].0 > coordinate {
             order.swap(at - 1, at);
             at -= 1;
         }
@@ -290,7 +290,7 @@ pub(in crate::collide) fn in_order<N: Real, const D: usize>(
 }
 
 /// Replaces the points of a manifold, in the order of their ids; those without an id get the next.
-pub(in crate::collide) fn settle<N: Real, const D: usize>(
+pub(in crate::collide) fn replace_points<N: Real, const D: usize>(
     candidates: &mut [Candidate<N, D>],
     chosen: &[usize],
     out: &mut RawManifold<N, D>,
@@ -302,7 +302,7 @@ pub(in crate::collide) fn settle<N: Real, const D: usize>(
     out.points.clear();
     for &at in chosen {
         let kept = candidates[at].kept.expect("the new ones have ids now, too");
-        out.points.push(candidates[at].named(kept.id));
+        out.points.push(candidates[at].with_id(kept.id));
     }
     out.sort_points();
 }

@@ -96,9 +96,9 @@ fn nearest_first<K: PartialOrd + Copy>(
     mut visit: impl FnMut(usize, usize, K),
 ) {
     let (mut keys, mut others) = ([never; FEW], [0; FEW]);
-    let mut due = old;
+    let mut pending = old;
     loop {
-        for at in Ones::<FEW>(due) {
+        for at in Ones::<FEW>(pending) {
             (keys[at], others[at]) = nearest(at, new);
             let has_one = keys[at] < never;
             // A point without a match now has none later.
@@ -114,7 +114,7 @@ fn nearest_first<K: PartialOrd + Copy>(
         let taken = others[first];
         visit(first, taken, key);
         (old, new) = (old & !(1 << first), new & !(1 << taken));
-        due = Ones::<FEW>(old).fold(0, |bits, at| bits | u32::from(others[at] == taken) << at);
+        pending = Ones::<FEW>(old).fold(0, |bits, at| bits | u32::from(others[at] == taken) << at);
     }
 }
 
@@ -176,9 +176,10 @@ const fn is_near(key: u64) -> bool {
 #[inline]
 fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, scale: N) -> u64 {
     // The first coordinates exclude most pairs. Written so that NaN is far.
-    let is_beside =
-        |solid: usize| ((new.places[solid][0] - old.places[solid][0]) * scale).abs() <= N::ONE;
-    let is_same = old.names == new.names;
+    let is_beside = |solid: usize| {
+        ((new.positions[solid][0] - old.positions[solid][0]) * scale).abs() <= N::ONE
+    };
+    let is_same = old.ids == new.ids;
     if !(is_same | is_beside(0) | is_beside(1)) {
         return NEVER;
     }
@@ -186,7 +187,7 @@ fn key_of<N: Real, const D: usize>(old: &Anchors<N, D>, new: &Anchors<N, D>, sca
     let class = match (is_same, moved <= N::ONE) {
         (true, true) => SAME,
         (false, true) => NEAR,
-        (true, false) if moved <= N::lit(FARTHEST) || !are_edges(old.names.1) => FAR,
+        (true, false) if moved <= N::lit(FARTHEST) || !are_edges(old.ids.1) => FAR,
         _ => return NEVER,
     };
     key(class, moved)
@@ -200,13 +201,13 @@ fn each_possible<N: Real, const D: usize>(
     length: N,
     visit: &mut dyn FnMut(usize, usize),
 ) {
-    let by_names = sorted(new, Anchors::names_key);
-    let by_place = [0, 1].map(|solid| sorted(new, |point| order_of(point.places[solid][0])));
+    let by_ids = sorted(new, Anchors::ids_key);
+    let by_position = [0, 1].map(|solid| sorted(new, |point| order_of(point.positions[solid][0])));
     for (at, point) in old.iter().enumerate() {
-        let names = point.names_key();
-        between(&by_names, [names; 2]).for_each(|other| visit(at, other));
-        for (solid, order) in by_place.iter().enumerate() {
-            let x = point.places[solid][0];
+        let key = point.ids_key();
+        between(&by_ids, [key; 2]).for_each(|other| visit(at, other));
+        for (solid, order) in by_position.iter().enumerate() {
+            let x = point.positions[solid][0];
             between(order, [x - length, x + length].mapped(order_of))
                 .for_each(|other| visit(at, other));
         }
@@ -237,8 +238,8 @@ fn between(keys: &[(u64, u32)], [low, high]: [u64; 2]) -> impl Iterator<Item = u
 
 impl<N: Real, const D: usize> Anchors<N, D> {
     /// Returns a hash of the names.
-    fn names_key(&self) -> u64 {
-        let ([part1, part2], features) = self.names;
+    fn ids_key(&self) -> u64 {
+        let ([part1, part2], features) = self.ids;
         let [feature1, feature2] = features.mapped(|id| match id {
             FeatureId::Vertex(number) => 3 * u64::from(number),
             FeatureId::Edge(number) => 3 * u64::from(number) + 1,

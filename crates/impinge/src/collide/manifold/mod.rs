@@ -3,14 +3,14 @@
 //! ```text
 //!   separation   `frame`           supporting features           candidates      points and ids
 //!   (witness) -> ContactFrame  ->  3D: `ring`, `clip`        ->  corners of  ->  `reduce`
-//!                                  2D: `stretch`                 the common      `ids`, `matching`
+//!                                  2D: `interval`                the common      `ids`, `matching`
 //!                                  half-space: `half_space`      area
 //! ```
 //!
 //! The separation provides the normal and the witness, its nearest pair of points. The supporting
 //! features of both solids, projected along the normal, are points, segments and convex polygons
 //! ([`ring`]), and the corners of their intersection ([`clip`]) are the candidates. In 2D the
-//! intersection is an interval ([`stretch`]); over a [`half_space`] every corner counts. [`reduce`]
+//! intersection is an interval ([`interval`]); over a [`half_space`] every corner counts. [`reduce`]
 //! chooses a few candidates and [`ids`] numbers them.
 //!
 //! The witness is always represented, so the smallest distance of a manifold is exactly that of the
@@ -23,10 +23,10 @@ pub(in crate::collide) mod face_lanes;
 pub(in crate::collide) mod frame;
 mod half_space;
 pub(in crate::collide) mod ids;
+mod interval;
 pub(in crate::collide) mod matching;
 pub(in crate::collide) mod reduce;
 mod ring;
-mod stretch;
 mod supporting;
 #[cfg(test)]
 pub(crate) mod tests;
@@ -42,7 +42,7 @@ pub(crate) use self::witness::{
     feature2 as witness_feature2, feature3 as witness_feature3, features2 as witness_features2,
     features3 as witness_features3,
 };
-use super::separation::{separation_in_plane, separation_in_space};
+use super::separation::{separation_2d, separation_3d};
 use super::size::smaller_size;
 use super::{ManifoldRequest, Pair, RawManifold};
 use crate::convex::Separation;
@@ -61,7 +61,7 @@ pub(crate) fn build2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    build_in_plane(pair, separation, request, request.max_points.min(2), out);
+    build_2d(pair, separation, request, request.max_points.min(2), out);
 }
 
 /// Builds the manifold like [`build2`], with up to `request.max_points` points.
@@ -71,11 +71,11 @@ pub(crate) fn between2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    build_in_plane(pair, separation, request, request.max_points, out);
+    build_2d(pair, separation, request, request.max_points, out);
 }
 
 /// Builds the manifold in 2D with at most `limit` points.
-fn build_in_plane<N: Real>(
+fn build_2d<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
     request: &ManifoldRequest<N>,
@@ -86,9 +86,9 @@ fn build_in_plane<N: Real>(
         return;
     }
     let frame = ContactFrame::new(pair, separation, request, tangents2(&separation.normal));
-    if !stretch::build(pair, &frame, limit, out) {
+    if !interval::build(pair, &frame, limit, out) {
         // A user's solid whose supporting feature is neither a point nor a side.
-        settle_witness(pair, separation, out);
+        build_witness_manifold(pair, separation, out);
     }
 }
 
@@ -122,7 +122,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
     if !is_near {
         out.points.clear();
     } else if let Kind::Ball(_) = pair.first {
-        settle_witness(pair, separation, out);
+        build_witness_manifold(pair, separation, out);
     } else if let Kind::Plane(_) = pair.second {
         let tangents = <N::Algorithms>::tangents(&separation.normal);
         half_space::build(
@@ -138,7 +138,7 @@ fn build_one_sided<N: Space<D>, const D: usize>(
 }
 
 /// Builds the manifold of the nearest points alone.
-fn settle_witness<N: Space<D>, const D: usize>(
+fn build_witness_manifold<N: Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
     out: &mut RawManifold<N, D>,
@@ -173,7 +173,7 @@ pub(crate) fn contacts_of_separation3<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 3>,
 ) {
-    match separation_in_space(pair, request.prediction) {
+    match separation_3d(pair, request.prediction) {
         Some(separation) => build3(pair, &separation, request, out),
         None => out.points.clear(),
     }
@@ -185,7 +185,7 @@ pub(crate) fn contacts_of_separation2<N: Real>(
     request: &ManifoldRequest<N>,
     out: &mut RawManifold<N, 2>,
 ) {
-    match separation_in_plane(pair, request.prediction) {
+    match separation_2d(pair, request.prediction) {
         Some(separation) => build2(pair, &separation, request, out),
         None => out.points.clear(),
     }
@@ -265,21 +265,21 @@ pub(in crate::collide) fn choose<N: Real, const D: usize>(
         if !out.points.is_empty() {
             ids::inherit_by_features(out, candidates);
             let all: reduce::Indices = (0..candidates.len()).collect();
-            ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &all);
+            ids::inherit_by_position(out, &choice.pose, choice.size, candidates, &all);
         }
         let size = if is_over { (choice.size)() } else { N::ZERO };
         let levels = [distance + tolerance, slack_level(distance, size, tolerance)];
         let chosen = chosen(candidates, levels, tolerance, limit);
         if is_over {
             // Ids of candidates that are not chosen go to chosen ones near them.
-            ids::inherit_by_place(out, &choice.pose, choice.size, candidates, &chosen);
+            ids::inherit_by_position(out, &choice.pose, choice.size, candidates, &chosen);
         }
         let deepest = deepest_of(chosen.len(), levels[0], |at| {
             let candidate = &candidates[chosen[at]];
             (candidate.is_old(), candidate.distance)
         });
         candidates[chosen[deepest]].distance = distance;
-        ids::settle(candidates, &chosen, out);
+        ids::replace_points(candidates, &chosen, out);
     }
     out.normal = *choice.pose.normal;
 }
@@ -296,8 +296,8 @@ fn chosen<N: Real, const D: usize>(
     if candidates.len() <= limit.min(ALL) {
         return (0..candidates.len()).collect();
     }
-    let seen = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
-    reduce::chosen(&mut reduce::projected(seen, levels), limit, tolerance)
+    let flattened = candidates.iter().map(|c| (c.flat, c.distance, c.is_old()));
+    reduce::chosen(&mut reduce::projected(flattened, levels), limit, tolerance)
 }
 
 /// Adds the nearest points. They replace the candidate with the same features if there is exactly

@@ -205,8 +205,8 @@ fn rescale<N: Real>(points: &mut [Projected<N>]) -> N {
 fn best_four<N: Real>(points: &[Projected<N>], limit: usize, tolerance: N) -> Indices {
     let best = if limit > 2 { best_diagonal(points, limit > 3, tolerance) } else { None };
     let mut chosen = best.unwrap_or_else(|| farthest(points, limit, tolerance));
-    for place in &mut chosen {
-        *place = points[*place].index;
+    for index in &mut chosen {
+        *index = points[*index].index;
     }
     chosen
 }
@@ -267,8 +267,8 @@ impl<N: Real> CoordinateRows<N> {
     fn of(points: &[Projected<N>]) -> Self {
         let zero = [[N::ZERO; LANES]; FEW / LANES];
         let mut rows = Self { x: zero, y: zero, weights: zero, len: points.len().div_ceil(LANES) };
-        for (place, point) in points.iter().enumerate() {
-            let (row, lane) = (place / LANES, place % LANES);
+        for (index, point) in points.iter().enumerate() {
+            let (row, lane) = (index / LANES, index % LANES);
             (rows.x[row][lane], rows.y[row][lane]) = (point.at.x, point.at.y);
             rows.weights[row][lane] = weight(point);
         }
@@ -279,13 +279,13 @@ impl<N: Real> CoordinateRows<N> {
     /// right.
     #[inline]
     fn sides(&self, start: &Projected<N>, end: &Projected<N>) -> [N; 2] {
-        let way = end.at - start.at;
-        let base = cross2(&way, &start.at);
+        let edge = end.at - start.at;
+        let base = cross2(&edge, &start.at);
         let [mut lefts, mut rights] = [[N::ZERO; LANES]; 2];
         let rows = self.x.iter().zip(&self.y).zip(&self.weights);
         for ((x, y), weights) in rows.take(self.len) {
             for lane in 0..LANES {
-                let area = (way.x * y[lane] - way.y * x[lane] - base) * weights[lane];
+                let area = (edge.x * y[lane] - edge.y * x[lane] - base) * weights[lane];
                 lefts[lane] = max(lefts[lane], area);
                 rights[lane] = min(rights[lane], area);
             }
@@ -324,24 +324,24 @@ fn with_sides<N: Real>(
     is_four: bool,
     tolerance: N,
 ) -> Option<Indices> {
-    let [start, end] = ends.mapped(|place| &points[place]);
+    let [start, end] = ends.mapped(|index| &points[index]);
     let least = tolerance * (end.at - start.at).norm();
     let (mut corners, [mut left, mut right]) = (Indices::from_slice(&ends), [least; 2]);
     let mut sides = [None; 2];
-    for (place, point) in points.iter().enumerate() {
+    for (index, point) in points.iter().enumerate() {
         let area = twice_area(start, end, point) * weight(point);
         if area > left {
-            (left, sides[0]) = (area, Some(place));
+            (left, sides[0]) = (area, Some(index));
         }
         if -area > right {
-            (right, sides[1]) = (-area, Some(place));
+            (right, sides[1]) = (-area, Some(index));
         }
     }
     if !is_four {
         sides[usize::from(left >= right)] = None;
     }
-    for place in sides.into_iter().flatten() {
-        corners.push(place);
+    for index in sides.into_iter().flatten() {
+        corners.push(index);
     }
     (corners.len() > 2).then_some(corners)
 }
@@ -387,7 +387,7 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
     for rank in 0..4 {
         let mut at = 0;
         while ring.len() > 2 && at < ring.len() {
-            let [before, after] = [at + ring.len() - 1, at + 1].mapped(|place| place % ring.len());
+            let [before, after] = [at + ring.len() - 1, at + 1].mapped(|index| index % ring.len());
             let own = &ring[at];
             let is_next = u8::from(own.is_kept) + 2 * u8::from(own.is_deepest) == rank;
             if is_next && is_between(own, [&ring[before], &ring[after]], tolerance) {
@@ -402,11 +402,11 @@ fn thin<N: Real>(ring: &mut Projections<N>, tolerance: N) {
 /// Returns whether a point lies between two others. An end of points in a row may have the same
 /// inner point on both sides, which both chains contain; `length` is zero then, and the end stays.
 fn is_between<N: Real>(own: &Projected<N>, ends: [&Projected<N>; 2], tolerance: N) -> bool {
-    let (way, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
-    let (length, along) = (way.norm(), way.dot(&arm));
-    let room = tolerance * length;
-    let is_in_row = cross2(&way, &arm).abs() <= room && length > N::ZERO;
-    is_in_row && along >= -room && along <= length * length + room
+    let (edge, arm) = (ends[1].at - ends[0].at, own.at - ends[0].at);
+    let (length, along) = (edge.norm(), edge.dot(&arm));
+    let slack = tolerance * length;
+    let is_in_row = cross2(&edge, &arm).abs() <= slack && length > N::ZERO;
+    is_in_row && along >= -slack && along <= length * length + slack
 }
 
 /// Reduces a hull to at most `count` corners: old ones, a deepest one if there is one, and
@@ -417,28 +417,28 @@ fn coarsen<N: Real>(ring: &mut Projections<N>, count: usize) {
     }
     let first = a_deepest(ring);
     ring.rotate_left(first);
-    let mut places: SmallVec<[usize; FEW]> = SmallVec::from_slice(&[0]);
-    places.extend((1..ring.len()).filter(|&place| ring[place].is_kept).take(count - 1));
-    while places.len() < count {
-        let Some((at, place)) = best_addition(ring, &places) else { break };
-        places.insert(at, place);
+    let mut indices: SmallVec<[usize; FEW]> = SmallVec::from_slice(&[0]);
+    indices.extend((1..ring.len()).filter(|&index| ring[index].is_kept).take(count - 1));
+    while indices.len() < count {
+        let Some((at, index)) = best_addition(ring, &indices) else { break };
+        indices.insert(at, index);
     }
-    *ring = places.iter().map(|&place| ring[place]).collect();
+    *ring = indices.iter().map(|&index| ring[index]).collect();
 }
 
-/// Returns the corner that adds most to `places`, of which the first is 0, and its position there.
-fn best_addition<N: Real>(ring: &[Projected<N>], places: &[usize]) -> Option<(usize, usize)> {
+/// Returns the corner that adds most to `indices`, of which the first is 0, and its position there.
+fn best_addition<N: Real>(ring: &[Projected<N>], indices: &[usize]) -> Option<(usize, usize)> {
     let (mut best, mut most) = (None, N::ZERO);
-    for (at, &from) in places.iter().enumerate() {
-        let (to, end) = places.get(at + 1).map_or((ring.len(), 0), |&to| (to, to));
-        for place in from + 1..to {
+    for (at, &from) in indices.iter().enumerate() {
+        let (to, end) = indices.get(at + 1).map_or((ring.len(), 0), |&to| (to, to));
+        for index in from + 1..to {
             let added = if from == end {
-                (ring[place].at - ring[from].at).norm()
+                (ring[index].at - ring[from].at).norm()
             } else {
-                twice_area(&ring[from], &ring[place], &ring[end])
+                twice_area(&ring[from], &ring[index], &ring[end])
             };
             if added > most {
-                (best, most) = (Some((at + 1, place)), added);
+                (best, most) = (Some((at + 1, index)), added);
             }
         }
     }

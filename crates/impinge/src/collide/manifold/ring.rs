@@ -210,9 +210,9 @@ impl<'a, N: Real> SupportRing<'a, N> {
         if self.radius <= N::ZERO {
             return N::ZERO;
         }
-        let (room, (top, at)) = (self.which.below_witness(core, frame), &self.top);
+        let (depth, (top, at)) = (self.which.below_witness(core, frame), &self.top);
         let away_squared = (frame.flat(core) - at).norm_squared();
-        lifted(self.radius, self.cosine, room, *top, away_squared)
+        lifted(self.radius, self.cosine, depth, *top, away_squared)
     }
 
     /// Transforms and projects the corners, simplifies a feature without extent, and computes the
@@ -240,7 +240,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
             dot(&spread::<S, N, V, 3>(simd, v), &arms).store(&mut block.flats[1]);
             self.blocks.push(block);
         }
-        self.settle(frame);
+        self.simplify(frame);
         self.find_sides::<S, V>(simd);
     }
 
@@ -266,7 +266,7 @@ impl<'a, N: Real> SupportRing<'a, N> {
     }
 
     /// Simplifies a feature that has no extent in projection.
-    fn settle(&mut self, frame: &ContactFrame<N, 3>) {
+    fn simplify(&mut self, frame: &ContactFrame<N, 3>) {
         let (outward, tolerance) = (self.which.outward(frame), frame.tolerance);
         // Corners that coincide have no extent: merged, they may have one.
         let mut extent = if self.is_point() { None } else { self.extent(tolerance) };
@@ -344,10 +344,10 @@ impl<'a, N: Real> SupportRing<'a, N> {
     /// Reduces a segment that projects to a point to its end nearest to the other solid. A segment
     /// without length has no ends and keeps its id.
     fn end_on(&mut self, outward: &Vector<N, 3>, tolerance: N) {
-        let (id, way) = (self.id, self.point(1) - self.point(0));
+        let (id, edge) = (self.id, self.point(1) - self.point(0));
         self.keep_farthest(outward);
         // Written so that NaN has no ends.
-        let has_ends = way.norm() > N::TWO * tolerance;
+        let has_ends = edge.norm() > N::TWO * tolerance;
         self.id = if has_ends { self.id } else { id };
     }
 
@@ -407,7 +407,7 @@ pub(super) fn part_of<N: Real, const D: usize>(
 ) -> Option<FeatureId> {
     let along = segment.b() - segment.a();
     let (squared, reached) = (along.norm_squared(), (point - segment.a()).dot(&along));
-    let is_near = |reach: N| reach <= tolerance * squared.sqrt();
+    let is_near = |distance: N| distance <= tolerance * squared.sqrt();
     match (is_near(reached), is_near(squared - reached)) {
         (true, true) => None,
         (true, false) => Some(FeatureId::Vertex(0)),

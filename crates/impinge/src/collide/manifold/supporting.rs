@@ -28,11 +28,11 @@ pub(super) fn supporting_feature<N: Real>(
         Kind::Segment(segment) => fill_segment(segment, face),
         Kind::Capsule(capsule) => fill_segment(capsule.segment(), face),
         Kind::Cuboid(_) | Kind::Polytope(_) => {
-            part_shown(kind, direction).is_some_and(|part| fill_part(kind, part, face))
+            supporting_part(kind, direction).is_some_and(|part| fill_part(kind, part, face))
         }
         Kind::Triangle(triangle) => fill_triangle(triangle, direction, face),
-        Kind::Cylinder(cylinder, _) => fill_round(cylinder.part_shown(direction), face),
-        Kind::Cone(cone, _) => fill_round(cone.part_shown(direction), face),
+        Kind::Cylinder(cylinder, _) => fill_round(cylinder.supporting_part(direction), face),
+        Kind::Cone(cone, _) => fill_round(cone.supporting_part(direction), face),
         _ => false,
     };
     let map = Geometry(kind).as_support_map();
@@ -68,16 +68,16 @@ fn fill_segment<N: Real>(segment: &Segment<N, 3>, face: &mut FaceRing<N>) -> boo
 
 /// Returns the part of a box or hull that faces a direction; `None` for a flat box, some of whose
 /// parts coincide, and for other kinds.
-pub(super) fn part_shown<N: Real>(
+pub(super) fn supporting_part<N: Real>(
     kind: Kind<'_, N, 3>,
     direction: &Vector<N, 3>,
 ) -> Option<FeatureId> {
     match kind {
         Kind::Cuboid(cuboid) => {
             let is_flat = cuboid.half_extents().iter().any(|half| *half == N::ZERO);
-            (!is_flat).then(|| Cuboid::part_shown(direction))
+            (!is_flat).then(|| Cuboid::supporting_part(direction))
         }
-        Kind::Polytope(hull) => Some(hull.part_shown(direction)),
+        Kind::Polytope(hull) => Some(hull.supporting_part(direction)),
         _ => None,
     }
 }
@@ -108,7 +108,7 @@ fn fill_triangle<N: Real>(
     direction: &Vector<N, 3>,
     face: &mut FaceRing<N>,
 ) -> bool {
-    match triangle.part_shown(direction) {
+    match triangle.supporting_part(direction) {
         Some(FeatureId::Face(_)) => triangle.fill_ring(direction, face),
         Some(edge @ FeatureId::Edge(_)) => return fill_ends(edge, triangle.edge(edge), face),
         Some(vertex @ FeatureId::Vertex(_)) => {
@@ -156,16 +156,16 @@ pub(super) fn contact_feature<N: Real, const D: usize>(
     }
     let is_between = lower > N::lit(4.0) * N::EPSILON * reach;
     is_between.then(|| {
-        turn_behind(&lowest, out);
+        start_after(&lowest, out);
         lowest
     })
 }
 
 /// Rotates the corners so that the first is the one after a point on the rim.
-fn turn_behind<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
+fn start_after<N: Real, const D: usize>(point: &Point<N, D>, out: &mut Feature<N, D>) {
     let count = out.vertices.len();
-    let way = |at: usize| (out.vertices[at] - point).norm();
-    let around = |at: usize| way(at) + way((at + 1) % count);
+    let distance = |at: usize| (out.vertices[at] - point).norm();
+    let around = |at: usize| distance(at) + distance((at + 1) % count);
     let nearer = |best: usize, at: usize| if around(at) < around(best) { at } else { best };
     let before = (1..count).fold(0, nearer);
     out.vertices.rotate_left((before + 1) % count);

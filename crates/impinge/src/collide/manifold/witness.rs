@@ -1,8 +1,8 @@
 //! Features that the nearest points of two convex solids lie on.
 
 use super::frame::{ContactFrame, Which, rounding};
+use super::interval::FeatureInterval;
 use super::ring::part_of;
-use super::stretch::Stretch;
 use super::{ManifoldRequest, Pair, clip, tangents2, tangents3};
 use crate::convex::Separation;
 use crate::math::{Point, Pose, Real, Vector};
@@ -13,7 +13,7 @@ pub(crate) fn features2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
 ) -> [FeatureId; 2] {
-    features(pair, separation, shown2)
+    features(pair, separation, supporting_part2)
 }
 
 /// Returns the features of two solids in 3D that the points of their separation lie on.
@@ -21,7 +21,7 @@ pub(crate) fn features3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
 ) -> [FeatureId; 2] {
-    features(pair, separation, shown3)
+    features(pair, separation, supporting_part3)
 }
 
 /// Returns the feature of one solid in 2D, the second if `is_second`: one of [`features2`].
@@ -31,7 +31,7 @@ pub(crate) fn feature2<N: Real>(
     tolerance: N,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, separation, tolerance, shown2, is_second)
+    feature(pair, separation, tolerance, supporting_part2, is_second)
 }
 
 /// Returns the feature of one solid in 3D, the second if `is_second`: one of [`features3`].
@@ -41,12 +41,13 @@ pub(crate) fn feature3<N: Real>(
     tolerance: N,
     is_second: bool,
 ) -> FeatureId {
-    feature(pair, separation, tolerance, shown3, is_second)
+    feature(pair, separation, tolerance, supporting_part3, is_second)
 }
 
 /// Computes the smallest part of one solid's supporting feature that contains the point of a
 /// separation; of the second solid if the flag is set.
-type ShownFn<N, const D: usize> = fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
+type SupportingPartFn<N, const D: usize> =
+    fn(&Pair<'_, N, D>, &Separation<N, D>, bool) -> FeatureId;
 
 /// Creates a frame that is used for its witness only.
 fn frame<N: Real, const D: usize>(
@@ -62,46 +63,46 @@ fn frame<N: Real, const D: usize>(
 fn features<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
-    shown: ShownFn<N, D>,
+    supporting_part: SupportingPartFn<N, D>,
 ) -> [FeatureId; 2] {
     if let Some(touched) = of_ball(pair, separation) {
         return [FeatureId::Face(0), touched];
     }
-    let (noise, normal) = (rounding(pair), separation.normal);
-    let first = by_place(pair.first, &separation.point1, &normal, noise);
+    let (tolerance, normal) = (rounding(pair), separation.normal);
+    let first = by_position(pair.first, &separation.point1, &normal, tolerance);
     // In the frame of the second solid.
     let second = || {
         let point = pair.pose12.inverse_point(&separation.point2);
-        by_place(pair.second, &point, &-pair.pose12.inverse_vector(&normal), noise)
+        by_position(pair.second, &point, &-pair.pose12.inverse_vector(&normal), tolerance)
     };
     [
-        first.unwrap_or_else(|| shown(pair, separation, false)),
-        second().unwrap_or_else(|| shown(pair, separation, true)),
+        first.unwrap_or_else(|| supporting_part(pair, separation, false)),
+        second().unwrap_or_else(|| supporting_part(pair, separation, true)),
     ]
 }
 
 /// Returns the part of a solid that contains a surface point with the outward normal `outward`,
 /// from the point alone, without the supporting feature. Serves flat-faced solids, segments,
 /// capsules and rounded ones; `None` for other kinds, and in close cases.
-fn by_place<N: Real, const D: usize>(
+fn by_position<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
     outward: &Vector<N, D>,
-    noise: N,
+    tolerance: N,
 ) -> Option<FeatureId> {
     match kind {
         Kind::Plane(_) => Some(FeatureId::Face(0)),
-        Kind::Cuboid(cuboid) => cuboid.part_at(point, noise),
-        Kind::Triangle(triangle) => triangle.part_at(point, outward, noise),
-        Kind::Polytope(solid) => Some(solid.part_at(point, outward, noise)),
-        Kind::Segment(segment) => part_of(segment, point, N::TWO * noise),
+        Kind::Cuboid(cuboid) => cuboid.part_at(point, tolerance),
+        Kind::Triangle(triangle) => triangle.part_at(point, outward, tolerance),
+        Kind::Polytope(solid) => Some(solid.part_at(point, outward, tolerance)),
+        Kind::Segment(segment) => part_of(segment, point, N::TWO * tolerance),
         Kind::Capsule(capsule) => {
             let core = point - outward * capsule.radius();
-            part_of(capsule.segment(), &core, N::TWO * noise)
+            part_of(capsule.segment(), &core, N::TWO * tolerance)
         }
         Kind::Rounded(solid) => {
             let core = point - outward * solid.radius();
-            by_place(solid.inner().0, &core, outward, noise)
+            by_position(solid.inner().0, &core, outward, tolerance)
         }
         _ => None,
     }
@@ -111,8 +112,8 @@ fn by_place<N: Real, const D: usize>(
 fn feature<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
-    noise: N,
-    shown: ShownFn<N, D>,
+    tolerance: N,
+    supporting_part: SupportingPartFn<N, D>,
     is_second: bool,
 ) -> FeatureId {
     match of_ball(pair, separation) {
@@ -120,8 +121,8 @@ fn feature<N: Real, const D: usize>(
         Some(_) => return FeatureId::Face(0),
         None => {}
     }
-    let seam = on_seam(pair, separation, noise, is_second);
-    seam.unwrap_or_else(|| shown(pair, separation, is_second))
+    let seam = on_seam(pair, separation, tolerance, is_second);
+    seam.unwrap_or_else(|| supporting_part(pair, separation, is_second))
 }
 
 /// Returns the side or corner of a triangle touched by a flat-faced solid or the core of a capsule.
@@ -129,7 +130,7 @@ fn feature<N: Real, const D: usize>(
 fn on_seam<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     separation: &Separation<N, D>,
-    noise: N,
+    tolerance: N,
     is_second: bool,
 ) -> Option<FeatureId> {
     let (triangle, point, toward) = match (&pair.first, &pair.second) {
@@ -142,7 +143,7 @@ fn on_seam<N: Real, const D: usize>(
         }
         _ => return None,
     };
-    let part = triangle.part_at(&point, &toward, noise);
+    let part = triangle.part_at(&point, &toward, tolerance);
     part.filter(|part| !matches!(part, FeatureId::Face(_)))
 }
 
@@ -168,11 +169,11 @@ pub(in crate::collide) fn beside_ball<N: Real, const D: usize>(
     if let Kind::Ball(_) | Kind::Ellipsoid(_) = pair.second {
         return Some(FeatureId::Face(0));
     }
-    let (point, noise) = (pair.pose12.inverse_point(&found.point2), rounding(pair));
+    let (point, tolerance) = (pair.pose12.inverse_point(&found.point2), rounding(pair));
     match pair.second {
-        Kind::Cylinder(cylinder, _) => cylinder.part_at(&point, noise),
-        Kind::Cone(cone, _) => cone.part_at(&point, noise),
-        other => by_place(other, &point, &-pair.pose12.inverse_vector(&found.normal), noise),
+        Kind::Cylinder(cylinder, _) => cylinder.part_at(&point, tolerance),
+        Kind::Cone(cone, _) => cone.part_at(&point, tolerance),
+        other => by_position(other, &point, &-pair.pose12.inverse_vector(&found.normal), tolerance),
     }
 }
 
@@ -188,18 +189,18 @@ fn solid<'a, N: Real, const D: usize>(
     }
 }
 
-fn shown2<N: Real>(
+fn supporting_part2<N: Real>(
     pair: &Pair<'_, N, 2>,
     separation: &Separation<N, 2>,
     is_second: bool,
 ) -> FeatureId {
     let frame = frame(pair, separation, tangents2(&separation.normal));
     let (which, kind, pose) = solid(pair, is_second);
-    let side = Stretch::of(which, kind, pose, &frame);
+    let side = FeatureInterval::of(which, kind, pose, &frame);
     side.map_or(FeatureId::Face(0), |side| side.at_witness(&frame))
 }
 
-fn shown3<N: Real>(
+fn supporting_part3<N: Real>(
     pair: &Pair<'_, N, 3>,
     separation: &Separation<N, 3>,
     is_second: bool,

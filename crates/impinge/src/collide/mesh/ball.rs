@@ -9,14 +9,16 @@ use super::part_contact::{self, Arena, PartContact, PartStatus, is_beside, is_ce
 use super::patch::Piece;
 use super::scene::Scene;
 use super::{
-    CompositeContacts, PartContacts, Query, Travelled, advanced, is_settled, middle_of_first,
+    CompositeContacts, PartContacts, Query, Travelled, advanced, is_resolved, middle_of_first,
     of_parts,
 };
 use crate::bounding_volume::Aabb;
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::Between;
 use crate::collide::parts::bounds::enclosing;
-use crate::collide::separation::{BallQuestion, NearTriangles, ball_triangle, near_triangles};
+use crate::collide::separation::{
+    BallQuestion, CandidateTriangles, ball_triangle, candidate_triangles,
+};
 use crate::collide::{ManifoldRequest, Pair};
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Pose, Real, Vector, max, min};
@@ -41,11 +43,11 @@ pub(crate) fn update_on_surface<N: Real>(
     };
     arena.rounding = rounding;
     let (reference, center) = (Some(rolling.from), Some(rolling.center));
-    if !is_settled(&part_contacts) {
+    if !is_resolved(&part_contacts) {
         let around = &contacts.around;
         let request = &rolling.request;
         let query = Query { between, is_self: false, around, reference: &reference, request };
-        query.settle(&Scene::new(between, around), &mut part_contacts, &mut arena);
+        query.resolve_contacts(&Scene::new(between, around), &mut part_contacts, &mut arena);
     }
     contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
     true
@@ -67,7 +69,7 @@ struct Rolling<'b, 'a, N: Real> {
 }
 
 /// A triangle relative to the centre of the ball, in the axes of the surface.
-struct SeenTriangle<N: Real> {
+struct CenteredTriangle<N: Real> {
     part: u32,
     /// Relative to the centre of the ball.
     triangle: Triangle<N, 3>,
@@ -91,9 +93,9 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     /// Returns a box around everything within reach of the ball, with all its parts in the cache;
     /// `None` if the cache cannot hold them by corners, or if they are not triangles.
     fn box_within(&self, around: &mut PartCache<N, 3>) -> Option<Aabb<N, 3>> {
-        let reach = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
-        let aabb = enclosing(&Aabb::around(self.center, reach), &self.between.pose21);
-        let is_kept = around.reaches_with(self.parts, &aabb, MAX_ROOMY);
+        let half_extents = Vector::<N, 3>::repeat(self.ball.radius() + self.request.prediction);
+        let aabb = enclosing(&Aabb::around(self.center, half_extents), &self.between.pose21);
+        let is_kept = around.covers_with(self.parts, &aabb, MAX_ROOMY);
         (is_kept && around.has_triangles_alone()).then_some(aabb)
     }
 
@@ -114,47 +116,47 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             limit: self.request.prediction,
             within,
         };
-        let seen = near_triangles(&question, self.surface.has_plain_seams());
+        let candidates = candidate_triangles(&question, self.surface.has_regular_seams());
         // Everything outside the box is beyond reach.
-        let reach = self.ball.radius() + self.request.prediction;
-        let clearance = min(reach, seen.from_middle);
-        let way = Travelled { old: contacts.reference, clearance };
-        self.from = advanced(self.between, &way, self.center);
+        let max_distance = self.ball.radius() + self.request.prediction;
+        let clearance = min(max_distance, candidates.from_middle);
+        let travelled = Travelled { old: contacts.reference, clearance };
+        self.from = advanced(self.between, &travelled, self.center);
         let around = &contacts.around;
         each_lane(
-            &seen,
+            &candidates,
             |[near, hidden]| near & !hidden,
             |index| {
-                let one = self.seen(around, index)?;
+                let one = self.centered_triangle(around, index)?;
                 self.add(&one, around, part_contacts, arena);
                 Some(())
             },
         )?;
-        self.rounding_of_hidden(&seen, around, part_contacts)
+        self.rounding_of_hidden(&candidates, around, part_contacts)
     }
 
     /// Returns the largest rounding error of the hidden triangles, or zero if it does not matter.
     /// `None` if one of them may be the nearest of all that can be touched.
     fn rounding_of_hidden(
         &self,
-        seen: &NearTriangles<N>,
+        candidates: &CandidateTriangles<N>,
         around: &PartCache<N, 3>,
         part_contacts: &[PartContact<N, 3>],
     ) -> Option<N> {
         let least =
             part_contacts.iter().fold(N::INFINITY, |least, found| min(least, found.distance));
         let from_middle = max(least + self.ball.radius(), N::ZERO);
-        let is_nearer = from_middle * from_middle < seen.hidden_from;
-        if !is_nearer && seen.hidden_from < N::INFINITY {
+        let is_nearer = from_middle * from_middle < candidates.hidden_from;
+        if !is_nearer && candidates.hidden_from < N::INFINITY {
             return None;
         }
         let mut most = N::ZERO;
         if part_contacts.len() > 1 {
             each_lane(
-                seen,
+                candidates,
                 |[_, hidden]| hidden,
                 |index| {
-                    let hidden = self.seen(around, index)?;
+                    let hidden = self.centered_triangle(around, index)?;
                     if faces(Some(self.surface), hidden.part, &self.from) {
                         most = max(most, hidden.tolerance);
                     }
@@ -166,29 +168,33 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     }
 
     /// Returns a cached triangle; `None` if its coordinates overflow.
-    fn seen(&self, around: &PartCache<N, 3>, index: usize) -> Option<SeenTriangle<N>> {
+    fn centered_triangle(
+        &self,
+        around: &PartCache<N, 3>,
+        index: usize,
+    ) -> Option<CenteredTriangle<N>> {
         let corners = around.tiles()[index / LANES].corners(index % LANES);
         let [a, b, c] = corners.mapped(|corner| corner - self.between.pose21.translation);
         let triangle = Triangle::try_new(a, b, c).ok()?;
         let size = self.ball.radius() + triangle.reach();
         let tolerance = N::lit(ROUNDING) * N::EPSILON * size;
-        Some(SeenTriangle { part: around.parts()[index], triangle, tolerance })
+        Some(CenteredTriangle { part: around.parts()[index], triangle, tolerance })
     }
 
     /// Appends the contact of a triangle, if there is one.
     fn add(
         &self,
-        seen: &SeenTriangle<N>,
+        centered: &CenteredTriangle<N>,
         around: &PartCache<N, 3>,
         part_contacts: &mut PartContacts<N, 3>,
         arena: &mut Arena<N, 3>,
     ) {
-        let kind = Kind::Triangle(&seen.triangle);
+        let kind = Kind::Triangle(&centered.triangle);
         let pair = Pair { first: Kind::Ball(self.ball), second: kind, pose12: self.turn };
         let Some(found) = ball_triangle(&pair, self.request.prediction) else { return };
-        let found = self.plainly(seen, &found, arena).unwrap_or_else(|| {
+        let found = self.certain_contact(centered, &found, arena).unwrap_or_else(|| {
             let scene = Scene::new(self.between, around);
-            let parts = [0, seen.part];
+            let parts = [0, centered.part];
             let query = Query {
                 is_self: false,
                 between: self.between,
@@ -204,17 +210,19 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
     /// Computes the contact of a triangle without the generic path: `Some(None)` if there is no
     /// contact, `None` if the case is not certain.
     #[expect(clippy::option_option, reason = "no answer is not the answer that there is none")]
-    fn plainly(
+    fn certain_contact(
         &self,
-        seen: &SeenTriangle<N>,
+        centered: &CenteredTriangle<N>,
         found: &Separation<N, 3>,
         arena: &mut Arena<N, 3>,
     ) -> Option<Option<PartContact<N, 3>>> {
-        let over = over3(&seen.triangle, &Point::origin(), seen.tolerance)?;
-        if !found.distance.is_finite_number() || !faces(Some(self.surface), seen.part, &self.from) {
+        let over = over3(&centered.triangle, &Point::origin(), centered.tolerance)?;
+        if !found.distance.is_finite_number()
+            || !faces(Some(self.surface), centered.part, &self.from)
+        {
             return Some(None);
         }
-        let filtered = self.filtered_normal(seen, found, over);
+        let filtered = self.filtered_normal(centered, found, over);
         let (normal, status) = match &filtered {
             FilteredNormal::Face(face) => (-self.turn.vector(face), PartStatus::Own),
             FilteredNormal::Admitted => (found.normal, PartStatus::Own),
@@ -235,22 +243,22 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
             lowest = point.distance;
             arena.points.push(point);
         }
-        let piece = Piece { normal, parts: [0, seen.part], points: start..arena.points.len() };
+        let piece = Piece { normal, parts: [0, centered.part], points: start..arena.points.len() };
         let face = filtered.face().filter(|_| status != PartStatus::Left);
-        let (distance, normal, tolerance) = (found.distance, found.normal, seen.tolerance);
+        let (distance, normal, tolerance) = (found.distance, found.normal, centered.tolerance);
         Some(Some(PartContact { distance, normal, piece, lowest, status, face, tolerance }))
     }
 
     /// Filters the normal of the ball's separation from a triangle by the surface.
     fn filtered_normal(
         &self,
-        seen: &SeenTriangle<N>,
+        centered: &CenteredTriangle<N>,
         found: &Separation<N, 3>,
         over: FeatureId,
     ) -> FilteredNormal<N, 3> {
-        let middle = seen.triangle.center() + self.between.pose21.translation;
+        let middle = centered.triangle.center() + self.between.pose21.translation;
         let case = Case {
-            part: seen.part,
+            part: centered.part,
             feature: &|| over,
             is_beside: is_beside(Some(over)),
             outward: -self.turn.inverse_vector(&found.normal),
@@ -263,11 +271,11 @@ impl<'b, 'a, N: Real> Rolling<'b, 'a, N> {
 /// Visits the indices of some triangles in order; `bits` selects those of a packet from its masks.
 /// Stops with `None` if `visit` returns it.
 fn each_lane<N>(
-    seen: &NearTriangles<N>,
+    candidates: &CandidateTriangles<N>,
     bits: impl Fn([u8; 2]) -> u8,
     mut visit: impl FnMut(usize) -> Option<()>,
 ) -> Option<()> {
-    for &(block, near) in &seen.near {
+    for &(block, near) in &candidates.masks {
         let mut left = bits(near);
         while left != 0 {
             visit(block * LANES + left.trailing_zeros() as usize)?;

@@ -35,11 +35,11 @@ fn heights<N: Real>(random: &mut Random, kind: usize) -> Vec<N> {
 /// A mesh over a grid. Corners are shared or not, some triangles are left out or have no area, and
 /// some vertices are moved, also to the position of others.
 fn mesh_of<N: Space<3>>(random: &mut Random, heights: &[N]) -> TriMesh<N, 3> {
-    let place = |at: u32| {
+    let vertex_at = |at: u32| {
         let [x, z] = [at % POINTS, at / POINTS].map(|n| N::lit(f64::from(n) * 0.5 - 2.0));
         Point::<N, 3>::new(x, heights[at as usize], z)
     };
-    let mut vertices: Vec<_> = (0..POINTS * POINTS).map(place).collect();
+    let mut vertices: Vec<_> = (0..POINTS * POINTS).map(vertex_at).collect();
     let cells = (0..POINTS * (POINTS - 1)).filter(|at| at % POINTS + 1 < POINTS);
     let triangles = cells.flat_map(|a| {
         let (b, c, d) = (a + POINTS, a + POINTS + 1, a + 1);
@@ -124,14 +124,14 @@ fn follow<N: Space<3>>(
     let ground = ground_of::<N>(random, round);
     let far = N::lit([0.0, 40.0][random.pick(2)]);
     let under = Pose { translation: Vector::<N, 3>::repeat(far), ..random.turn::<N>() };
-    let mut place = random.vector::<N>() * N::lit(1.8);
-    place.y =
+    let mut position = random.vector::<N>() * N::lit(1.8);
+    position.y =
         height * N::lit([1.0, 0.9, -1.0][random.pick(3)]) + random.vector::<N>().y * N::lit(0.2);
     if random.pick(4) == 0 {
         // Over a corner or an edge of the grid.
-        place.x = N::HALF;
+        position.x = N::HALF;
     }
-    let mut lean = [Pose::identity(), random.turn::<N>()][random.pick(2)];
+    let mut tilt = [Pose::identity(), random.turn::<N>()][random.pick(2)];
     let request = ManifoldRequest::new(
         N::lit([0.002, 0.3][random.pick(2)]),
         N::lit([0.0, 0.2][random.pick(2)]),
@@ -140,7 +140,7 @@ fn follow<N: Space<3>>(
     let (mut quick, mut slow) = (CompositeContacts::default(), CompositeContacts::default());
     let (mut done, mut points) = (0, 0);
     for step in 0..STEPS {
-        let pose = under.compose(&Pose { translation: place, ..lean });
+        let pose = under.compose(&Pose { translation: position, ..tilt });
         let placed1 = Placed::of_pose(&pose, solid.geometry());
         let placed2 = Placed::of_pose(&under, ground.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
@@ -153,27 +153,27 @@ fn follow<N: Space<3>>(
         assert_same(&quick, &slow, what);
         assert_one_contact([&placed1, &placed2], request.prediction, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());
-        place += random.vector::<N>() * N::lit(0.04);
+        position += random.vector::<N>() * N::lit(0.04);
         if random.pick(8) == 0 {
-            lean = random.turn::<N>();
+            tilt = random.turn::<N>();
         }
     }
     (done, points)
 }
 
-fn compare<N: Space<3>>(seed: u64, solid_of: impl Fn(&mut Random) -> Solid<N>, has_own_way: bool) {
+fn compare<N: Space<3>>(seed: u64, solid_of: impl Fn(&mut Random) -> Solid<N>, has_own_path: bool) {
     let random = &mut Random(seed);
     let (mut done, mut points) = (0, 0);
     for round in 0..ROUNDS {
         let (of_one, found) = follow::<N>(solid_of(random), random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(!has_own_way || done * 2 > ROUNDS * STEPS, "{done} updates by the quick way");
+    assert!(!has_own_path || done * 2 > ROUNDS * STEPS, "{done} updates by the quick path");
     assert!(points > ROUNDS * STEPS / 2, "{points} points");
 }
 
 #[test]
-fn balls_have_the_contacts_of_the_general_way() {
+fn balls_have_the_contacts_of_the_generic_path() {
     compare::<f32>(11, ball_of, true);
     compare::<f64>(12, ball_of, true);
 }

@@ -10,7 +10,7 @@ use super::part_contact::{Arena, PartContact, PartStatus};
 use super::patch::Piece;
 use super::scene::Scene;
 use super::{
-    CompositeContacts, PartContacts, Query, Travelled, advanced, is_settled, middle_of_first,
+    CompositeContacts, PartContacts, Query, Travelled, advanced, is_resolved, middle_of_first,
     of_parts,
 };
 use crate::bounding_volume::{Aabb, BoundingVolume};
@@ -53,8 +53,8 @@ pub(crate) fn update_chain<N: Real>(
         reference: &reference,
         request: &chain.request,
     };
-    if !is_settled(&part_contacts) {
-        query.settle(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
+    if !is_resolved(&part_contacts) {
+        query.resolve_contacts(&Scene::new(between, query.around), &mut part_contacts, &mut arena);
     }
     contacts.conclude(&between.pair, request, [reference, center], &part_contacts, &arena);
     true
@@ -181,16 +181,16 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
     /// Returns a box around everything within reach of the solid, with all its parts in the cache;
     /// `None` if the cache cannot hold them by corners, or if they are not segments.
     fn box_within(&self, around: &mut PartCache<N, 2>) -> Option<Aabb<N, 2>> {
-        let reach = self.size + self.request.prediction;
-        let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(reach));
+        let max_distance = self.size + self.request.prediction;
+        let whole = Aabb::around(self.origin, Vector::<N, 2>::repeat(max_distance));
         let whole = enclosing(&whole, &self.between.pose21);
         if around.holds(&whole) {
             return around.has_segments_alone().then_some(whole);
         }
         let exact = search_box(self.between, self.request.prediction);
         let most = exact.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let aabb = if reach <= N::TWO * most { whole } else { exact };
-        (around.reaches(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
+        let aabb = if max_distance <= N::TWO * most { whole } else { exact };
+        (around.covers(self.parts, &aabb) && around.has_segments_alone()).then_some(aabb)
     }
 
     /// Finds the contacts of the segments within reach; `None` if the generic path must do it.
@@ -215,8 +215,8 @@ impl<'b, 'a, N: Real> Chain<'b, 'a, N> {
         let mut near = Links::new(depth_in(&aabb, &self.center));
         links(&question, &mut near)?;
         let slack = relative_slack::<N>() * (near.from_middle + self.size + limit);
-        let way = Travelled { old: contacts.reference, clearance: near.from_middle - slack };
-        self.from = advanced(self.between, &way, self.center);
+        let travelled = Travelled { old: contacts.reference, clearance: near.from_middle - slack };
+        self.from = advanced(self.between, &travelled, self.center);
         let kept = KeptLinks { tiles: around.tiles(), parts: around.parts(), within: aabb };
         for (index, found) in &near.found {
             if let Some(link) = self.link(&kept, *index, found) {
@@ -281,16 +281,20 @@ impl<N: Real> ChainLink<'_, '_, '_, N> {
         let normal = self.chain.outward(&self.found.normal);
         let filtered = self.filtered_normal(&normal);
         let start = points.len();
-        let seen = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
+        let normal_in_first = |face: &Vector<N, 2>| -self.chain.turn.vector(face);
         let (of_piece, mut status) = match &filtered {
             FilteredNormal::Nothing => return Some(()),
             FilteredNormal::Refused => (normal, PartStatus::Left),
             FilteredNormal::Admitted => (self.between(&normal, points)?, PartStatus::Own),
-            FilteredNormal::Face(face) => (self.between(&seen(face), points)?, PartStatus::Own),
-            FilteredNormal::Snapped(face) => {
-                (self.along(&seen(face), points)?, PartStatus::Snapped)
+            FilteredNormal::Face(face) => {
+                (self.between(&normal_in_first(face), points)?, PartStatus::Own)
             }
-            FilteredNormal::Beyond(face) => (self.along(&seen(face), points)?, PartStatus::Beyond),
+            FilteredNormal::Snapped(face) => {
+                (self.along(&normal_in_first(face), points)?, PartStatus::Snapped)
+            }
+            FilteredNormal::Beyond(face) => {
+                (self.along(&normal_in_first(face), points)?, PartStatus::Beyond)
+            }
         };
         let Self { found: Separation { distance, .. }, tolerance, parts, .. } = *self;
         let mut lowest = points[start..].iter().fold(N::INFINITY, |low, p| min(low, p.distance));

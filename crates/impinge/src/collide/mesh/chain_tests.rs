@@ -47,9 +47,9 @@ fn ground_of<N: Space<2>>(random: &mut Random, round: usize) -> Box<dyn Shape<N,
         let field = HeightField::<N, 2>::new(heights, extents).with_holes(|cell| cell == hole);
         return Box::new(if is_one_sided { field.one_sided() } else { field });
     }
-    let place =
+    let vertex_at =
         |(n, height): (u32, &N)| Point::<N, 2>::new(N::lit(f64::from(n) * 0.5 - 3.0), *height);
-    let mut points: Vec<_> = (0..).zip(&heights).map(place).collect();
+    let mut points: Vec<_> = (0..).zip(&heights).map(vertex_at).collect();
     if random.pick(2) == 0 {
         points.reverse();
     }
@@ -83,9 +83,9 @@ fn solid_of<N: Real>(random: &mut Random) -> Box<dyn Shape<N, 2>> {
     }
 }
 
-fn pose_of<N: Real>(place: Vector<N, 2>, angle: N) -> Pose<N, 2> {
+fn pose_of<N: Real>(position: Vector<N, 2>, angle: N) -> Pose<N, 2> {
     let (sine, cosine) = angle.sine_cosine();
-    Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: place }
+    Pose { rotation: Matrix::<N, 2>::new(cosine, -sine, sine, cosine), translation: position }
 }
 
 /// Both paths must agree in all bits, ids included.
@@ -136,7 +136,7 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (solid, ground) = (solid_of::<N>(random), ground_of::<N>(random, round));
     let far = N::lit([0.0, 40.0][random.pick(2)]);
     let under = pose_of(Vector::<N, 2>::repeat(far), random.vector::<N>().x);
-    let mut place = Vector::<N, 2>::new(random.vector::<N>().x * N::TWO, random.vector::<N>().y);
+    let mut position = Vector::<N, 2>::new(random.vector::<N>().x * N::TWO, random.vector::<N>().y);
     let mut angle = random.vector::<N>().x * N::lit([0.0, 0.1, 3.0][random.pick(3)]);
     let request = ManifoldRequest::new(
         N::lit([0.002, 0.3][random.pick(2)]),
@@ -146,7 +146,7 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     let (mut quick, mut slow) = (CompositeContacts::default(), CompositeContacts::default());
     let (mut done, mut points) = (0, 0);
     for step in 0..STEPS {
-        let pose = under.compose(&pose_of(place, angle));
+        let pose = under.compose(&pose_of(position, angle));
         let placed1 = Placed::of_pose(&pose, solid.geometry());
         let placed2 = Placed::of_pose(&under, ground.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
@@ -159,7 +159,7 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
         assert_same(&quick, &slow, what);
         assert_one_contact([&placed1, &placed2], request.prediction, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());
-        place += random.vector::<N>().xy() * N::lit(0.04);
+        position += random.vector::<N>().xy() * N::lit(0.04);
         angle += random.vector::<N>().x * N::lit(0.02);
     }
     (done, points)
@@ -172,12 +172,12 @@ fn compare<N: Space<2>>(seed: u64) {
         let (of_one, found) = follow::<N>(random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(done * 10 > 700 * STEPS * 8, "{done} updates by the quick way");
+    assert!(done * 10 > 700 * STEPS * 8, "{done} updates by the quick path");
     assert!(points > 700 * STEPS / 2, "{points} points");
 }
 
 #[test]
-fn chains_have_the_contacts_of_the_general_way() {
+fn chains_have_the_contacts_of_the_generic_path() {
     compare::<f32>(11);
     compare::<f64>(12);
 }

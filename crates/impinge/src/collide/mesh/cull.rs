@@ -52,7 +52,7 @@ pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
     /// The radius around the core.
     pub(super) rounding: N,
     /// Parts beyond this distance, or outside the box from `low` to `high`, are rejected.
-    pub(super) reach: N,
+    pub(super) max_distance: N,
     pub(super) low: Vector<N, D>,
     pub(super) high: Vector<N, D>,
     /// Sum of the solid's bounding radius, its translation and `reach`, for rounding errors.
@@ -62,7 +62,7 @@ pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
 /// Lower bounds for eight parts.
 pub(super) struct LowerBounds<N> {
     /// A bit for each part that may be within reach.
-    pub(super) near: u8,
+    pub(super) mask: u8,
     /// Lower bound of the distance from the solid's centre to the parts in the box; zero if
     /// unknown.
     pub(super) from_middle: N,
@@ -73,7 +73,7 @@ impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
     /// cached in `around`. `None` for two composites and for half-spaces.
     pub(super) fn new(
         between: &Between<'_, N, D>,
-        reach: N,
+        max_distance: N,
         around: &mut PartCache<N, D>,
         within: &Aabb<N, D>,
     ) -> Option<Self> {
@@ -85,10 +85,10 @@ impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
             turn: pose21.rotation,
             half: around.half(map),
             rounding: map.rounding(),
-            reach,
+            max_distance,
             low: within.mins().coords,
             high: within.maxs().coords,
-            size: core + map.rounding() + reach + max_component(&pose21.translation),
+            size: core + map.rounding() + max_distance + max_component(&pose21.translation),
         })
     }
 
@@ -109,10 +109,10 @@ fn at<N: Real, const D: usize>(
     tiles: &PartPacket<N, D>,
     query: &LowerBoundQuery<N, D>,
 ) -> LowerBounds<N> {
-    let mut all = LowerBounds { near: 0, from_middle: N::INFINITY };
+    let mut all = LowerBounds { mask: 0, from_middle: N::INFINITY };
     for run in level.runs(LANES) {
         let found = in_lanes!(run, simd => bounds::<_, N, N::Lanes<_>, D>(simd, tiles, query));
-        all.near |= run.of_bits(found.near);
+        all.mask |= run.of_bits(found.mask);
         all.from_middle = min(found.from_middle, all.from_middle);
     }
     all
@@ -148,12 +148,13 @@ fn bounds<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
         & heights[2].simd_gt(tiny);
     let from_middle = heights[0].smaller(heights[1]).smaller(heights[2]) / length - slack;
     let own = extent(simd, &toward, query) / length + V::all(simd, query.rounding);
-    let is_beyond = is_bound & (from_middle - own - slack).simd_gt(V::all(simd, query.reach));
+    let is_beyond =
+        is_bound & (from_middle - own - slack).simd_gt(V::all(simd, query.max_distance));
     let mut known = [N::ZERO; LANES];
     let known_bound = is_bound.select(from_middle, V::all(simd, N::ZERO));
     is_in.select(known_bound, V::all(simd, N::INFINITY)).store(&mut known);
-    let near = bits(is_in & !is_beyond);
-    LowerBounds { near, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
+    let mask = bits(is_in & !is_beyond);
+    LowerBounds { mask, from_middle: known.into_iter().fold(N::INFINITY, |least, x| min(x, least)) }
 }
 
 /// The parts whose boxes overlap the box of the query.
@@ -251,7 +252,7 @@ mod tests {
     type P3 = Point<f64, 3>;
 
     /// Pseudo-random numbers from -1 to 1.
-    fn noise(state: &mut u64) -> f64 {
+    fn pseudo_random(state: &mut u64) -> f64 {
         *state ^= *state << 13;
         *state ^= *state >> 7;
         *state ^= *state << 17;
@@ -271,7 +272,7 @@ mod tests {
 
     /// The bounds of a solid at the origin and a mesh of one triangle: that of the distance from
     /// the centre, and whether the triangle is out of reach.
-    fn bound(solid: &dyn Shape<f64, 3>, corners: [P3; 3], reach: f64) -> (f64, bool) {
+    fn bound(solid: &dyn Shape<f64, 3>, corners: [P3; 3], max_distance: f64) -> (f64, bool) {
         let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]);
         let geometries = (solid.geometry(), mesh.geometry());
         let pose12 = Pose::identity();
@@ -279,11 +280,11 @@ mod tests {
         let between = Between::of_pair(&pair);
         let everywhere = Aabb::new(P3::from([-9.0; 3]), P3::from([9.0; 3]));
         let mut around = PartCache::default();
-        assert!(around.reaches(&mesh, &everywhere), "one triangle is kept");
-        let query = LowerBoundQuery::new(&between, reach, &mut around, &everywhere);
+        assert!(around.covers(&mesh, &everywhere), "one triangle is kept");
+        let query = LowerBoundQuery::new(&between, max_distance, &mut around, &everywhere);
         let found = query.expect("a convex solid").bounds(&around.tiles()[0]);
-        let is_beyond = found.near & 1 == 0;
-        assert_eq!(found.near == u8::MAX, !is_beyond, "the one stands for all eight");
+        let is_beyond = found.mask & 1 == 0;
+        assert_eq!(found.mask == u8::MAX, !is_beyond, "the one stands for all eight");
         (found.from_middle, is_beyond)
     }
 
@@ -293,7 +294,7 @@ mod tests {
         for round in 0..400 {
             // Every other triangle is a sliver.
             let thin = if round % 2 == 0 { 1.0 } else { 1e-9 };
-            let mut corner = || P3::from([0, 1, 2].mapped(|_| 2.0 * noise(&mut state)));
+            let mut corner = || P3::from([0, 1, 2].mapped(|_| 2.0 * pseudo_random(&mut state)));
             let [a, b, mut c] = [corner(), corner(), corner()];
             c = a + (b - a) * 0.3 + (c - a) * thin;
             let truth = sampled(&[a, b, c], &origin);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   near triangles ──> separating axes ──> normal filter ───────> points along the normal
-//!                      `gaps3`,            one by one, from the   `FaceSolid::each_clip`,
+//!                      `gaps3`,            one by one, from the   `FaceClip::each_clip`,
 //!                      eight lanes         cached `FaceSeams`     eight lanes
 //! ```
 //!
@@ -11,14 +11,14 @@
 
 use smallvec::SmallVec;
 
-use super::gather::Nearby;
+use super::gather::CulledParts;
 use super::normal_filter::{Case, FilteredNormal, faces, filter_normal};
 use super::part_cache::PartCache;
 use super::part_contact::{self, Arena, PartContact, PartStatus, overlooks};
 use super::patch::Piece;
 use super::scene::{PlacedPair, Scene};
 use super::{PartContacts, Query};
-use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
+use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::{TiledTriangles, TriangleGap, gaps3};
@@ -33,30 +33,39 @@ use core::cell::Cell;
 pub(crate) fn face_contacts<N: Real>(
     query: &Query<'_, N, 3>,
     scene: &Scene<'_, N, 3>,
-    nearby: &Nearby<N>,
+    culled: &CulledParts<N>,
     prediction: N,
     contacts: &mut PartContacts<N, 3>,
     arena: &mut Arena<N, 3>,
 ) -> bool {
-    let Some(meeting) = FaceMeeting::new(query, scene, nearby) else { return false };
+    let Some(configuration) = FaceConfiguration::new(query, scene, culled) else { return false };
     arena.are_fronts = true;
-    let (tiles, near, origin) = (meeting.around.tiles(), nearby.near.as_slice(), meeting.origin);
-    let parts = TiledTriangles { tiles, near, origin };
-    let pose12 = Pose { rotation: meeting.turn, translation: Vector::<N, 3>::zeros() };
+    let (tiles, masks, origin) =
+        (configuration.around.tiles(), culled.masks.as_slice(), configuration.origin);
+    let parts = TiledTriangles { tiles, masks, origin };
+    let pose12 = Pose { rotation: configuration.turn, translation: Vector::<N, 3>::zeros() };
     let limit = query.request.prediction;
-    let (slot, due, clip) = (None, Due::default(), FaceClip::blank());
-    let mut found =
-        FaceContacts { meeting: &meeting, contacts, arena, slot, due, clip, missing: 0 };
-    let is_served = gaps3(&parts, meeting.solid, &pose12, prediction, limit, &mut |index, gap| {
-        found.add(meeting.places[index], gap);
-    });
+    let (slot, pending, clip) = (None, PendingClips::default(), FaceClip::blank());
+    let mut found = FaceContacts {
+        configuration: &configuration,
+        contacts,
+        arena,
+        slot,
+        pending,
+        clip,
+        missing: 0,
+    };
+    let is_served =
+        gaps3(&parts, configuration.solid, &pose12, prediction, limit, &mut |index, gap| {
+            found.add(configuration.cache_indices[index], gap);
+        });
     found.clip();
     found.drop_missing();
     is_served
 }
 
 /// A box or hull and the nearby triangles of a surface.
-struct FaceMeeting<'a, N: Real> {
+struct FaceConfiguration<'a, N: Real> {
     query: &'a Query<'a, N, 3>,
     scene: &'a Scene<'a, N, 3>,
     surface: SurfaceAccess<'a, N, 3>,
@@ -70,7 +79,7 @@ struct FaceMeeting<'a, N: Real> {
     from: Point<N, 3>,
     reach: N,
     /// The index in the cache of each near triangle, in the order in which `gaps3` counts them.
-    places: SmallVec<[usize; 24]>,
+    cache_indices: SmallVec<[usize; 24]>,
 }
 
 /// A cached triangle, in the frame of its surface.
@@ -99,25 +108,25 @@ enum SurfaceAnswer<N: Real> {
     Unclear,
 }
 
-impl<'a, N: Real> FaceMeeting<'a, N> {
+impl<'a, N: Real> FaceConfiguration<'a, N> {
     /// `None` unless a box or hull meets a surface whose cached parts are all triangles. Also
     /// `None` for bodies: a solid inside them has contacts too.
     fn new(
         query: &'a Query<'a, N, 3>,
         scene: &'a Scene<'a, N, 3>,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
     ) -> Option<Self> {
         let (between, around, surface) = (query.between, query.around, scene.surfaces[1]?);
         let solid = between.pair.first;
         let is_served = has_faces(solid)
-            && nearby.near.len() == around.tiles().len()
+            && culled.masks.len() == around.tiles().len()
             && around.has_triangles_alone()
             && !between.has_bodies();
         let map = Geometry(solid).as_support_map().filter(|_| is_served)?;
         let from = query.reference.unwrap_or_else(|| between.pose21.point(&map.center()));
-        let near = nearby.near.iter().enumerate();
-        let places = near.flat_map(|(block, near)| {
-            Ones::<LANES>((*near).into()).map(move |lane| block * LANES + lane)
+        let masks = culled.masks.iter().enumerate();
+        let cache_indices = masks.flat_map(|(block, mask)| {
+            Ones::<LANES>((*mask).into()).map(move |lane| block * LANES + lane)
         });
         Some(Self {
             query,
@@ -129,19 +138,19 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
             origin: between.pose21.translation,
             from,
             reach: map.reach(),
-            places: places.collect(),
+            cache_indices: cache_indices.collect(),
         })
     }
 
     /// Returns a cached triangle; `None` if its seams are unknown.
-    fn triangle(&self, place: usize) -> Option<KeptTriangle<'a, N>> {
-        let seams = self.around.seams(place)?;
-        let corners = self.around.tiles()[place / LANES].corners(place % LANES);
+    fn triangle(&self, cache_index: usize) -> Option<KeptTriangle<'a, N>> {
+        let seams = self.around.seams(cache_index)?;
+        let corners = self.around.tiles()[cache_index / LANES].corners(cache_index % LANES);
         let squared =
             corners.each_ref().mapped(|corner| (corner.coords - self.origin).norm_squared());
         let size = self.reach + max(squared[0], max(squared[1], squared[2])).sqrt();
         let tolerance = N::lit(ROUNDING_ERRORS) * N::EPSILON * size;
-        Some(KeptTriangle { part: self.around.parts()[place], corners, seams, tolerance })
+        Some(KeptTriangle { part: self.around.parts()[cache_index], corners, seams, tolerance })
     }
 
     /// Filters the normal of a gap by the surface.
@@ -180,12 +189,12 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
 
     /// Returns the input of the clip for a contact. `None` for a flat box, and for an `Own` contact
     /// beyond the prediction of the parts: both fall back to the generic path.
-    fn asked(
+    fn clip_request(
         &self,
         contact: &FaceContact<N>,
         distance: N,
         tolerance: N,
-    ) -> Option<TriangleAsked<N>> {
+    ) -> Option<ClipRequest<N>> {
         let is_own = contact.status == PartStatus::Own;
         if is_own && distance > self.query.request.prediction {
             return None;
@@ -193,7 +202,7 @@ impl<'a, N: Real> FaceMeeting<'a, N> {
         // If the parts overlap by no more than rounding, no point is deeper than that.
         let least = if !is_own && distance > -tolerance { distance } else { -N::INFINITY };
         let normal = self.query.between.pair.pose12.vector(&contact.normal);
-        TriangleAsked::new(self.solid, normal, is_own.then_some(distance), least)
+        ClipRequest::new(self.solid, normal, is_own.then_some(distance), least)
     }
 }
 
@@ -204,26 +213,26 @@ pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) ->
 
 /// Triangles waiting for the clip, up to eight, each with the index of its contact and its index in
 /// the cache.
-struct Due<N: Real> {
+struct PendingClips<N: Real> {
     triangles: PartPacket<N, 3>,
-    asked: SmallVec<[TriangleAsked<N>; LANES]>,
+    requests: SmallVec<[ClipRequest<N>; LANES]>,
     contacts: SmallVec<[(usize, usize); LANES]>,
 }
 
-impl<N: Real> Default for Due<N> {
+impl<N: Real> Default for PendingClips<N> {
     fn default() -> Self {
         let triangles = PartPacket::blank();
-        Self { triangles, asked: SmallVec::new(), contacts: SmallVec::new() }
+        Self { triangles, requests: SmallVec::new(), contacts: SmallVec::new() }
     }
 }
 
 /// The contacts found so far.
 struct FaceContacts<'s, 'a, N: Real> {
-    meeting: &'s FaceMeeting<'a, N>,
+    configuration: &'s FaceConfiguration<'a, N>,
     contacts: &'s mut PartContacts<N, 3>,
     arena: &'s mut Arena<N, 3>,
     slot: Option<PlacedPair<'a, N, 3>>,
-    due: Due<N>,
+    pending: PendingClips<N>,
     clip: FaceClip<N>,
     /// Number of contacts that the generic path did not confirm; their distance is infinite.
     missing: usize,
@@ -232,33 +241,34 @@ struct FaceContacts<'s, 'a, N: Real> {
 impl<N: Real> FaceContacts<'_, '_, N> {
     /// Adds the contact of a triangle, if it has one. Without a gap it falls back to the generic
     /// path.
-    fn add(&mut self, place: usize, gap: Option<&TriangleGap<N>>) {
-        if gap.is_none_or(|gap| self.add_plain(place, gap).is_none()) {
-            let found = self.in_general(place);
+    fn add(&mut self, cache_index: usize, gap: Option<&TriangleGap<N>>) {
+        if gap.is_none_or(|gap| self.add_certain(cache_index, gap).is_none()) {
+            let found = self.in_general(cache_index);
             self.contacts.extend(found);
         }
-        if self.due.asked.len() == LANES {
+        if self.pending.requests.len() == LANES {
             self.clip();
         }
     }
 
     /// Adds the contact of a triangle with a plain gap, if it has one. `None` if the generic path
     /// has to decide.
-    fn add_plain(&mut self, place: usize, gap: &TriangleGap<N>) -> Option<()> {
-        let triangle = self.meeting.triangle(place)?;
-        let contact = match self.meeting.answer(&triangle, gap) {
+    fn add_certain(&mut self, cache_index: usize, gap: &TriangleGap<N>) -> Option<()> {
+        let triangle = self.configuration.triangle(cache_index)?;
+        let contact = match self.configuration.answer(&triangle, gap) {
             SurfaceAnswer::Nothing => return Some(()),
             SurfaceAnswer::Contact(contact) => contact,
             SurfaceAnswer::Unclear => return None,
         };
         if contact.status != PartStatus::Left {
-            let asked = self.meeting.asked(&contact, gap.distance, triangle.tolerance)?;
-            self.due.triangles.put(self.due.asked.len(), &triangle.corners);
-            self.due.asked.push(asked);
-            self.due.contacts.push((self.contacts.len(), place));
+            let request =
+                self.configuration.clip_request(&contact, gap.distance, triangle.tolerance)?;
+            self.pending.triangles.put(self.pending.requests.len(), &triangle.corners);
+            self.pending.requests.push(request);
+            self.pending.contacts.push((self.contacts.len(), cache_index));
         }
-        self.note_face(place, contact.face.as_ref());
-        let (to_first, parts) = (&self.meeting.query.between.pair.pose12, [0, triangle.part]);
+        self.note_face(cache_index, contact.face.as_ref());
+        let (to_first, parts) = (&self.configuration.query.between.pair.pose12, [0, triangle.part]);
         let normal = -to_first.vector(&contact.normal);
         self.contacts.push(PartContact {
             distance: gap.distance,
@@ -273,8 +283,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
     }
 
     /// Clears `are_fronts` if a face in contact is not a front.
-    fn note_face(&mut self, place: usize, face: Option<&Vector<N, 3>>) {
-        let seams = self.meeting.around.seams(place);
+    fn note_face(&mut self, cache_index: usize, face: Option<&Vector<N, 3>>) {
+        let seams = self.configuration.around.seams(cache_index);
         let is_front = |face| seams.is_some_and(|seams: &FaceSeams<N>| seams.is_front(face));
         self.arena.are_fronts &= face.is_none_or(is_front);
     }
@@ -282,21 +292,21 @@ impl<N: Real> FaceContacts<'_, '_, N> {
     /// Clips the waiting triangles. Those that the lanes leave undecided are computed by the
     /// generic path.
     fn clip(&mut self) {
-        let (Due { triangles, asked, contacts }, meeting) =
-            (core::mem::take(&mut self.due), self.meeting);
-        if asked.is_empty() {
+        let (PendingClips { triangles, requests, contacts }, configuration) =
+            (core::mem::take(&mut self.pending), self.configuration);
+        if requests.is_empty() {
             return;
         }
         let solid = FaceSolid {
-            solid: meeting.solid,
-            turn: &meeting.turn,
-            origin: meeting.origin,
-            prediction: meeting.query.request.prediction,
+            solid: configuration.solid,
+            turn: &configuration.turn,
+            origin: configuration.origin,
+            prediction: configuration.query.request.prediction,
         };
         let (mut start, mut left) = (self.arena.points.len(), 0_u8);
         let all = &mut *self.contacts;
         let (clip, points) = (&mut self.clip, &mut self.arena.points);
-        solid.each_clip(&triangles, &asked, clip, points, |lane, lowest, points| {
+        solid.each_clip(&triangles, &requests, clip, points, |lane, lowest, points| {
             let contact = &mut all[contacts[lane].0];
             match lowest {
                 Some(lowest) => {
@@ -312,8 +322,8 @@ impl<N: Real> FaceContacts<'_, '_, N> {
         });
         // Contacts keep their positions, which are sorted by part.
         for lane in Ones::<LANES>(left.into()) {
-            let (contact, place) = &contacts[lane];
-            match self.in_general(*place) {
+            let (contact, cache_index) = &contacts[lane];
+            match self.in_general(*cache_index) {
                 Some(found) => self.contacts[*contact] = found,
                 None => {
                     self.contacts[*contact].distance = N::INFINITY;
@@ -324,12 +334,12 @@ impl<N: Real> FaceContacts<'_, '_, N> {
     }
 
     /// Computes the contact of a triangle by the generic path.
-    fn in_general(&mut self, place: usize) -> Option<PartContact<N, 3>> {
-        let FaceMeeting { query, scene, around, .. } = *self.meeting;
-        let parts = [0, around.parts()[place]];
+    fn in_general(&mut self, cache_index: usize) -> Option<PartContact<N, 3>> {
+        let FaceConfiguration { query, scene, around, .. } = *self.configuration;
+        let parts = [0, around.parts()[cache_index]];
         let placed = scene.pair_in(&mut self.slot, parts);
         let found = part_contact::compute(scene, placed, parts, query, None, self.arena)?;
-        self.note_face(place, found.face.as_ref());
+        self.note_face(cache_index, found.face.as_ref());
         Some(found)
     }
 

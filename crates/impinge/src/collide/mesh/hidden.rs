@@ -127,7 +127,7 @@ fn hidden_of<N: Real, const D: usize>(
     if are_alike(&a.normal, &b.normal) {
         return None;
     }
-    let (back, front) = match (place(a, b), place(b, a)) {
+    let (back, front) = match (side_of(a, b), side_of(b, a)) {
         (PlaneSide::Back, PlaneSide::Front) => (a, b),
         (PlaneSide::Front, PlaneSide::Back) => (b, a),
         _ => return None,
@@ -137,22 +137,22 @@ fn hidden_of<N: Real, const D: usize>(
 }
 
 /// Returns the side of the plane of one face that the other lies on, within rounding error.
-fn place<N: Real, const D: usize>(
+fn side_of<N: Real, const D: usize>(
     part: &TouchedFace<N, D>,
     plane: &TouchedFace<N, D>,
 ) -> PlaneSide {
     let origin = plane.corners[0];
-    let (mut low, mut high, mut level) = (N::INFINITY, -N::INFINITY, -N::INFINITY);
+    let (mut low, mut high, mut plane_height) = (N::INFINITY, -N::INFINITY, -N::INFINITY);
     let mut size = N::ZERO;
     for (corner, own) in part.corners.iter().zip(&plane.corners) {
         let (arm, own) = (corner - origin, own - origin);
         let rise = plane.normal.dot(&arm);
         (low, high) = (min(low, rise), max(high, rise));
-        level = max(level, plane.normal.dot(&own));
+        plane_height = max(plane_height, plane.normal.dot(&own));
         size = max(size, arm.norm_squared() + own.norm_squared());
     }
-    let room = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
-    match (low - level < -room, high - level > room) {
+    let tolerance = N::lit(ROUNDING) * N::EPSILON * N::TWO * size.sqrt();
+    match (low - plane_height < -tolerance, high - plane_height > tolerance) {
         (true, false) => PlaneSide::Back,
         (false, true) => PlaneSide::Front,
         _ => PlaneSide::Across,

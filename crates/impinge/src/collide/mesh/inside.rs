@@ -1,7 +1,7 @@
 //! Contacts of pieces that lie wholly inside a body: they lead out through the nearest part of its
 //! boundary.
 
-use super::part_contact::{Arena, plain};
+use super::part_contact::{Arena, contact_of_solids};
 use super::scene::Scene;
 use super::{PartContacts, Query};
 use crate::collide::parts::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
@@ -45,9 +45,9 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
             if inner == 0 { self.between.pair.pose12.inverse_vector(&outward) } else { outward };
         let Ok(plane) = Plane::try_new(Unit::new_unchecked(outward)) else { return };
         piece.each_part(self.between, |part| {
-            let (placed, mut named) = (scene.above(&plane, &point, (inner, part)), parts);
-            named[inner] = part;
-            contacts.extend(plain(&placed, named, self.request, arena));
+            let (placed, mut pair_parts) = (scene.above(&plane, &point, (inner, part)), parts);
+            pair_parts[inner] = part;
+            contacts.extend(contact_of_solids(&placed, pair_parts, self.request, arena));
         });
     }
 }

@@ -49,7 +49,7 @@ use smallvec::SmallVec;
 pub(crate) use self::ball::update_on_surface;
 pub(crate) use self::chain::update_chain;
 pub(crate) use self::faces::face_contacts;
-pub(crate) use self::gather::Nearby;
+pub(crate) use self::gather::CulledParts;
 use self::hidden::are_alike;
 pub(crate) use self::over::{over2, over3};
 use self::part_cache::PartCache;
@@ -181,16 +181,16 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     ) {
         let of_parts = of_parts(between, request);
         let around = &mut self.around;
-        let nearby = gather::nearby(between, is_self, of_parts.prediction, around);
+        let culled = gather::culled(between, is_self, of_parts.prediction, around);
         let center = middle_of_first(between);
         // A body has its own inside: no side is remembered.
         let old = self.reference.filter(|_| !between.has_bodies());
-        let way = Travelled { old, clearance: nearby.clearance };
-        let reference = center.map(|center| advanced(between, &way, center));
+        let travelled = Travelled { old, clearance: culled.clearance };
+        let reference = center.map(|center| advanced(between, &travelled, center));
         let around = &self.around;
         let query = Query { between, is_self, around, reference: &reference, request: &of_parts };
         let mut arena = Arena::default();
-        let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
+        let contacts = query.part_contacts(request.prediction, &culled, &mut arena);
         self.conclude(&between.pair, request, [reference, center], &contacts, &arena);
     }
 
@@ -224,9 +224,9 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
     }
 }
 
-/// Whether [`Query::settle`] would change nothing: all contacts are [`PartStatus::Own`], their
+/// Whether [`Query::resolve_contacts`] would change nothing: all contacts are [`PartStatus::Own`], their
 /// faces have about one normal, and the lowest point is as near as the nearest part.
-fn is_settled<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
+fn is_resolved<N: Real, const D: usize>(contacts: &[PartContact<N, D>]) -> bool {
     let (mut distance, mut lowest) = (N::INFINITY, N::INFINITY);
     let mut face: Option<Vector<N, D>> = None;
     for contact in contacts {
@@ -262,22 +262,22 @@ struct Travelled<N: Real, const D: usize> {
 /// the old one.
 fn advanced<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    way: &Travelled<N, D>,
+    travelled: &Travelled<N, D>,
     center: Point<N, D>,
 ) -> Point<N, D> {
-    let Travelled { old, clearance } = *way;
+    let Travelled { old, clearance } = *travelled;
     let [_, composite] = between.composites();
     let composite = composite.filter(|composite| composite.surface().is_some());
     let map = Geometry(between.pair.first).as_support_map();
     let (Some(old), Some(composite), Some(map)) = (old, composite, map) else { return center };
-    let way = center - old;
-    let length = way.norm();
+    let shift = center - old;
+    let length = shift.norm();
     // Half of the clearance leaves room for rounding.
     let is_free = length < clearance * N::HALF;
-    if is_free || way == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
+    if is_free || shift == Vector::<N, D>::zeros() || length > N::TWO * size(map) {
         return center;
     }
-    let is_hit = entries::is_crossed(composite, &Ray::new(old, way), N::ONE);
+    let is_hit = entries::is_crossed(composite, &Ray::new(old, shift), N::ONE);
     if is_hit { old } else { center }
 }
 
@@ -306,24 +306,24 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     fn part_contacts(
         &self,
         prediction: N,
-        nearby: &Nearby<N>,
+        culled: &CulledParts<N>,
         arena: &mut Arena<N, D>,
     ) -> PartContacts<N, D> {
         let scene = Scene::new(self.between, self.around);
         let mut contacts = PartContacts::new();
-        if nearby.parts.len() > MANY_PARTS {
-            contacts.reserve(nearby.parts.len());
-            arena.points.reserve(POINTS_AT_A_PART * nearby.parts.len());
+        if culled.parts.len() > MANY_PARTS {
+            contacts.reserve(culled.parts.len());
+            arena.points.reserve(POINTS_AT_A_PART * culled.parts.len());
         }
-        if !<N::Algorithms>::face_contacts(self, &scene, nearby, prediction, &mut contacts, arena) {
+        if !<N::Algorithms>::face_contacts(self, &scene, culled, prediction, &mut contacts, arena) {
             let mut slot = None;
-            for &parts in &nearby.parts {
+            for &parts in &culled.parts {
                 let placed = scene.pair_in(&mut slot, parts);
                 contacts.extend(part_contact::compute(&scene, placed, parts, self, None, arena));
             }
         }
         let inside = self.take_inside(&mut contacts);
-        self.settle(&scene, &mut contacts, arena);
+        self.resolve_contacts(&scene, &mut contacts, arena);
         for piece in &inside {
             self.add_inside(&scene, piece, &mut contacts, arena);
         }
@@ -331,7 +331,7 @@ impl<N: Space<D>, const D: usize> Query<'_, N, D> {
     }
 
     /// Decides which contacts hold, and computes the points that are still missing.
-    fn settle(
+    fn resolve_contacts(
         &self,
         scene: &Scene<'_, N, D>,
         found: &mut [PartContact<N, D>],
@@ -355,8 +355,8 @@ fn of_parts<N: Space<D>, const D: usize>(
 ) -> ManifoldRequest<N> {
     let ManifoldRequest { prediction, sine, .. } = *request;
     let map = Geometry(between.pair.first).as_support_map().filter(|_| sine > N::ZERO);
-    let way = map.map_or(N::ZERO, |map| sine * (N::TWO * size(map)));
-    ManifoldRequest { prediction: prediction + way, sine: N::ZERO, max_points: PART_POINTS }
+    let margin = map.map_or(N::ZERO, |map| sine * (N::TWO * size(map)));
+    ManifoldRequest { prediction: prediction + margin, sine: N::ZERO, max_points: PART_POINTS }
 }
 
 /// The bounding radius of a solid around its origin.
@@ -377,7 +377,7 @@ pub(crate) fn contact_in_world<N: Space<D>, const D: usize>(
     }
     let between = Between::of_ordered(&ordered);
     let in_world = |found| placed(&found, ordered.first, ordered.swapped);
-    if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_way(&between)
+    if between.pair.pose12.is_finite() && is_within_solid(&between, limit) && has_own_path(&between)
     {
         // Points that differ by rounding alone are all considered, whatever the limit is.
         let rounding = rounding(&between);
@@ -408,7 +408,7 @@ fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, lim
 }
 
 /// Whether the pair mostly has a kernel of its own: balls on surfaces, and chains.
-fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
+fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
     if parts.has_bodies() {
         return false;
@@ -421,7 +421,7 @@ fn has_own_way<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool
 /// about as near as the nearest are searched, unless none of these can be touched.
 ///
 /// A contact whose distance differs from `distance` by rounding alone gets that distance: it exists
-/// where the shapes touch, and is no overlap where they are apart. Pairs with [`has_own_way`] that
+/// where the shapes touch, and is no overlap where they are apart. Pairs with [`has_own_path`] that
 /// are apart keep the distance of the contact.
 fn deepest<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
@@ -430,13 +430,13 @@ fn deepest<N: Space<D>, const D: usize>(
 ) -> Option<Separation<N, D>> {
     let (near, rounding) = (max(distance, N::ZERO), rounding(between));
     // Along the normal of its face, a part may be a little farther than its distance.
-    let reach = near + near * N::lit(NEARLY) + rounding;
-    let mut found =
-        deepest_within(between, reach).or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
+    let max_distance = near + near * N::lit(NEARLY) + rounding;
+    let mut found = deepest_within(between, max_distance)
+        .or_else(|| deepest_within(between, max(limit, N::ZERO)))?;
     let farther = found.distance - near;
     let is_off = farther > N::ZERO || distance > N::ZERO;
     let touches = distance <= N::ZERO && farther > N::ZERO;
-    if is_off && farther.abs() <= rounding && (touches || !has_own_way(between)) {
+    if is_off && farther.abs() <= rounding && (touches || !has_own_path(between)) {
         found.distance = near;
         found.point2 = found.point1 + found.normal * near;
     }

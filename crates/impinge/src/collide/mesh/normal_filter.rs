@@ -82,20 +82,20 @@ pub(super) fn filter_normal<N: Space<D>, const D: usize>(
             FilteredNormal::Refused
         };
     };
-    let lean = (case.outward - face).norm();
-    if lean <= N::lit(ROUNDING) * N::EPSILON {
+    let tilt = (case.outward - face).norm();
+    if tilt <= N::lit(ROUNDING) * N::EPSILON {
         return FilteredNormal::Face(face);
     }
     if case.outward.dot(&face) < N::lit(BEHIND) {
         return FilteredNormal::Snapped(face);
     }
     let feature = (case.feature)();
-    if is_face(feature) && lean <= N::lit(ON_FACE) {
+    if is_face(feature) && tilt <= N::lit(ON_FACE) {
         return FilteredNormal::Face(face);
     }
-    let leaning = if case.is_beside { None } else { leaning(case, &face) };
-    let [is_own, is_beyond] = match leaning {
-        Some(leaning) => surface.admits_in_turn(case.part, feature, [&case.outward, &leaning]),
+    let tilted = if case.is_beside { None } else { tilted(case, &face) };
+    let [is_own, is_beyond] = match tilted {
+        Some(tilted) => surface.admits_in_turn(case.part, feature, [&case.outward, &tilted]),
         None => [is_admitted(feature), false],
     };
     match (is_own, is_beyond) {
@@ -108,12 +108,12 @@ pub(super) fn filter_normal<N: Space<D>, const D: usize>(
 /// Returns the normal of the face tilted slightly towards the normal of the contact. If the seam
 /// admits it but not the contact's, the part ends at a ridge, and the contact's normal lies beyond
 /// all that the ridge has.
-fn leaning<N: Space<D>, const D: usize>(
+fn tilted<N: Space<D>, const D: usize>(
     case: &Case<'_, N, D>,
     face: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
-    let leaning = face + (case.outward - face) * N::lit(A_LITTLE);
-    unit(&leaning).map(|(leaning, _)| leaning)
+    let tilted = face + (case.outward - face) * N::lit(A_LITTLE);
+    unit(&tilted).map(|(tilted, _)| tilted)
 }
 
 /// Whether a feature is a flat face; a segment of a surface in 2D is an edge instead.

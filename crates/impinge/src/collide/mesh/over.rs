@@ -30,23 +30,23 @@ pub(crate) fn over3<N: Real>(
     let lengths = sides.mapped(|side| side.norm());
     let longest = max(lengths[0], max(lengths[1], lengths[2]));
     let normal = cross(&sides[0], &sides[1]);
-    let (area, room) = (normal.norm(), N::lit(CERTAIN) * tolerance);
+    let (area, margin) = (normal.norm(), N::lit(CERTAIN) * tolerance);
     // False for NaN.
-    let is_plain = area > N::lit(MIN_HEIGHT) * longest * longest && longest > room;
-    if !is_plain {
+    let is_nondegenerate = area > N::lit(MIN_HEIGHT) * longest * longest && longest > margin;
+    if !is_nondegenerate {
         return None;
     }
     let front = normal / area;
     let insides =
         [0, 1, 2].mapped(|at: usize| cross(&sides[at], &arms[at]).dot(&front) / lengths[at]);
-    if insides.iter().all(|&inside| inside > room) {
+    if insides.iter().all(|&inside| inside > margin) {
         let height = front.dot(&arms[0]);
-        return (height.abs() > room).then_some(FeatureId::Face(u32::from(height < N::ZERO)));
+        return (height.abs() > margin).then_some(FeatureId::Face(u32::from(height < N::ZERO)));
     }
-    if !insides.iter().any(|&inside| inside < -room) {
+    if !insides.iter().any(|&inside| inside < -margin) {
         return None;
     }
-    beside(&Border { sides, arms, lengths, insides, room })
+    beside(&Border { sides, arms, lengths, insides, margin })
 }
 
 /// A triangle and the position of a point relative to its border.
@@ -57,19 +57,19 @@ struct Border<N: Real> {
     lengths: [N; 3],
     /// The distance of the point from each side, positive inside.
     insides: [N; 3],
-    room: N,
+    margin: N,
 }
 
 /// Returns the side that the point is beyond, between its ends, or the corner that it is beyond
 /// along both sides.
 fn beside<N: Real>(border: &Border<N>) -> Option<FeatureId> {
-    let Border { sides, arms, lengths, insides, room } = border;
+    let Border { sides, arms, lengths, insides, margin } = border;
     // Where two sides meet at a small angle, the nearest point may be on the other side.
-    let aside = N::lit(CERTAIN) * *room;
+    let aside = N::lit(CERTAIN) * *margin;
     for at in 0..3 {
         let along = sides[at].dot(&arms[at]) / lengths[at];
         let number = u32::try_from(at).expect("there are three sides");
-        if insides[at] < -*room && along > aside && along < lengths[at] - aside {
+        if insides[at] < -*margin && along > aside && along < lengths[at] - aside {
             return Some(FeatureId::Edge(number));
         }
         let before = (at + 2) % 3;

@@ -18,7 +18,7 @@ use crate::shape::{CompositeShape, FaceSeams, Part, PartSolid, Segment, SupportM
 
 /// The margin around a box in which parts are cached for later updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum CacheRoom {
+enum CacheMargin {
     /// Until it holds more parts than one packet, or another given number.
     #[default]
     Large,
@@ -28,7 +28,7 @@ enum CacheRoom {
     None,
 }
 
-impl CacheRoom {
+impl CacheMargin {
     /// The margin relative to the largest half extent of the box.
     fn share(self) -> f64 {
         match self {
@@ -71,13 +71,13 @@ pub(super) struct PartCache<N: Real, const D: usize> {
     /// Half the extents of the solid's core, in its own frame.
     half: Option<Vector<N, D>>,
     /// The margin of the next search; it never grows.
-    room: CacheRoom,
+    margin: CacheMargin,
 }
 
 impl<N: Real, const D: usize> PartCache<N, D> {
     /// A cache for a single update, without a margin.
     pub(super) fn for_once() -> Self {
-        Self { room: CacheRoom::None, ..Self::default() }
+        Self { margin: CacheMargin::None, ..Self::default() }
     }
 }
 
@@ -91,16 +91,16 @@ impl<N: Real, const D: usize> PartCache<N, D> {
 
 impl<N: Space<D>, const D: usize> PartCache<N, D> {
     /// Makes sure that the cache holds all parts that overlap a box; false if the box is unbounded.
-    pub(super) fn reaches(
+    pub(super) fn covers(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
         aabb: &Aabb<N, D>,
     ) -> bool {
-        self.reaches_with(composite, aabb, LANES)
+        self.covers_with(composite, aabb, LANES)
     }
 
-    /// [`Self::reaches`], with the large margin as long as this holds at most `most` parts.
-    pub(super) fn reaches_with(
+    /// [`Self::covers`], with the large margin as long as this holds at most `most` parts.
+    pub(super) fn covers_with(
         &mut self,
         composite: &dyn CompositeShape<N, D>,
         aabb: &Aabb<N, D>,
@@ -125,13 +125,13 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
     /// margin holds more than `most` parts, the small one is used from then on.
     fn fill(&mut self, composite: &dyn CompositeShape<N, D>, aabb: &Aabb<N, D>, most: usize) {
         let half = aabb.half_extents().iter().fold(N::ZERO, |most, &half| max(most, half));
-        let with_room = |room: CacheRoom| aabb.loosened(half * N::lit(room.share()));
-        let mut within = with_room(self.room);
+        let with_margin = |margin: CacheMargin| aabb.loosened(half * N::lit(margin.share()));
+        let mut within = with_margin(self.margin);
         let before = if self.seams.is_empty() { SmallVec::new() } else { self.parts.clone() };
         self.search(composite, &within);
-        if self.room == CacheRoom::Large && self.parts.len() > most {
-            self.room = CacheRoom::Small;
-            within = with_room(self.room);
+        if self.margin == CacheMargin::Large && self.parts.len() > most {
+            self.margin = CacheMargin::Small;
+            within = with_margin(self.margin);
             self.search(composite, &within);
         }
         self.tiles.clear();
@@ -196,26 +196,26 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.tiles
     }
 
-    /// Gets the seams of triangles from the surface of the composite; `near` has a bit for each
+    /// Gets the seams of triangles from the surface of the composite; `masks` has a bit for each
     /// part of each packet that needs them.
-    pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, near: &[u8]) {
+    pub(super) fn learn_seams(&mut self, composite: &dyn CompositeShape<N, D>, masks: &[u8]) {
         let surface = composite.surface_access().filter(|_| self.has_triangles_alone());
         let Some(surface) = surface else { return };
         self.seams.resize(self.parts.len(), KeptSeams::Unasked);
-        for (block, near) in near.iter().enumerate() {
-            for lane in Ones::<LANES>((*near).into()) {
-                let place = block * LANES + lane;
-                if let KeptSeams::Unasked = self.seams[place] {
-                    let found = surface.face_seams(self.parts[place]);
-                    self.seams[place] = found.map_or(KeptSeams::Unknown, KeptSeams::Known);
+        for (block, mask) in masks.iter().enumerate() {
+            for lane in Ones::<LANES>((*mask).into()) {
+                let index = block * LANES + lane;
+                if let KeptSeams::Unasked = self.seams[index] {
+                    let found = surface.face_seams(self.parts[index]);
+                    self.seams[index] = found.map_or(KeptSeams::Unknown, KeptSeams::Known);
                 }
             }
         }
     }
 
     /// The seams of the part at an index in [`Self::parts`]; `None` if unknown.
-    pub(super) fn seams(&self, place: usize) -> Option<&FaceSeams<N>> {
-        match self.seams.get(place)? {
+    pub(super) fn seams(&self, index: usize) -> Option<&FaceSeams<N>> {
+        match self.seams.get(index)? {
             KeptSeams::Known(seams) => Some(seams),
             _ => None,
         }
@@ -236,12 +236,12 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         *self.half.get_or_insert_with(|| {
             let center = map.center();
             Vector::<N, D>::from_fn(|axis, _| {
-                let reach = |sign| {
-                    let mut way = Vector::<N, D>::zeros();
-                    way[axis] = sign;
-                    (map.core_support(&way) - center)[axis].abs()
+                let extent = |sign| {
+                    let mut direction = Vector::<N, D>::zeros();
+                    direction[axis] = sign;
+                    (map.core_support(&direction) - center)[axis].abs()
                 };
-                max(reach(N::ONE), reach(-N::ONE))
+                max(extent(N::ONE), extent(-N::ONE))
             })
         })
     }

@@ -121,23 +121,23 @@ pub(super) fn compute<N: Space<D>, const D: usize>(
     let has_surface = scene.surfaces.iter().any(Option::is_some);
     if !(has_surface && placed.has_centers()) {
         // The normal of a half-space is the same everywhere: seams do not matter.
-        return plain(placed, parts, request, arena);
+        return contact_of_solids(placed, parts, request, arena);
     }
     let centers = match scene.surfaces[0] {
         // Without a surface of the first shape, centres in its frame do not matter.
         None => placed.centers_in_second(reference).map(|[other, own]| [[other; 2], [own; 2]])?,
         Some(_) => placed.centers()?,
     };
-    let meeting = PartMeeting { placed, parts, centers, reference };
+    let configuration = PartConfiguration { placed, parts, centers, reference };
     let found = match known {
         Some(known) => *known,
         None => <N::Algorithms>::separation(&placed.pair(), request.prediction)?,
     };
-    of_surfaces(scene, &meeting, &found, request, arena)
+    of_surfaces(scene, &configuration, &found, request, arena)
 }
 
 /// Computes the contact of two parts without a normal filter.
-pub(super) fn plain<N: Space<D>, const D: usize>(
+pub(super) fn contact_of_solids<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     parts: [u32; 2],
     request: &ManifoldRequest<N>,
@@ -154,7 +154,7 @@ pub(super) fn plain<N: Space<D>, const D: usize>(
 }
 
 /// Two parts, at least one of which belongs to a surface.
-struct PartMeeting<'a, N: Real, const D: usize> {
+struct PartConfiguration<'a, N: Real, const D: usize> {
     placed: &'a PlacedPair<'a, N, D>,
     parts: [u32; 2],
     /// The centre of part `i` in the frame of shape `j`, as `centers[i][j]`; for a convex first
@@ -164,7 +164,7 @@ struct PartMeeting<'a, N: Real, const D: usize> {
     reference: &'a Reference<N, D>,
 }
 
-impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     /// Filters the normal of a separation by the surface of each shape. `over` is the feature of
     /// the second part nearest to the centre of a ball, if known.
     fn filtered_normals(
@@ -189,7 +189,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         if !can_touch {
             return [FilteredNormal::Nothing; 2];
         }
-        let [is_second1, is_second2] = self.placed.turned([false, true]);
+        let [is_second1, is_second2] = self.placed.swapped([false, true]);
         let pair = self.placed.pair();
         let feature =
             |is_second| <N::Algorithms>::witness_feature(&pair, gap, tolerance, is_second);
@@ -199,13 +199,13 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         let (part, toward) = (self.parts[0], other1 - own1);
         let case1 = Case { part, feature: &feature1, is_beside: false, outward: normal, toward };
         let (part, toward) = (self.parts[1], other2 - own2);
-        let (outward, is_beside) = (-self.placed.seen_by_second(&normal), is_beside(over));
+        let (outward, is_beside) = (-self.placed.in_second_frame(&normal), is_beside(over));
         let case2 = Case { part, feature: &feature2, is_beside, outward, toward };
         [filter_normal(surface1, &case1), filter_normal(surface2, &case2)]
     }
 }
 
-impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartConfiguration<'_, N, D> {
     /// Whether a contact along `normal` would push the other shape into a body. A face in an inner
     /// wall of a body has such a normal: the inside is on its back as well.
     ///
@@ -214,7 +214,7 @@ impl<N: Space<D>, const D: usize> PartMeeting<'_, N, D> {
         if !scene.are_bodies(self.parts) {
             return false;
         }
-        let outward = [*normal, -self.placed.seen_by_second(normal)];
+        let outward = [*normal, -self.placed.in_second_frame(normal)];
         scene.surfaces.iter().zip(self.parts).zip(outward).any(|((surface, part), outward)| {
             let surface = surface.filter(|surface| surface.is_body(part));
             let front = surface.and_then(|surface| surface.snapped(part, &outward));
@@ -231,36 +231,36 @@ pub(super) fn is_beside(over: Option<FeatureId>) -> bool {
 /// Computes the contact of two parts, at least one of which belongs to a surface.
 fn of_surfaces<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
-    meeting: &PartMeeting<'_, N, D>,
+    configuration: &PartConfiguration<'_, N, D>,
     gap: &Separation<N, D>,
     request: &ManifoldRequest<N>,
     arena: &mut Arena<N, D>,
 ) -> Option<PartContact<N, D>> {
-    let (placed, parts, distance) = (meeting.placed, meeting.parts, gap.distance);
+    let (placed, parts, distance) = (configuration.placed, configuration.parts, gap.distance);
     if !distance.is_finite_number() {
         return None;
     }
     let (pair, tolerance) = (placed.pair(), placed.tolerance());
     let over = over(&pair, tolerance);
-    let filtered = meeting.filtered_normals(scene, gap, tolerance, over);
+    let filtered = configuration.filtered_normals(scene, gap, tolerance, over);
     let normal = placed.outward(&gap.normal);
     let raw = arena.blank();
-    let mut status = match settled(placed, &filtered, &normal) {
-        Settled::Nothing => return None,
-        Settled::Refused => PartStatus::Left,
-        Settled::Found(normal) | Settled::Forced(normal, _)
-            if meeting.leads_into_body(scene, &normal) =>
+    let mut status = match combined_normal(placed, &filtered, &normal) {
+        CombinedNormal::Nothing => return None,
+        CombinedNormal::Refused => PartStatus::Left,
+        CombinedNormal::Found(normal) | CombinedNormal::Forced(normal, _)
+            if configuration.leads_into_body(scene, &normal) =>
         {
             PartStatus::Left
         }
-        Settled::Forced(..) if is_beside(over) => PartStatus::Left,
-        Settled::Found(normal) => {
+        CombinedNormal::Forced(..) if is_beside(over) => PartStatus::Left,
+        CombinedNormal::Found(normal) => {
             let witness = Separation { normal: placed.inward(&normal), ..*gap };
             let over = over.filter(|over| is_certain(*over, &filtered[1]));
             build_touching(&pair, &witness, over, (tolerance, request), raw);
             PartStatus::Own
         }
-        Settled::Forced(face, status) => {
+        CombinedNormal::Forced(face, status) => {
             // If the parts overlap by no more than rounding, no point is deeper than that, unless
             // the solid comes from inside of a body.
             let is_below = || {
@@ -357,7 +357,7 @@ pub(super) fn overlooks<N: Real, const D: usize>(
 
 /// The combined result of both surfaces. Normals are from the first shape to the second, in the
 /// frame of the first.
-enum Settled<N: Real, const D: usize> {
+enum CombinedNormal<N: Real, const D: usize> {
     Nothing,
     Refused,
     /// A contact at the nearest points, with this normal.
@@ -368,30 +368,30 @@ enum Settled<N: Real, const D: usize> {
 
 /// Combines the results of both surfaces for `normal`, which is in the frame of the first shape, as
 /// is the result. If two faces compete, the one closer to `normal` wins.
-fn settled<N: Space<D>, const D: usize>(
+fn combined_normal<N: Space<D>, const D: usize>(
     placed: &PlacedPair<'_, N, D>,
     filtered: &[FilteredNormal<N, D>; 2],
     normal: &Vector<N, D>,
-) -> Settled<N, D> {
+) -> CombinedNormal<N, D> {
     use FilteredNormal::{Admitted, Beyond, Face, Nothing, Refused, Snapped};
-    let of_second = |face: &Vector<N, D>| -placed.seen_by_first(face);
+    let of_second = |face: &Vector<N, D>| -placed.in_first_frame(face);
     let status = if filtered.iter().any(|filtered| matches!(filtered, Beyond(_))) {
         PartStatus::Beyond
     } else {
         PartStatus::Snapped
     };
     match filtered {
-        [Nothing, _] | [_, Nothing] => Settled::Nothing,
+        [Nothing, _] | [_, Nothing] => CombinedNormal::Nothing,
         [Snapped(face1) | Beyond(face1), Snapped(face2) | Beyond(face2)] => {
             let face2 = of_second(face2);
             let is_first_nearer = face1.dot(normal) > face2.dot(normal);
-            Settled::Forced(if is_first_nearer { *face1 } else { face2 }, status)
+            CombinedNormal::Forced(if is_first_nearer { *face1 } else { face2 }, status)
         }
-        [_, Snapped(face) | Beyond(face)] => Settled::Forced(of_second(face), status),
-        [Snapped(face) | Beyond(face), _] => Settled::Forced(*face, status),
-        [Refused, _] | [_, Refused] => Settled::Refused,
-        [_, Face(face)] => Settled::Found(of_second(face)),
-        [Face(face), _] => Settled::Found(*face),
-        [Admitted, Admitted] => Settled::Found(*normal),
+        [_, Snapped(face) | Beyond(face)] => CombinedNormal::Forced(of_second(face), status),
+        [Snapped(face) | Beyond(face), _] => CombinedNormal::Forced(*face, status),
+        [Refused, _] | [_, Refused] => CombinedNormal::Refused,
+        [_, Face(face)] => CombinedNormal::Found(of_second(face)),
+        [Face(face), _] => CombinedNormal::Found(*face),
+        [Admitted, Admitted] => CombinedNormal::Found(*normal),
     }
 }

@@ -177,7 +177,7 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
             }
         }
         if !olds.is_empty() {
-            self.keep_by_places(&olds, &ids, kept);
+            self.keep_by_position(&olds, &ids, kept);
         }
     }
 
@@ -189,11 +189,13 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         (patch, old): (&Patch<N, D>, &PatchPoint<N, D>),
         piece: usize,
     ) -> Option<usize> {
-        let names = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
-        let (features, Piece { normal, parts, points }) = (names(&old.raw), &self.pieces[piece]);
-        let mut heirs = points.clone().filter(|&at| names(&self.points[at]) == features);
+        let features_of = |raw: &RawPoint<N, D>| [raw.feature1, raw.feature2];
+        let (features, Piece { normal, parts, points }) =
+            (features_of(&old.raw), &self.pieces[piece]);
+        let mut heirs = points.clone().filter(|&at| features_of(&self.points[at]) == features);
         let heir = heirs.next()?;
-        let is_twin = |at: &&PatchPoint<N, D>| at.parts == old.parts && names(&at.raw) == features;
+        let is_twin =
+            |at: &&PatchPoint<N, D>| at.parts == old.parts && features_of(&at.raw) == features;
         if heirs.next().is_some() {
             return None;
         }
@@ -212,17 +214,17 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
 
     /// Matches the remaining old and new points by position.
     #[inline(never)]
-    fn keep_by_places(&self, olds: &[Anchors<N, D>], ids: &[u32], kept: &mut KeptIds) {
-        let (mut news, mut places) = (AnchorList::new(), SmallVec::<[usize; 32]>::new());
+    fn keep_by_position(&self, olds: &[Anchors<N, D>], ids: &[u32], kept: &mut KeptIds) {
+        let (mut news, mut indices) = (AnchorList::new(), SmallVec::<[usize; 32]>::new());
         for Piece { normal, parts, points } in self.pieces {
             let pose = PairPose { pose12: Some(&self.pair.pose12), normal };
             for at in points.clone().filter(|&at| kept[at].is_none()) {
                 news.push(anchors(&pose, &self.points[at], *parts));
-                places.push(at);
+                indices.push(at);
             }
         }
         each_match(olds, &news, self.size(), &mut |old, new, is_old| {
-            kept[places[new]] = Some(Inherited { id: ids[old], is_old });
+            kept[indices[new]] = Some(Inherited { id: ids[old], is_old });
         });
     }
 
@@ -231,17 +233,17 @@ impl<N: Real, const D: usize> Merging<'_, N, D> {
         *self.size.get_or_init(|| smaller_size([self.pair.first, self.pair.second]))
     }
 
-    /// Returns the index of the piece of two parts. `place` is a guess: the points of one pair of
+    /// Returns the index of the piece of two parts. `guess` is a guess: the points of one pair of
     /// parts come together and patches are sorted by their parts, so that it is mostly there or
     /// next.
     #[inline]
-    fn piece_of(&self, parts: [u32; 2], place: usize) -> Option<usize> {
+    fn piece_of(&self, parts: [u32; 2], guess: usize) -> Option<usize> {
         let is_at = |at: usize| self.pieces.get(at).is_some_and(|piece| piece.parts == parts);
-        if is_at(place) {
-            return Some(place);
+        if is_at(guess) {
+            return Some(guess);
         }
-        if is_at(place + 1) {
-            return Some(place + 1);
+        if is_at(guess + 1) {
+            return Some(guess + 1);
         }
         self.pieces.binary_search_by(|piece| piece.parts.cmp(&parts)).ok()
     }

@@ -65,9 +65,9 @@ fn pieces_by_group(
     }
     let mut order = SmallVec::from_elem(0, start);
     for (piece, group) in pieces {
-        let place = &mut groups[group].pieces.end;
-        order[*place] = piece;
-        *place += 1;
+        let end = &mut groups[group].pieces.end;
+        order[*end] = piece;
+        *end += 1;
     }
     order
 }
@@ -97,7 +97,7 @@ impl Groups {
         let mut all = if cells.have_own_normals(pieces) {
             Self::of_one_each(merging, &leads)
         } else {
-            Self::of_level(merging, &leads, &mut cells)
+            Self::of_coplanar(merging, &leads, &mut cells)
         };
         let is_near =
             |lead: &Lead| merging.points[lead.deepest].distance <= merging.request.prediction;
@@ -118,7 +118,7 @@ impl Groups {
 
     /// Adds the pieces, deepest first, to the group whose lead they are coplanar with, or to a new
     /// one.
-    fn of_level<N: Real, const D: usize>(
+    fn of_coplanar<N: Real, const D: usize>(
         merging: &Merging<'_, N, D>,
         leads: &[Lead],
         cells: &mut NormalCells,
@@ -131,11 +131,11 @@ impl Groups {
         let mut group_of = SmallVec::<[usize; 16]>::with_capacity(leads.len());
         for &(_, lead) in &by_depth {
             let lead = &leads[lead as usize];
-            let is_level = |&group: &usize| are_level(merging, &groups[group].lead, lead);
+            let is_coplanar = |&group: &usize| are_coplanar(merging, &groups[group].lead, lead);
             let known = if cells.is_one() {
-                (0..groups.len()).find(is_level)
+                (0..groups.len()).find(is_coplanar)
             } else {
-                cells.near(lead.piece).find(is_level)
+                cells.near(lead.piece).find(is_coplanar)
             };
             let (group, parts) = (known.unwrap_or(groups.len()), merging.pieces[lead.piece].parts);
             if known.is_none() {
@@ -160,7 +160,7 @@ impl Groups {
 
 /// Whether two pieces, the first the deeper, have one normal and lie in one plane: on the surface
 /// of the first shape or on that of the second.
-fn are_level<N: Real, const D: usize>(
+fn are_coplanar<N: Real, const D: usize>(
     merging: &Merging<'_, N, D>,
     lead1: &Lead,
     lead2: &Lead,
@@ -174,10 +174,10 @@ fn are_level<N: Real, const D: usize>(
     let [point1, point2] =
         [lead1, lead2].mapped(|lead| -> &RawPoint<N, D> { &merging.points[lead.deepest] });
     let arm = point2.point1 - point1.point1;
-    let room = N::lit(SAME) * arm.norm() + N::TWO * merging.tolerance;
+    let tolerance = N::lit(SAME) * arm.norm() + N::TWO * merging.tolerance;
     let rise1 = piece(lead1).normal.dot(&arm);
     let rise2 = rise1 + point2.distance - point1.distance;
-    min(rise1.abs(), rise2.abs()) <= room
+    min(rise1.abs(), rise2.abs()) <= tolerance
 }
 
 fn square_of_same<N: Real>() -> N {
@@ -274,17 +274,17 @@ fn cell_of<N: Real, const D: usize>(normal: &Vector<N, D>) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
 
     /// Pieces without points, with normals in all directions, some of them nearly equal.
     fn pieces<const D: usize>(count: usize, has_equal: bool) -> Vec<Piece<f64, D>> {
-        let mut noise = Noise(3);
+        let mut random = Xorshift(3);
         let mut pieces: Vec<Piece<f64, D>> = Vec::new();
         for at in 0..count {
             let is_near = has_equal && at % 4 == 3;
             let near = if is_near { pieces[at - 1].normal } else { Vector::<f64, D>::zeros() };
             let scale = if is_near { 0.4 * SAME } else { 1.0 };
-            let aside = Vector::<f64, D>::from_fn(|_, _| scale * noise.next());
+            let aside = Vector::<f64, D>::from_fn(|_, _| scale * random.next());
             let normal = (near + aside).normalize();
             pieces.push(Piece { normal, parts: [0; 2], points: 0..0 });
         }

@@ -79,11 +79,11 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
 
     /// Keeps at most `limit` members, one of the deepest among them.
     fn choose(&self, members: &mut Members<N>, level: N, limit: usize, is_line: bool) {
-        let seen =
+        let flattened =
             members.iter().map(|member| (member.flat, self.distance(member), self.is_old(member)));
         let tolerance = self.merging.tolerance;
         let slack = slack_level(level - tolerance, self.merging.size(), tolerance);
-        let mut points = projected(seen, [level, slack]);
+        let mut points = projected(flattened, [level, slack]);
         let indices = if is_line {
             keep_ends(&mut points);
             reduce::chosen(&mut points, limit, tolerance)
@@ -111,15 +111,15 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             (self.is_old(&chosen[at]), self.distance(&chosen[at]))
         });
         let new = chosen.iter().enumerate().filter(|(_, member)| self.kept[member.point].is_none());
-        let place = |member: &Member<N>| self.merging.points[member.point].point1;
+        let position = |member: &Member<N>| self.merging.points[member.point].point1;
         let mut new_ids = SmallVec::<[u32; FEW]>::from_elem(0, chosen.len());
-        for (_, at) in in_order(new.map(|(at, member)| (at, place(member)))) {
+        for (_, at) in in_order(new.map(|(at, member)| (at, position(member)))) {
             new_ids[at] = ids.next();
         }
-        for (place, &Member { piece, point, .. }) in chosen.iter().enumerate() {
-            let id = self.kept[point].map_or(new_ids[place], |kept| kept.id);
+        for (index, &Member { piece, point, .. }) in chosen.iter().enumerate() {
+            let id = self.kept[point].map_or(new_ids[index], |kept| kept.id);
             let mut raw = RawPoint { id, code: 0, ..self.merging.points[point] };
-            if place == deepest {
+            if index == deepest {
                 raw.distance = lowest;
             }
             let mut at = out.len();
@@ -161,8 +161,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
                 let arm = points[point].point1 - origin;
                 let flat = Vector::<N, 2>::new(tangents[0].dot(&arm), tangents[1].dot(&arm));
                 let is_turning = request.sine > N::ZERO;
-                let reach = if is_turning { request.sine * flat.norm() } else { N::ZERO };
-                if points[point].distance <= request.prediction + reach {
+                let swing = if is_turning { request.sine * flat.norm() } else { N::ZERO };
+                if points[point].distance <= request.prediction + swing {
                     members.push(Member { flat, piece, point });
                 }
             }
@@ -181,8 +181,8 @@ impl<N: Space<D>, const D: usize> Choosing<'_, N, D> {
             let member = members[next];
             let flat = member.flat;
             // Sorted along the first tangent: only the last few can be at the same position.
-            let in_reach = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
-            let mut last = (0..count).rev().take_while(in_reach);
+            let is_close = |at: &usize| flat.x - members[*at].flat.x <= N::TWO * near;
+            let mut last = (0..count).rev().take_while(is_close);
             match last.find(|&at| (members[at].flat - flat).norm_squared() <= near * near) {
                 Some(at) if self.is_better(&member, &members[at]) => {
                     (members[at], is_exchanged) = (member, true);
@@ -239,14 +239,14 @@ fn askew<N: Real, const D: usize>([first, second]: &[Vector<N, D>; 2]) -> [Vecto
 #[inline]
 fn sort<N: Real>(members: &mut [Member<N>]) {
     if members.len() > FEW {
-        return members.sort_by(by_place);
+        return members.sort_by(by_position);
     }
-    sort_few(members, |one, other| by_place(one, other).is_lt());
+    sort_few(members, |one, other| by_position(one, other).is_lt());
 }
 
 /// Orders by the first coordinate, then by the second.
 #[inline]
-fn by_place<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
+fn by_position<N: Real>(a: &Member<N>, b: &Member<N>) -> core::cmp::Ordering {
     let (a, b) = (&a.flat, &b.flat);
     ordering(a.x, b.x).then_with(|| ordering(a.y, b.y))
 }

@@ -11,17 +11,17 @@ use crate::math::{Real, Space, Vector, max};
 const ALIKE: f64 = 0.99;
 
 /// Ways out that are kept at a time, of different directions.
-const MAX_WAYS: usize = 32;
+const MAX_ESCAPES: usize = 32;
 
 /// A way out of the overlap, according to one contact: the second shape moves along `normal` by
 /// `depth`.
-struct WayOut<N: Real, const D: usize> {
+struct Escape<N: Real, const D: usize> {
     normal: Vector<N, D>,
     depth: N,
 }
 
 /// Ways out, added shallowest first; of each direction only the longest is kept.
-struct Ways<N: Real, const D: usize>(SmallVec<[WayOut<N, D>; MAX_WAYS]>);
+struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
 
 /// Drops the contacts that do not hold for the whole shapes.
 ///
@@ -41,10 +41,10 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     if !arena.are_fronts {
         super::hidden::drop_hidden(scene, contacts);
     }
-    let is_asked = |contact: &PartContact<N, D>| {
+    let has_other_normal = |contact: &PartContact<N, D>| {
         matches!(contact.status, PartStatus::Snapped | PartStatus::Beyond)
     };
-    if contacts.iter().any(is_asked) {
+    if contacts.iter().any(has_other_normal) {
         leave_explained(scene, contacts, arena);
     }
     keep_one(contacts, arena);
@@ -53,25 +53,25 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
 /// Drops contacts with faces that other contacts explain: first those that are not beyond a ridge,
 /// then those that are.
 ///
-/// Cost: O(n log n) in the number of contacts, each compared with at most `MAX_WAYS` ways out.
+/// Cost: O(n log n) in the number of contacts, each compared with at most `MAX_ESCAPES` ways out.
 fn leave_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
     arena: &Arena<N, D>,
 ) {
     use PartStatus::{Beyond, Own, Snapped};
-    for (explaining, asked) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
+    for (explaining, explained) in [([Own; 2], Snapped), ([Own, Snapped], Beyond)] {
         let known = shallowest_first(contacts, |status| explaining.contains(&status));
-        let (mut known, mut ways) = (known.into_iter().peekable(), Ways(SmallVec::new()));
-        for (shallowness, index) in shallowest_first(contacts, |status| status == asked) {
+        let (mut known, mut escapes) = (known.into_iter().peekable(), Escapes(SmallVec::new()));
+        for (shallowness, index) in shallowest_first(contacts, |status| status == explained) {
             while let Some((_, other)) = known.next_if(|&(other, _)| other <= shallowness) {
-                ways.add(&contacts[other as usize]);
+                escapes.add(&contacts[other as usize]);
             }
             let index = index as usize;
-            if is_explained(scene, &contacts[index], &ways, arena) {
+            if is_explained(scene, &contacts[index], &escapes, arena) {
                 contacts[index].status = PartStatus::Left;
             } else {
-                ways.add(&contacts[index]);
+                escapes.add(&contacts[index]);
             }
         }
     }
@@ -98,7 +98,7 @@ fn shallowest_first<N: Real, const D: usize>(
     order
 }
 
-impl<N: Real, const D: usize> Ways<N, D> {
+impl<N: Real, const D: usize> Escapes<N, D> {
     /// Adds the way out of a contact that is at least as deep as all before. It replaces the one of
     /// about the same normal, or the first if there are too many.
     fn add(&mut self, contact: &PartContact<N, D>) {
@@ -106,13 +106,13 @@ impl<N: Real, const D: usize> Ways<N, D> {
         if depth <= N::ZERO {
             return;
         }
-        let is_alike = |way: &WayOut<N, D>| way.normal.dot(&normal) >= N::lit(ALIKE);
+        let is_alike = |escape: &Escape<N, D>| escape.normal.dot(&normal) >= N::lit(ALIKE);
         if let Some(old) = self.0.iter().position(is_alike) {
             self.0.remove(old);
-        } else if self.0.len() == MAX_WAYS {
+        } else if self.0.len() == MAX_ESCAPES {
             self.0.remove(0);
         }
-        self.0.push(WayOut { normal, depth });
+        self.0.push(Escape { normal, depth });
     }
 }
 
@@ -121,7 +121,7 @@ impl<N: Real, const D: usize> Ways<N, D> {
 fn is_explained<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contact: &PartContact<N, D>,
-    ways: &Ways<N, D>,
+    escapes: &Escapes<N, D>,
     arena: &Arena<N, D>,
 ) -> bool {
     let normal = contact.piece.normal;
@@ -131,24 +131,26 @@ fn is_explained<N: Space<D>, const D: usize>(
     let is_beyond = contact.status == PartStatus::Beyond;
     // A way shorter than the depth of the parts does not separate them.
     let least = -contact.distance - contact.tolerance;
-    let is_asked = |way: &&WayOut<N, D>| {
-        way.depth >= least && (is_beyond || way.normal.dot(&normal) < N::lit(ALIKE))
+    let is_relevant = |escape: &&Escape<N, D>| {
+        escape.depth >= least && (is_beyond || escape.normal.dot(&normal) < N::lit(ALIKE))
     };
     // The known separating plane of the parts may suffice after the motion.
-    let rest = |way: &WayOut<N, D>| contact.distance + contact.normal.dot(&way.normal) * way.depth;
-    let (mut asked, room): (SmallVec<[&WayOut<N, D>; 16]>, N) =
+    let rest = |escape: &Escape<N, D>| {
+        contact.distance + contact.normal.dot(&escape.normal) * escape.depth
+    };
+    let (mut relevant, limit): (SmallVec<[&Escape<N, D>; 16]>, N) =
         (SmallVec::new(), -contact.tolerance);
-    for way in ways.0.iter().filter(is_asked) {
-        if rest(way) > room {
+    for escape in escapes.0.iter().filter(is_relevant) {
+        if rest(escape) > limit {
             return true;
         }
-        asked.push(way);
+        relevant.push(escape);
     }
     // If a point of the part stays well inside the solid, they are not separated.
     let points = &arena.points[contact.piece.points.clone()];
     let mut shifts = SmallVec::<[Vector<N, D>; 16]>::new();
-    for way in asked {
-        let shift = way.normal * way.depth;
+    for escape in relevant {
+        let shift = escape.normal * escape.depth;
         let is_held = points.iter().any(|point| {
             let moved = point.point1 + normal * point.distance + shift;
             scene.is_within(&moved, N::TWO * contact.tolerance)
@@ -194,7 +196,7 @@ fn least_of<N: Real, const D: usize>(
     value: impl Fn(&PartContact<N, D>) -> Option<N>,
 ) -> Option<usize> {
     let all = contacts.iter().enumerate();
-    let said = all.filter_map(|(index, contact)| Some((index, value(contact)?)));
-    let least = said.reduce(|best, next| if next.1 < best.1 { next } else { best });
+    let values = all.filter_map(|(index, contact)| Some((index, value(contact)?)));
+    let least = values.reduce(|best, next| if next.1 < best.1 { next } else { best });
     least.map(|(index, _)| index)
 }

@@ -8,7 +8,7 @@ use super::patch::Piece;
 use crate::collide::packet::LANES;
 use crate::collide::parts::between::{Between, anchor, recentred};
 use crate::collide::parts::slabs::corners;
-use crate::collide::parts::{PairVerdicts, PartPairs};
+use crate::collide::parts::{PairMasks, PartPairs};
 use crate::collide::{Pair, RawManifold, RawPoints};
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, min};
 use crate::shape::{CompositeShape, Geometry, Kind, Part, PartSolid, Plane, SurfaceAccess};
@@ -22,12 +22,12 @@ pub(crate) struct Scene<'a, N: Real, const D: usize> {
     around: &'a PartCache<N, D>,
     /// The placement that the parts of a surface have relative to a convex solid; most have the
     /// same.
-    usual: OnceCell<Usual<N, D>>,
+    shared: OnceCell<SharedPlacement<N, D>>,
 }
 
 /// The placement of a part with corners relative to a convex first shape.
 #[derive(Clone, Copy)]
-struct Usual<N: Real, const D: usize> {
+struct SharedPlacement<N: Real, const D: usize> {
     /// The pose of the part in the frame of its shape.
     pose: Pose<N, D>,
     is_segment: bool,
@@ -35,16 +35,16 @@ struct Usual<N: Real, const D: usize> {
     local: Vector<N, D>,
     /// The anchor in the frames of the two shapes.
     origins: [Point<N, D>; 2],
-    lying: Lying<N, D>,
+    relative: RelativePose<N, D>,
 }
 
 /// The relative pose of two bodies.
 #[derive(Clone, Copy)]
-struct Lying<N: Real, const D: usize> {
+struct RelativePose<N: Real, const D: usize> {
     /// The pose of the second body in the frame of the first, in the order of kinds.
     pose12: Pose<N, D>,
     /// Whether the first body is the part of the second shape.
-    is_turned: bool,
+    is_swapped: bool,
     /// The frame of the first body in that of the first shape, translated to the anchor.
     frame: Pose<N, D>,
     /// The rotation from the frame of the second shape to that of the first.
@@ -72,11 +72,11 @@ enum WholeOrPart<'a, N: Real, const D: usize> {
 pub(super) struct PlacedPair<'a, N: Real, const D: usize> {
     /// In the order of kinds.
     bodies: [PlacedPart<'a, N, D>; 2],
-    lying: Lying<N, D>,
+    relative: RelativePose<N, D>,
     /// The anchor in the frames of the two shapes.
     origins: [Point<N, D>; 2],
     /// Whether the part of the second shape has the usual placement of its [`Scene`].
-    is_usual: bool,
+    is_shared: bool,
 }
 
 /// Translates a part to another origin. Corners are moved instead of the pose, so that parts keep
@@ -129,7 +129,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
     pub(super) fn new(between: &'a Between<'a, N, D>, around: &'a PartCache<N, D>) -> Self {
         let surface = |composite: Option<&'a dyn CompositeShape<N, D>>| composite?.surface_access();
         let surfaces = between.composites().mapped(surface);
-        Self { between, surfaces, around, usual: OnceCell::new() }
+        Self { between, surfaces, around, shared: OnceCell::new() }
     }
 
     /// Returns a part of the second shape, from the cache or else from the shape.
@@ -190,9 +190,9 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         slot: &'s mut Option<PlacedPair<'a, N, D>>,
         parts: [u32; 2],
     ) -> &'s PlacedPair<'a, N, D> {
-        let is_exchanged = match (&mut *slot, self.usual.get(), self.between.composites()) {
-            (Some(old), Some(usual), [_, Some(composite)]) if old.is_usual => {
-                old.exchange(usual, &self.part2(composite, parts[1]))
+        let is_exchanged = match (&mut *slot, self.shared.get(), self.between.composites()) {
+            (Some(old), Some(shared), [_, Some(composite)]) if old.is_shared => {
+                old.exchange(shared, &self.part2(composite, parts[1]))
             }
             _ => false,
         };
@@ -208,7 +208,7 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         let piece1 = composite1.map(|composite| composite.part(part1));
         let piece2 = composite2.map(|composite| self.part2(composite, part2));
         if let (None, Some(piece2)) = (&piece1, &piece2)
-            && let Some(pair) = self.as_usual(piece2)
+            && let Some(pair) = self.with_shared_placement(piece2)
         {
             return pair;
         }
@@ -262,37 +262,40 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
 
     /// Returns the pair of a convex solid and a part with the usual placement, at less cost; `None`
     /// for other parts.
-    fn as_usual(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
+    fn with_shared_placement(&self, part: &Part<'a, N, D>) -> Option<PlacedPair<'a, N, D>> {
         if let PartSolid::Shape(_) = part.solid {
             return None;
         }
-        let usual = self.usual.get_or_init(|| self.usual(part));
-        let solid = WholeOrPart::Part(usual.recentred(part)?);
+        let shared = self.shared.get_or_init(|| self.placement_of(part));
+        let solid = WholeOrPart::Part(shared.recentred(part)?);
         let pose = Pose { rotation: part.pose.rotation, translation: Vector::<N, D>::zeros() };
         let whole = WholeOrPart::Whole(self.between.pair.first);
         let bodies =
             [PlacedPart { pose: Pose::identity(), solid: whole }, PlacedPart { pose, solid }];
-        Some(PlacedPair { is_usual: true, ..PlacedPair::of(bodies, usual.lying, usual.origins) })
+        Some(PlacedPair {
+            is_shared: true,
+            ..PlacedPair::of(bodies, shared.relative, shared.origins)
+        })
     }
 
     /// Returns the placement of a part, which serves all parts with the same pose and kind.
-    fn usual(&self, part: &Part<'a, N, D>) -> Usual<N, D> {
+    fn placement_of(&self, part: &Part<'a, N, D>) -> SharedPlacement<N, D> {
         let origins = [Point::origin(), Point::from(self.between.pose21.translation)];
         let rotation = part.pose.rotation;
         let pose = Pose { rotation, translation: Vector::<N, D>::zeros() };
         let kind = part.solid.geometry().kind();
-        let is_turned = Geometry(self.between.pair.first).kind() > kind;
-        Usual {
+        let is_swapped = Geometry(self.between.pair.first).kind() > kind;
+        SharedPlacement {
             pose: part.pose,
             is_segment: matches!(part.solid, PartSolid::Segment(_)),
             local: part.pose.inverse_point(&origins[1]).coords,
             origins,
-            lying: Lying::new([&Pose::identity(), &pose], self.turn(), is_turned),
+            relative: RelativePose::new([&Pose::identity(), &pose], self.turn(), is_swapped),
         }
     }
 }
 
-impl<N: Space<D>, const D: usize> Usual<N, D> {
+impl<N: Space<D>, const D: usize> SharedPlacement<N, D> {
     /// Returns a part translated to the anchor; `None` if it has another placement.
     fn recentred<'a>(&self, part: &Part<'a, N, D>) -> Option<PartSolid<'a, N, D>> {
         let is_segment = matches!(part.solid, PartSolid::Segment(_));
@@ -301,41 +304,42 @@ impl<N: Space<D>, const D: usize> Usual<N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> Lying<N, D> {
+impl<N: Space<D>, const D: usize> RelativePose<N, D> {
     /// Takes the poses of a part of the first shape and one of the second, relative to the anchor.
-    fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_turned: bool) -> Self {
+    fn new([pose1, pose2]: [&Pose<N, D>; 2], turn: Pose<N, D>, is_swapped: bool) -> Self {
         let (frame1, frame2) = (*pose1, turn.compose(pose2));
         let pose12 = Pose::relative(&frame1, &frame2);
         // Inverted as for every pair in the opposite order of kinds, so that the bits agree with
         // the separation.
-        let (frame, pose12) = if is_turned { (frame2, pose12.inverse()) } else { (frame1, pose12) };
-        Self { pose12, is_turned, frame, turn }
+        let (frame, pose12) =
+            if is_swapped { (frame2, pose12.inverse()) } else { (frame1, pose12) };
+        Self { pose12, is_swapped, frame, turn }
     }
 }
 
 impl<'a, N: Space<D>, const D: usize> PlacedPair<'a, N, D> {
     fn new(bodies: [PlacedPart<'a, N, D>; 2], turn: Pose<N, D>, origins: [Point<N, D>; 2]) -> Self {
         let kind = |body: &PlacedPart<'_, N, D>| Geometry(body.kind()).kind();
-        let is_turned = kind(&bodies[0]) > kind(&bodies[1]);
-        let lying = Lying::new([&bodies[0].pose, &bodies[1].pose], turn, is_turned);
-        Self::of(bodies, lying, origins)
+        let is_swapped = kind(&bodies[0]) > kind(&bodies[1]);
+        let relative = RelativePose::new([&bodies[0].pose, &bodies[1].pose], turn, is_swapped);
+        Self::of(bodies, relative, origins)
     }
 
     /// Takes a part of the first shape and one of the second.
     fn of(
         [body1, body2]: [PlacedPart<'a, N, D>; 2],
-        lying: Lying<N, D>,
+        relative: RelativePose<N, D>,
         origins: [Point<N, D>; 2],
     ) -> Self {
-        let bodies = if lying.is_turned { [body2, body1] } else { [body1, body2] };
-        Self { bodies, lying, origins, is_usual: false }
+        let bodies = if relative.is_swapped { [body2, body1] } else { [body1, body2] };
+        Self { bodies, relative, origins, is_shared: false }
     }
 
     /// Replaces the part of the second shape; returns false, without a change, if the new part does
     /// not have the usual placement.
-    fn exchange(&mut self, usual: &Usual<N, D>, part: &Part<'a, N, D>) -> bool {
-        let Some(solid) = usual.recentred(part) else { return false };
-        let at = usize::from(!self.lying.is_turned);
+    fn exchange(&mut self, shared: &SharedPlacement<N, D>, part: &Part<'a, N, D>) -> bool {
+        let Some(solid) = shared.recentred(part) else { return false };
+        let at = usize::from(!self.relative.is_swapped);
         self.bodies[at].solid = WholeOrPart::Part(solid);
         true
     }
@@ -345,7 +349,7 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// The two parts in the order of their kinds.
     pub(super) fn pair(&self) -> Pair<'_, N, D> {
         let [first, second] = &self.bodies;
-        Pair { first: first.kind(), second: second.kind(), pose12: self.lying.pose12 }
+        Pair { first: first.kind(), second: second.kind(), pose12: self.relative.pose12 }
     }
 
     /// Whether neither is a half-space.
@@ -356,21 +360,22 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
     /// Points well inside the part of the first shape and that of the second, each in the frames of
     /// both shapes; `None` if one is a half-space.
     pub(super) fn centers(&self) -> Option<[[Point<N, D>; 2]; 2]> {
-        let [center1, center2] = self.turned([self.bodies[0].center()?, self.bodies[1].center()?]);
+        let [center1, center2] = self.swapped([self.bodies[0].center()?, self.bodies[1].center()?]);
         let [origin1, origin2] = self.origins.mapped(|origin| origin.coords);
-        let [in1, in2] = [self.lying.turn.inverse_point(&center1), self.lying.turn.point(&center2)];
+        let [in1, in2] =
+            [self.relative.turn.inverse_point(&center1), self.relative.turn.point(&center2)];
         Some([[center1 + origin1, in1 + origin2], [in2 + origin1, center2 + origin2]])
     }
 
     /// For a convex first shape: the centre of that, or `from` instead, and the centre of the part
     /// of the second, in the frame of the second; `None` if one is a half-space.
     pub(super) fn centers_in_second(&self, from: &Option<Point<N, D>>) -> Option<[Point<N, D>; 2]> {
-        let [first, second] = if self.lying.is_turned { [1, 0] } else { [0, 1] };
+        let [first, second] = if self.relative.is_swapped { [1, 0] } else { [0, 1] };
         let origin = self.origins[1].coords;
         let own = self.bodies[second].center()? + origin;
         let other = match from {
             Some(from) => *from,
-            None => self.lying.turn.inverse_point(&self.bodies[first].center()?) + origin,
+            None => self.relative.turn.inverse_point(&self.bodies[first].center()?) + origin,
         };
         Some([other, own])
     }
@@ -382,71 +387,71 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
             map.map_or(N::ZERO, |map| map.reach() + map.rounding())
         };
         let lengths = size(&self.bodies[0]) + size(&self.bodies[1]);
-        N::lit(16.0) * N::EPSILON * (lengths + self.lying.pose12.translation.norm())
+        N::lit(16.0) * N::EPSILON * (lengths + self.relative.pose12.translation.norm())
     }
 
     /// Converts a pair of values from the order of shapes to the order of kinds, or back.
-    pub(super) fn turned<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
-        if self.lying.is_turned { [b, a] } else { [a, b] }
+    pub(super) fn swapped<S>(&self, [a, b]: [S; 2]) -> [S; 2] {
+        if self.relative.is_swapped { [b, a] } else { [a, b] }
     }
 
     /// Rotates a direction from the frame of the second shape to that of the first.
-    pub(super) fn seen_by_first(&self, direction: &Vector<N, D>) -> Vector<N, D> {
-        self.lying.turn.vector(direction)
+    pub(super) fn in_first_frame(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+        self.relative.turn.vector(direction)
     }
 
     /// Rotates a direction from the frame of the first shape to that of the second.
-    pub(super) fn seen_by_second(&self, direction: &Vector<N, D>) -> Vector<N, D> {
-        self.lying.turn.inverse_vector(direction)
+    pub(super) fn in_second_frame(&self, direction: &Vector<N, D>) -> Vector<N, D> {
+        self.relative.turn.inverse_vector(direction)
     }
 
     /// Converts a direction from the first body to the second into one from the first shape to the
     /// second.
     pub(super) fn outward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
-        let normal = self.lying.frame.vector(normal);
-        if self.lying.is_turned { -normal } else { normal }
+        let normal = self.relative.frame.vector(normal);
+        if self.relative.is_swapped { -normal } else { normal }
     }
 
     /// The inverse of [`Self::outward`].
     pub(super) fn inward(&self, normal: &Vector<N, D>) -> Vector<N, D> {
-        let normal = self.lying.frame.inverse_vector(normal);
-        if self.lying.is_turned { -normal } else { normal }
+        let normal = self.relative.frame.inverse_vector(normal);
+        if self.relative.is_swapped { -normal } else { normal }
     }
 
     /// Whether the two parts are separated, within `tolerance`, once the second shape moves by one
     /// of some vectors in the frame of the first.
-    pub(super) fn is_parted_by_one(&self, ways: &[Vector<N, D>], tolerance: N) -> bool {
+    pub(super) fn is_parted_by_one(&self, translations: &[Vector<N, D>], tolerance: N) -> bool {
         let Some([one, other]) = self.corners() else {
-            return ways.iter().any(|way| self.is_parted(way, tolerance));
+            return translations.iter().any(|translation| self.is_parted(translation, tolerance));
         };
         let mut pairs = PartPairs::new(N::ZERO);
-        ways.chunks(LANES).any(|ways| {
-            for (lane, way) in ways.iter().enumerate() {
+        translations.chunks(LANES).any(|translations| {
+            for (lane, translation) in translations.iter().enumerate() {
                 pairs.ones.put(lane, &one.mapped(Point::from));
-                pairs.others.put(lane, &other.mapped(|corner| Point::from(corner + way)));
+                pairs.others.put(lane, &other.mapped(|corner| Point::from(corner + translation)));
             }
-            pairs.count = ways.len();
-            let PairVerdicts { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
+            pairs.count = translations.len();
+            let PairMasks { beyond, within } = <N::Algorithms>::part_pairs(&pairs, -tolerance);
             // Few pairs are so close to the limit that the lanes leave them undecided.
             let is_open = |lane: usize| (beyond | within) >> lane & 1 == 0;
-            let mut open = ways.iter().enumerate().filter(|(lane, _)| is_open(*lane));
-            beyond != 0 || open.any(|(_, way)| self.is_parted(way, tolerance))
+            let mut open = translations.iter().enumerate().filter(|(lane, _)| is_open(*lane));
+            beyond != 0 || open.any(|(_, translation)| self.is_parted(translation, tolerance))
         })
     }
 
     /// The corners of both parts in the frame of the first shape, relative to the anchor; `None` if
     /// one has no corners.
     fn corners(&self) -> Option<[[Vector<N, D>; 3]; 2]> {
-        let [first, second] = self.turned([&self.bodies[0], &self.bodies[1]]);
+        let [first, second] = self.swapped([&self.bodies[0], &self.bodies[1]]);
         let second = second.corners()?;
-        Some([first.corners()?, second.mapped(|corner| self.lying.turn.vector(&corner))])
+        Some([first.corners()?, second.mapped(|corner| self.relative.turn.vector(&corner))])
     }
 
     /// Whether the two parts are separated, within `tolerance`, once the second shape moves by
-    /// `way`, in the frame of the first.
-    fn is_parted(&self, way: &Vector<N, D>, tolerance: N) -> bool {
+    /// `translation`, in the frame of the first.
+    fn is_parted(&self, translation: &Vector<N, D>, tolerance: N) -> bool {
         let mut pair = self.pair();
-        pair.pose12.translation += self.inward(way);
+        pair.pose12.translation += self.inward(translation);
         <N::Algorithms>::separation(&pair, -tolerance).is_none()
     }
 
@@ -461,10 +466,10 @@ impl<N: Space<D>, const D: usize> PlacedPair<'_, N, D> {
         let start = points.len();
         for point in &raw.points {
             let mut placed = *point;
-            let across = if self.lying.is_turned { point.distance } else { N::ZERO };
-            let foot = self.lying.frame.point(&(point.point1 + raw.normal * across));
+            let across = if self.relative.is_swapped { point.distance } else { N::ZERO };
+            let foot = self.relative.frame.point(&(point.point1 + raw.normal * across));
             placed.point1 = self.origins[0] + foot.coords;
-            [placed.feature1, placed.feature2] = self.turned([point.feature1, point.feature2]);
+            [placed.feature1, placed.feature2] = self.swapped([point.feature1, point.feature2]);
             points.push(placed);
         }
         Piece { normal: self.outward(&raw.normal), parts, points: start..points.len() }

@@ -2,7 +2,7 @@
 
 use super::part_cache::PartCache;
 use super::part_contact::{Arena, PartStatus};
-use super::{CompositeContacts, PART_POINTS, Query, gather, has_own_way, middle_of_first};
+use super::{CompositeContacts, PART_POINTS, Query, gather, has_own_path, middle_of_first};
 use crate::collide::parts::between::Between;
 use crate::collide::{ManifoldRequest, RawPoint};
 use crate::convex::Separation;
@@ -20,15 +20,16 @@ pub(crate) struct FoundContact<N: Real, const D: usize> {
 /// Receives each contact.
 type Visit<'a, N, const D: usize> = dyn FnMut(&FoundContact<N, D>) + 'a;
 
-/// Calls `visit` with each contact of the parts within `reach`, by the kernel of the pair if there
+/// Calls `visit` with each contact of the parts within `max_distance`, by the kernel of the pair if there
 /// is one.
 pub(crate) fn each_contact_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    reach: N,
+    max_distance: N,
     visit: &mut Visit<'_, N, D>,
 ) {
-    let request = ManifoldRequest { prediction: reach, sine: N::ZERO, max_points: PART_POINTS };
-    if has_own_way(between) {
+    let request =
+        ManifoldRequest { prediction: max_distance, sine: N::ZERO, max_points: PART_POINTS };
+    if has_own_path(between) {
         let mut contacts =
             CompositeContacts { around: PartCache::for_once(), ..Default::default() };
         if <N::Algorithms>::update_quickly(&mut contacts, between, &request) {
@@ -50,11 +51,11 @@ fn each_in_general<N: Space<D>, const D: usize>(
     visit: &mut Visit<'_, N, D>,
 ) {
     let (reference, mut around) = (middle_of_first(between), PartCache::for_once());
-    let nearby = gather::nearby(between, false, request.prediction, &mut around);
+    let culled = gather::culled(between, false, request.prediction, &mut around);
     let (around, reference) = (&around, &reference);
     let query = Query { between, is_self: false, around, reference, request };
     let mut arena = Arena::default();
-    let contacts = query.part_contacts(request.prediction, &nearby, &mut arena);
+    let contacts = query.part_contacts(request.prediction, &culled, &mut arena);
     for contact in contacts.iter().filter(|contact| contact.status != PartStatus::Left) {
         for point in &arena.points[contact.piece.points.clone()] {
             visit(&FoundContact::new(&contact.piece.normal, point, contact.parts()));
@@ -72,12 +73,12 @@ impl<N: Real, const D: usize> FoundContact<N, D> {
     }
 }
 
-/// Returns the deepest contact of the parts within `reach`, the first in a tie.
+/// Returns the deepest contact of the parts within `max_distance`, the first in a tie.
 pub(super) fn deepest_within<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    reach: N,
+    max_distance: N,
 ) -> Option<Separation<N, D>> {
-    deepest_of(|visit| each_contact_within(between, reach, visit))
+    deepest_of(|visit| each_contact_within(between, max_distance, visit))
 }
 
 /// [`deepest_within`] by the generic path alone.

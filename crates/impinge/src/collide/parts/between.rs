@@ -40,8 +40,8 @@ enum PartOf<'a, N: Real, const D: usize> {
 
 /// A part of each shape, as a pair in the frame of the first part.
 pub(crate) struct PartPair<'a, N: Real, const D: usize> {
-    seen1: AnchoredPart<'a, N, D>,
-    seen2: AnchoredPart<'a, N, D>,
+    part1: AnchoredPart<'a, N, D>,
+    part2: AnchoredPart<'a, N, D>,
     /// The anchor of both parts, in the frame of the first shape.
     origin1: Point<N, D>,
     pose12: Pose<N, D>,
@@ -90,18 +90,18 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
                 (origin1, self.pose21.point(&origin1))
             }
         };
-        let seen1 = AnchoredPart::new(self.pair.first, piece1, &origin1);
-        let seen2 = AnchoredPart::new(self.pair.second, piece2, &origin2);
+        let part1 = AnchoredPart::new(self.pair.first, piece1, &origin1);
+        let part2 = AnchoredPart::new(self.pair.second, piece2, &origin2);
         let turn = Pose { rotation: self.pair.pose12.rotation, ..Pose::identity() };
-        let pose12 = Pose::relative(&seen1.pose, &turn.compose(&seen2.pose));
-        PartPair { seen1, seen2, origin1, pose12 }
+        let pose12 = Pose::relative(&part1.pose, &turn.compose(&part2.pose));
+        PartPair { part1, part2, origin1, pose12 }
     }
 
     /// Returns two convex solids as they are, without an anchor.
     fn whole(&self) -> PartPair<'a, N, D> {
-        let [seen1, seen2] = [self.pair.first, self.pair.second]
+        let [part1, part2] = [self.pair.first, self.pair.second]
             .mapped(|kind| AnchoredPart { solid: PartOf::Whole(kind), pose: Pose::identity() });
-        PartPair { seen1, seen2, origin1: Point::origin(), pose12: self.pair.pose12 }
+        PartPair { part1, part2, origin1: Point::origin(), pose12: self.pair.pose12 }
     }
 }
 
@@ -109,14 +109,14 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     /// Returns a box around one of the shapes, the first (0) or the second (1), in the frame of the
     /// other.
     pub(crate) fn whole_in_other(&self, which: usize) -> Aabb<N, D> {
-        let (kind, pose) = self.seen_by_other(which);
+        let (kind, pose) = self.in_frame_of_other(which);
         enclosing(&aabb_of(kind, pose), pose)
     }
 
     /// Transforms a box from the frame of the first shape (0) or the second (1) into the frame of
     /// the other; the result encloses it.
     pub(crate) fn box_in_other(&self, which: usize, aabb: &Aabb<N, D>) -> Aabb<N, D> {
-        let pose = self.seen_by_other(which).1;
+        let pose = self.in_frame_of_other(which).1;
         enclosing(&aabb.transformed_by(pose), pose)
     }
 
@@ -126,7 +126,7 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         let Some((part, pose)) = self.part_in_other(which, part) else {
             return self.whole_in_other(which);
         };
-        enclosing(&part.solid.as_shape().aabb(&pose), self.seen_by_other(which).1)
+        enclosing(&part.solid.as_shape().aabb(&pose), self.in_frame_of_other(which).1)
     }
 
     /// Returns a part of the first shape (0) or the second (1) and its pose in the frame of the
@@ -136,7 +136,7 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
         which: usize,
         part: u32,
     ) -> Option<(Part<'_, N, D>, Pose<N, D>)> {
-        let (kind, pose) = self.seen_by_other(which);
+        let (kind, pose) = self.in_frame_of_other(which);
         let part = Geometry(kind).as_composite()?.part(part);
         let pose = pose.compose(&part.pose);
         Some((part, pose))
@@ -153,7 +153,7 @@ impl<N: Space<D>, const D: usize> Between<'_, N, D> {
     }
 
     /// Returns the first shape (0) or the second (1) and its pose in the frame of the other.
-    pub(super) fn seen_by_other(&self, which: usize) -> (Kind<'_, N, D>, &Pose<N, D>) {
+    pub(super) fn in_frame_of_other(&self, which: usize) -> (Kind<'_, N, D>, &Pose<N, D>) {
         let Pair { first, second, pose12 } = &self.pair;
         if which == 0 { (*first, &self.pose21) } else { (*second, pose12) }
     }
@@ -201,28 +201,28 @@ impl<'a, N: Real, const D: usize> AnchoredPart<'a, N, D> {
 impl<N: Real, const D: usize> PartPair<'_, N, D> {
     /// The parts as the pair algorithms take them.
     pub(crate) fn pair(&self) -> Pair<'_, N, D> {
-        Pair { first: self.seen1.kind(), second: self.seen2.kind(), pose12: self.pose12 }
+        Pair { first: self.part1.kind(), second: self.part2.kind(), pose12: self.pose12 }
     }
 
     /// The poses of the parts in the frame of the first shape.
     pub(crate) fn poses(&self) -> [Pose<N, D>; 2] {
-        let Pose { rotation, translation } = self.seen1.pose;
+        let Pose { rotation, translation } = self.part1.pose;
         let pose1 = Pose { rotation, translation: self.origin1.coords + translation };
         [pose1, pose1.compose(&self.pose12)]
     }
 
     /// Transforms a vector from the frame of the first shape to that of the first part.
     pub(crate) fn to_first_part(&self, vector: &Vector<N, D>) -> Vector<N, D> {
-        self.seen1.pose.inverse_vector(vector)
+        self.part1.pose.inverse_vector(vector)
     }
 
     /// Transforms a separation from the frame of the first shape to that of [`Self::pair`].
     pub(crate) fn in_first_part(&self, found: &Separation<N, D>) -> Separation<N, D> {
         let placed =
-            |point: &Point<N, D>| self.seen1.pose.inverse_point(&Point::from(point - self.origin1));
+            |point: &Point<N, D>| self.part1.pose.inverse_point(&Point::from(point - self.origin1));
         Separation {
             distance: found.distance,
-            normal: self.seen1.pose.inverse_vector(&found.normal),
+            normal: self.part1.pose.inverse_vector(&found.normal),
             point1: placed(&found.point1),
             point2: placed(&found.point2),
         }
@@ -230,10 +230,10 @@ impl<N: Real, const D: usize> PartPair<'_, N, D> {
 
     /// Transforms a separation from the frame of [`Self::pair`] to that of the first shape.
     pub(crate) fn in_first(&self, found: &Separation<N, D>) -> Separation<N, D> {
-        let placed = |point| self.origin1 + self.seen1.pose.point(point).coords;
+        let placed = |point| self.origin1 + self.part1.pose.point(point).coords;
         Separation {
             distance: found.distance,
-            normal: self.seen1.pose.vector(&found.normal),
+            normal: self.part1.pose.vector(&found.normal),
             point1: placed(&found.point1),
             point2: placed(&found.point2),
         }

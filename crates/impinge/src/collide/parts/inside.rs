@@ -115,7 +115,7 @@ fn points_of_pieces<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
     inner: usize,
 ) -> SmallVec<[(u32, Point<N, D>); 1]> {
-    let (kind, pose) = between.seen_by_other(inner);
+    let (kind, pose) = between.in_frame_of_other(inner);
     let mut points = SmallVec::new();
     let mut last = None;
     for (piece, part) in parts_near_other(between, inner) {
@@ -234,8 +234,9 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
             0 => (point, outward),
             _ => (between.pose21.point(&point), between.pose21.vector(&outward)),
         };
-        let way = max(found.separation.distance, N::ZERO) * N::lit(BEYOND) + rounding([&point; 2]);
-        let beyond = point + outward * way;
+        let distance =
+            max(found.separation.distance, N::ZERO) * N::lit(BEYOND) + rounding([&point; 2]);
+        let beyond = point + outward * distance;
         let mut is_held = false;
         composite.each_body(&mut |body| {
             is_held |= body.parts() == self.boundary && body.holds(&beyond);
@@ -262,11 +263,12 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
     fn separation(&self, between: &Between<'_, N, D>) -> Option<PartSeparation<N, D>> {
         let Exit { point, outward, parts } = self.exit()?;
         let pose12 = &between.pair.pose12;
-        let seen =
-            |way: Vector<N, D>| if self.inner == 0 { way } else { pose12.inverse_vector(&way) };
+        let to_inner_frame = |vector: Vector<N, D>| {
+            if self.inner == 0 { vector } else { pose12.inverse_vector(&vector) }
+        };
         let origin = if self.inner == 0 { point } else { pose12.inverse_point(&point) };
-        let (kind, _) = between.seen_by_other(self.inner);
-        let inward = seen(-outward);
+        let (kind, _) = between.in_frame_of_other(self.inner);
+        let inward = to_inner_frame(-outward);
         let (mut depth, mut lowest, mut deepest) = (-N::INFINITY, Vector::<N, D>::zeros(), 0);
         self.each_part(between, |part| {
             each_solid(kind, part, |kind, pose| {
@@ -286,10 +288,14 @@ impl<N: Space<D>, const D: usize> InsidePiece<N, D> {
             if self.inner == 0 { (-outward, [low, high]) } else { (outward, [high, low]) };
         let [point1, point2] = points;
         let separation = Separation { distance: -depth, normal, point1, point2 };
-        let mut named = parts;
-        named[self.inner] = deepest;
-        let local = between.parts(named).in_first_part(&separation);
-        depth.is_finite_number().then_some(PartSeparation { separation, local, parts: named })
+        let mut deepest_parts = parts;
+        deepest_parts[self.inner] = deepest;
+        let local = between.parts(deepest_parts).in_first_part(&separation);
+        depth.is_finite_number().then_some(PartSeparation {
+            separation,
+            local,
+            parts: deepest_parts,
+        })
     }
 }
 

@@ -10,7 +10,6 @@
 pub(crate) mod between;
 pub(crate) mod bounds;
 mod inside;
-mod meeting;
 mod nearest;
 mod pair_lanes;
 mod separation;
@@ -20,13 +19,14 @@ mod solid_bounds;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod touching;
 
 pub(crate) use between::{Between, PartPair};
 pub(crate) use inside::{Exit, InsidePiece, InsidePieces, find_exits, held_pieces};
-pub(crate) use meeting::{MeetingVisitor, Meetings, each_meeting};
 pub(crate) use nearest::{Wanted, nearest_between};
-pub(crate) use pair_lanes::{PairVerdicts, PartPairs, part_pairs2, part_pairs3};
+pub(crate) use pair_lanes::{PairMasks, PartPairs, part_pairs2, part_pairs3};
 pub(crate) use separation::{PairVisitor, PartSeparation, separation, visit_near_pairs};
 pub(crate) use slab_lanes::{part_gaps2, part_gaps3};
 pub(crate) use slabs::AxisSlabs;
 pub(crate) use sweep::PartSweep;
+pub(crate) use touching::{Touching, TouchingVisitor, each_touching};

@@ -3,8 +3,8 @@
 use super::between::Between;
 use super::bounds::loosened;
 use super::inside::with_inside;
-use super::meeting::{MeetingVisitor, Meetings, each_meeting};
 use super::separation::{PairVisitor, PartSeparation, visit_near_pairs};
+use super::touching::{Touching, TouchingVisitor, each_touching};
 use crate::collide::separation::separation as of_convex;
 use crate::math::{Real, Space, Vector, max, min};
 
@@ -30,9 +30,9 @@ pub(crate) fn nearest_between<N: Space<D>, const D: usize>(
     if let Some(parts) = first {
         PairVisitor::visit(&mut nearest, parts);
     }
-    let is_settled =
-        (wanted == Wanted::Touching && nearest.settles_touching()) || nearest.settles_apart();
-    if !is_settled {
+    let is_decided =
+        (wanted == Wanted::Touching && nearest.finds_touching()) || nearest.finds_apart();
+    if !is_decided {
         visit_near_pairs(between, &mut nearest);
     }
     if between.has_bodies() {
@@ -52,19 +52,19 @@ struct NearestPart<'a, N: Real, const D: usize> {
 impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
     /// Searches two composites for parts that touch, by overlaps of boxes alone. Returns true if
     /// the search is settled: there is a contact, or `limit` admits nothing else.
-    fn settles_touching(&mut self) -> bool {
-        let (between, reach) = (self.between, min(self.limit, N::ZERO));
-        let mut touching = TouchingPart { nearest: self, reach };
-        let is_searched = each_meeting(between, reach, Meetings::Any, &mut touching);
+    fn finds_touching(&mut self) -> bool {
+        let (between, max_distance) = (self.between, min(self.limit, N::ZERO));
+        let mut touching = TouchingPart { nearest: self, max_distance };
+        let is_searched = each_touching(between, max_distance, Touching::Any, &mut touching);
         is_searched && (self.limit <= N::ZERO || self.bound() < N::ZERO)
     }
 
     /// Searches two composites for their nearest parts. Returns true if these are apart, so that
     /// they are the wanted pair; parts that overlap need the search by depth.
-    fn settles_apart(&mut self) -> bool {
-        let (between, reach) = (self.between, self.limit());
-        reach > N::ZERO
-            && each_meeting(between, reach, Meetings::Nearest, self)
+    fn finds_apart(&mut self) -> bool {
+        let (between, max_distance) = (self.between, self.limit());
+        max_distance > N::ZERO
+            && each_touching(between, max_distance, Touching::Nearest, self)
             && self.limit() > N::ZERO
     }
 }
@@ -72,21 +72,21 @@ impl<N: Space<D>, const D: usize> NearestPart<'_, N, D> {
 /// The search for any pair that touches.
 struct TouchingPart<'a, 'q, N: Real, const D: usize> {
     nearest: &'q mut NearestPart<'a, N, D>,
-    reach: N,
+    max_distance: N,
 }
 
-impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for TouchingPart<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for TouchingPart<'_, '_, N, D> {
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self.nearest, parts);
-        (self.nearest.bound() >= N::ZERO).then_some(self.reach)
+        (self.nearest.bound() >= N::ZERO).then_some(self.max_distance)
     }
 }
 
-impl<N: Space<D>, const D: usize> MeetingVisitor<N, D> for NearestPart<'_, N, D> {
+impl<N: Space<D>, const D: usize> TouchingVisitor<N, D> for NearestPart<'_, N, D> {
     /// Ends the search at contact: overlaps need the search by depth.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N> {
         PairVisitor::visit(self, parts);
-        Some(self.limit()).filter(|reach| *reach > N::ZERO)
+        Some(self.limit()).filter(|max_distance| *max_distance > N::ZERO)
     }
 
     fn normal(&self) -> Option<Vector<N, D>> {

@@ -35,12 +35,12 @@ pub(crate) struct PartPairs<N, const D: usize> {
     pub(crate) count: usize,
     /// A length that the rounding error of the corners is in proportion to, unless their
     /// coordinates are larger.
-    pub(crate) place: N,
+    pub(crate) scale: N,
 }
 
 /// Results for eight pairs, as bits; neither bit of a pair is set if the test is undecided.
 #[derive(Clone, Copy, Default)]
-pub(crate) struct PairVerdicts {
+pub(crate) struct PairMasks {
     /// The pair is farther apart than the limit; the distance of an overlap is negative.
     pub(crate) beyond: u8,
     /// The pair is not beyond the limit. Only valid for a limit of zero or less: the gaps along
@@ -49,32 +49,32 @@ pub(crate) struct PairVerdicts {
 }
 
 impl<N: Real, const D: usize> PartPairs<N, D> {
-    /// An empty batch; rounding errors are in proportion to `place` at least.
-    pub(crate) fn new(place: N) -> Self {
-        Self { ones: PartPacket::blank(), others: PartPacket::blank(), count: 0, place }
+    /// An empty batch; rounding errors are in proportion to `scale` at least.
+    pub(crate) fn new(scale: N) -> Self {
+        Self { ones: PartPacket::blank(), others: PartPacket::blank(), count: 0, scale }
     }
 }
 
 /// Tests pairs in 2D. No `within` bit is set.
-pub(crate) fn part_pairs2<N: Real>(pairs: &PartPairs<N, 2>, limit: N) -> PairVerdicts {
-    verdicts(
+pub(crate) fn part_pairs2<N: Real>(pairs: &PartPairs<N, 2>, limit: N) -> PairMasks {
+    masks(
         pairs.count,
-        |run| in_lanes!(run, simd => in_plane::<_, N, N::Lanes<_>>(simd, pairs, limit)),
+        |run| in_lanes!(run, simd => in_lanes_2d::<_, N, N::Lanes<_>>(simd, pairs, limit)),
     )
 }
 
 /// Tests pairs in 3D.
-pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairVerdicts {
-    verdicts(
+pub(crate) fn part_pairs3<N: Real>(pairs: &PartPairs<N, 3>, limit: N) -> PairMasks {
+    masks(
         pairs.count,
-        |run| in_lanes!(run, simd => in_space::<_, N, N::Lanes<_>>(simd, pairs, limit)),
+        |run| in_lanes!(run, simd => in_lanes_3d::<_, N, N::Lanes<_>>(simd, pairs, limit)),
     )
 }
 
 /// Tests the lanes in use, one SIMD run after another.
 #[inline(always)]
-fn verdicts(count: usize, of_run: impl Fn(Run) -> PairVerdicts) -> PairVerdicts {
-    let mut all = PairVerdicts::default();
+fn masks(count: usize, of_run: impl Fn(Run) -> PairMasks) -> PairMasks {
+    let mut all = PairMasks::default();
     for run in Level::new().runs(count.min(LANES)) {
         let found = of_run(run);
         all.beyond |= run.of_bits(found.beyond);
@@ -85,25 +85,25 @@ fn verdicts(count: usize, of_run: impl Fn(Run) -> PairVerdicts) -> PairVerdicts 
 
 /// Tests the axes in 2D: perpendicular to each side of both parts.
 #[inline(always)]
-fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn in_lanes_2d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     pairs: &PartPairs<N, 2>,
     limit: N,
-) -> PairVerdicts {
+) -> PairMasks {
     let mut held = HeldPairs::<S, V, 2>::new(simd, pairs, limit);
     for side in sides(&held.one).iter().chain(&sides(&held.other)) {
         held.along(&[-side[1], side[0]]);
     }
-    held.verdicts(false)
+    held.masks(false)
 }
 
 /// Tests the axes in 3D, in the order of the table at the head of this file.
 #[inline(always)]
-fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     pairs: &PartPairs<N, 3>,
     limit: N,
-) -> PairVerdicts {
+) -> PairMasks {
     let mut held = HeldPairs::<S, V, 3>::new(simd, pairs, limit);
     let (own, others) = (sides(&held.one), sides(&held.other));
     let [normal, other_normal] = [cross(&own[0], &own[1]), cross(&others[0], &others[1])];
@@ -111,17 +111,17 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         // Distant coplanar pairs are hardly separated by the axes of overlap.
         held.between_middles();
         if bits(held.beyond) == u8::MAX {
-            return held.verdicts(false);
+            return held.masks(false);
         }
     }
     held.along(&normal);
     held.along(&other_normal);
     if bits(held.beyond) == u8::MAX {
-        return held.verdicts(false);
+        return held.masks(false);
     }
     let (squares, other_squares) = (squares_of(&own), squares_of(&others));
-    held.ask_width(&normal, squares[0] * squares[1]);
-    held.ask_width(&other_normal, other_squares[0] * other_squares[1]);
+    held.require_width(&normal, squares[0] * squares[1]);
+    held.require_width(&other_normal, other_squares[0] * other_squares[1]);
     let across = cross(&normal, &other_normal);
     let both = dot(&normal, &normal) * dot(&other_normal, &other_normal);
     let is_askew = held.is_wide(&across, both);
@@ -129,7 +129,7 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         for (other, other_squared) in others.iter().zip(other_squares) {
             let along = cross(side, other);
             held.along(&along);
-            held.ask_width(&along, squared * other_squared);
+            held.require_width(&along, squared * other_squared);
         }
     }
     held.unsure |= !is_askew;
@@ -144,7 +144,7 @@ fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         held.beyond = beyond | (held.beyond & !is_askew);
         held.within = within;
     }
-    held.verdicts(true)
+    held.masks(true)
 }
 
 /// Eight pairs relative to the first corner of their first part, and the results so far.
@@ -171,7 +171,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
         let one = [load(simd, a), load(simd, b), load(simd, c)];
         let [a, b, c] = &pairs.others.corners;
         let other: [[V; D]; 3] = [load(simd, a), load(simd, b), load(simd, c)];
-        let mut size = V::all(simd, pairs.place);
+        let mut size = V::all(simd, pairs.scale);
         for value in one.as_flattened().iter().chain(other.as_flattened()) {
             size = value.abs().larger(size);
         }
@@ -225,16 +225,16 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> HeldPairs<S, V, D
 
     /// Marks the pairs whose direction is not exact as unsure.
     #[inline(always)]
-    fn ask_width(&mut self, along: &[V; D], squares: V) {
+    fn require_width(&mut self, along: &[V; D], squares: V) {
         self.unsure |= !self.is_wide(along, squares);
     }
 
     /// Returns the results. `within` takes exact directions, and all axes (`has_all`).
     #[inline(always)]
-    fn verdicts(&self, has_all: bool) -> PairVerdicts {
+    fn masks(&self, has_all: bool) -> PairMasks {
         let beyond = bits(self.beyond & self.is_precise);
         let within = bits(self.within & !self.unsure & self.is_precise & !self.beyond);
-        PairVerdicts { beyond, within: if has_all { within } else { 0 } }
+        PairMasks { beyond, within: if has_all { within } else { 0 } }
     }
 }
 
@@ -260,29 +260,29 @@ fn extent<S: Simd, V: Wide<S>, const D: usize>([a, b, c]: &[[V; D]; 3], along: &
 mod tests {
     use super::*;
     use crate::collide::Pair;
-    use crate::collide::separation::separation_in_space;
-    use crate::math::noise::Noise;
+    use crate::collide::separation::separation_3d;
+    use crate::math::xorshift::Xorshift;
     use crate::math::{Mapped, Point, Pose, Vector};
     use crate::shape::{Geometry, Shape, Triangle};
 
     type Corners<N> = [Point<N, 3>; 3];
 
-    /// The distance by [`separation_in_space`], without a limit.
+    /// The distance by [`separation_3d`], without a limit.
     fn distance<N: Real>(one: &Corners<N>, other: &Corners<N>) -> N {
         let [one, other] = [one, other].mapped(|[a, b, c]| Triangle::new(*a, *b, *c));
         let [first, second]: [Geometry<'_, N, 3>; 2] = [one.geometry(), other.geometry()];
         let pair = Pair { first: first.0, second: second.0, pose12: Pose::identity() };
-        separation_in_space(&pair, N::INFINITY).expect("there is no limit").distance
+        separation_3d(&pair, N::INFINITY).expect("there is no limit").distance
     }
 
     /// The bits must be true, and few pairs undecided.
     fn check<N: Real>(scale: f64, flat: f64) {
-        let (mut noise, mut known, mut all) = (Noise(7), 0, 0);
+        let (mut random, mut known, mut all) = (Xorshift(7), 0, 0);
         for round in 0..200 {
             let (mut pairs, mut placed) = (PartPairs::<N, 3>::new(N::ZERO), Vec::new());
             for lane in 0..LANES {
                 let mut corner = || {
-                    let at = noise.vector::<f64>(scale);
+                    let at = random.vector::<f64>(scale);
                     Point::from(Vector::<N, 3>::new(
                         N::lit(at.x),
                         N::lit(at.y),
@@ -296,7 +296,7 @@ mod tests {
             }
             pairs.count = LANES;
             let limit = N::lit(scale * [0.0, 0.1, -0.02][round % 3]);
-            let PairVerdicts { beyond, within } = part_pairs3(&pairs, limit);
+            let PairMasks { beyond, within } = part_pairs3(&pairs, limit);
             assert_eq!(beyond & within, 0, "not both");
             for (lane, (one, other)) in placed.iter().enumerate() {
                 let distance = distance(one, other);
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn verdicts_are_true() {
+    fn masks_are_true() {
         check::<f64>(1.0, 1.0);
         check::<f32>(1.0, 1.0);
         check::<f64>(1e6, 0.1);

@@ -179,21 +179,21 @@ impl<N: Space<D>, const D: usize> TreePair<N, D> for TreeParts<'_, '_, N, D> {
     }
 
     fn between(&self, points: [Point<N, D>; 2]) -> Option<Toward<N, D>> {
-        let way = self.between.pair.pose12.point(&points[1]) - points[0];
-        self.toward(0, &unit(&way)?.0)
+        let offset = self.between.pair.pose12.point(&points[1]) - points[0];
+        self.toward(0, &unit(&offset)?.0)
     }
 
     /// Infinite for parts without corners.
-    fn reach(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
+    fn extent(&self, which: usize, id: u32, along: &Vector<N, D>) -> N {
         let part = self.parts[which].part(id);
         let Some(corners) = corners(&part.solid, &part.pose) else { return N::INFINITY };
         range(&corners, along)[1]
     }
 
     /// Minus the rounding error, so that it is a lower bound.
-    fn gap(&self, toward: &Toward<N, D>, [reach1, reach2]: [N; 2]) -> N {
+    fn gap(&self, toward: &Toward<N, D>, [extent1, extent2]: [N; 2]) -> N {
         let offset = toward[0].dot(&self.between.pair.pose12.translation);
-        offset - reach1 - reach2 - self.slack
+        offset - extent1 - extent2 - self.slack
     }
 
     fn guess(&mut self, parts: [u32; 2]) {
@@ -246,7 +246,7 @@ type PartGaps<N> = SmallVec<[(N, u32); 2 * LANES]>;
 impl<N: Space<D>, const D: usize> TreeParts<'_, '_, N, D> {
     /// The gap of two parts along a direction; minus infinity without corners.
     fn gap_along(&self, toward: &Toward<N, D>, parts: [u32; 2]) -> N {
-        self.gap(toward, [0, 1].mapped(|which| self.reach(which, parts[which], &toward[which])))
+        self.gap(toward, [0, 1].mapped(|which| self.extent(which, parts[which], &toward[which])))
     }
 
     /// The gap along the line through the centroids of two parts; minus infinity without corners.

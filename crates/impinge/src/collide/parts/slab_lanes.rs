@@ -25,7 +25,7 @@ pub(crate) fn part_gaps2<N: Real>(
     let mut gaps = [N::ZERO; LANES];
     for run in Level::new().runs(LANES) {
         let found =
-            in_lanes!(run, simd => in_plane::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
+            in_lanes!(run, simd => in_lanes_2d::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
         gaps[run.lanes()].copy_from_slice(&found[run.lanes()]);
     }
     gaps
@@ -40,7 +40,7 @@ pub(crate) fn part_gaps3<N: Real>(
     let mut gaps = [N::ZERO; LANES];
     for run in Level::new().runs(LANES) {
         let found =
-            in_lanes!(run, simd => in_space::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
+            in_lanes!(run, simd => in_lanes_3d::<_, N, N::Lanes<_>>(simd, slabs, tiles, limit));
         gaps[run.lanes()].copy_from_slice(&found[run.lanes()]);
     }
     gaps
@@ -48,13 +48,13 @@ pub(crate) fn part_gaps3<N: Real>(
 
 /// Gaps in 2D: along the slabs, then across the sides of the other parts.
 #[inline(always)]
-fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn in_lanes_2d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     slabs: &AxisSlabs<N, 2>,
     tiles: &PartPacket<N, 2>,
     limit: N,
 ) -> [N; LANES] {
-    let corners = seen::<S, N, V, 2>(simd, slabs, tiles);
+    let corners = translated_corners::<S, N, V, 2>(simd, slabs, tiles);
     let mut gaps = SlabGaps { simd, corners, gaps: V::all(simd, -N::INFINITY) };
     gaps.along(slabs);
     if let Some(own) = slabs.corners.as_ref().filter(|_| gaps.are_within(slabs, limit)) {
@@ -69,13 +69,13 @@ fn in_plane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 /// Gaps in 3D: along the slabs, then across the planes of the other parts, then perpendicular to a
 /// side of each.
 #[inline(always)]
-fn in_space<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     slabs: &AxisSlabs<N, 3>,
     tiles: &PartPacket<N, 3>,
     limit: N,
 ) -> [N; LANES] {
-    let corners = seen::<S, N, V, 3>(simd, slabs, tiles);
+    let corners = translated_corners::<S, N, V, 3>(simd, slabs, tiles);
     let mut gaps = SlabGaps { simd, corners, gaps: V::all(simd, -N::INFINITY) };
     gaps.along(slabs);
     let Some(own) = &slabs.corners else { return gaps.certain(slabs) };
@@ -161,7 +161,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
 
 /// Translates the corners of eight parts to the origin of the slabs.
 #[inline(always)]
-fn seen<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
+fn translated_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,
     slabs: &AxisSlabs<N, D>,
     tiles: &PartPacket<N, D>,

@@ -68,15 +68,15 @@ impl<N: Space<D>, const D: usize> AxisSlabs<N, D> {
         let Some((part, pose)) = between.part_in_other(which, part) else { return slabs };
         let Some(corners) = corners(&part.solid, &pose) else { return slabs };
         let own = max_component(&part.pose.translation);
-        let place = max(own, max_component(&pose.translation));
+        let offset = max(own, max_component(&pose.translation));
         slabs.origin = corners[0];
-        let ends = corners.mapped(|at| sweep.map_or(at, |sweep| at + sweep.way(&at)));
+        let ends = corners.mapped(|at| sweep.map_or(at, |sweep| at + sweep.displacement(&at)));
         let all = corners.iter().chain(&ends);
-        slabs.size = all.fold(place, |size, at| max(max_component(at), size));
+        slabs.size = all.fold(offset, |size, at| max(max_component(at), size));
         let spread = sweep.map_or(N::ZERO, |sweep| sweep.spread);
-        let seen = corners.mapped(|at| at - corners[0]);
-        slabs.surround(&seen, &ends.mapped(|at| at - corners[0]), spread);
-        slabs.corners = sweep.is_none().then_some(seen);
+        let relative = corners.mapped(|at| at - corners[0]);
+        slabs.surround(&relative, &ends.mapped(|at| at - corners[0]), spread);
+        slabs.corners = sweep.is_none().then_some(relative);
         slabs
     }
 

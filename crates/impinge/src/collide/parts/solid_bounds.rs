@@ -37,7 +37,7 @@ pub(crate) struct SolidBounds<'a, N: Real, const D: usize> {
 impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     /// Takes the first shape (0) or the second (1); `None` for composites and half-spaces.
     pub(crate) fn of(between: &'a Between<'_, N, D>, which: usize) -> Option<Self> {
-        let (solid, pose) = between.seen_by_other(which);
+        let (solid, pose) = between.in_frame_of_other(which);
         let map = Geometry(solid).as_support_map()?;
         let size = map.reach() + map.rounding() + max_component(&pose.translation);
         Some(Self { solid, map, pose: *pose, center: pose.point(&map.center()), size })
@@ -52,14 +52,14 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     /// upper bound of the solid's extent along it. `None` if there is no finite bound.
     pub(crate) fn toward(&self, aabb: &Aabb<N, D>) -> Option<(Vector<N, D>, N)> {
         let outward = self.outward_at(&aabb.center());
-        let reach = -self.gap(&outward, N::ZERO, reach_of(aabb));
-        (reach < N::INFINITY).then_some((outward, reach))
+        let extent = -self.gap(&outward, N::ZERO, largest_coordinate(aabb));
+        (extent < N::INFINITY).then_some((outward, extent))
     }
 
     /// Returns a lower bound of the signed distance to anything in the box.
     pub(super) fn of_box(&self, aabb: &Aabb<N, D>) -> N {
-        self.toward(aabb).map_or(-N::INFINITY, |(along, reach)| {
-            along.dot(&aabb.center().coords) - along.abs().dot(&aabb.half_extents()) - reach
+        self.toward(aabb).map_or(-N::INFINITY, |(along, extent)| {
+            along.dot(&aabb.center().coords) - along.abs().dot(&aabb.half_extents()) - extent
         })
     }
 
@@ -67,36 +67,37 @@ impl<'a, N: Space<D>, const D: usize> SolidBounds<'a, N, D> {
     pub(crate) fn of_part(&self, part: &Part<'_, N, D>, aabb: &Aabb<N, D>) -> N {
         let geometry = part.solid.geometry();
         let Some(map) = geometry.as_support_map() else { return self.of_box(aabb) };
-        let reach = reach_of(aabb);
+        let largest = largest_coordinate(aabb);
         let gap = |along: &Vector<N, D>| {
             let against = part.pose.inverse_vector(&-along);
             let lowest = part.pose.point(&map.core_support(&against)).coords;
-            self.gap(along, along.dot(&lowest) - map.rounding(), reach)
+            self.gap(along, along.dot(&lowest) - map.rounding(), largest)
         };
         let center = part.pose.inverse_point(&self.center);
-        let Some(seen) = <N::Algorithms>::seen(geometry.0, &center) else {
+        let Some(projected) = <N::Algorithms>::project_on_solid(geometry.0, &center) else {
             return gap(&self.outward_at(&aabb.center()));
         };
-        let across = gap(&-part.pose.vector(&seen.outward));
-        max(gap(&self.outward_at(&part.pose.point(&seen.point))), across)
+        let across = gap(&-part.pose.vector(&projected.outward));
+        max(gap(&self.outward_at(&part.pose.point(&projected.point))), across)
     }
 
     /// The outward unit normal at the nearest point to `point`, or the direction from the centre to
     /// `point` for solids without a closed form.
     fn outward_at(&self, point: &Point<N, D>) -> Vector<N, D> {
-        match <N::Algorithms>::seen(self.solid, &self.pose.inverse_point(point)) {
-            Some(seen) => self.pose.vector(&seen.outward),
-            None => unit(&(point - self.center)).map_or_else(Vector::<N, D>::zeros, |(way, _)| way),
+        match <N::Algorithms>::project_on_solid(self.solid, &self.pose.inverse_point(point)) {
+            Some(projected) => self.pose.vector(&projected.outward),
+            None => unit(&(point - self.center))
+                .map_or_else(Vector::<N, D>::zeros, |(direction, _)| direction),
         }
     }
 
     /// Returns the gap along a unit vector from the solid to what lies above `lowest`, minus the
-    /// rounding error; minus infinity if `along` is not a unit vector. `reach` bounds the
+    /// rounding error; minus infinity if `along` is not a unit vector. `largest` bounds the
     /// coordinates of the other.
-    fn gap(&self, along: &Vector<N, D>, lowest: N, reach: N) -> N {
+    fn gap(&self, along: &Vector<N, D>, lowest: N, largest: N) -> N {
         let highest = self.map.core_support(&self.pose.inverse_vector(along));
         let height = along.dot(&self.pose.point(&highest).coords) + self.map.rounding();
-        let size = self.size + reach;
+        let size = self.size + largest;
         let bound = lowest - height - gap_slack(size);
         // Subnormal lengths are not precise.
         let is_precise = size > N::MIN_POSITIVE / N::EPSILON;
@@ -112,6 +113,6 @@ pub(super) fn gap_slack<N: Real>(size: N) -> N {
 }
 
 /// The largest absolute coordinate of a bounded box, but for rounding.
-fn reach_of<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
+fn largest_coordinate<N: Real, const D: usize>(aabb: &Aabb<N, D>) -> N {
     max_component(&(aabb.center().coords.abs() + aabb.half_extents()))
 }

@@ -27,8 +27,8 @@ impl<N: Real, const D: usize> PartSweep<N, D> {
     }
 
     /// The displacement of a point, without the spread.
-    pub(crate) fn way(&self, place: &Vector<N, D>) -> Vector<N, D> {
-        self.turn * place + self.shift
+    pub(crate) fn displacement(&self, point: &Vector<N, D>) -> Vector<N, D> {
+        self.turn * point + self.shift
     }
 
     /// Returns a box around the swept points of a box.
@@ -36,9 +36,9 @@ impl<N: Real, const D: usize> PartSweep<N, D> {
         if !aabb.is_bounded() {
             return Aabb::unbounded();
         }
-        let way = self.way(&aabb.center().coords);
+        let displacement = self.displacement(&aabb.center().coords);
         let swing = self.turn.abs() * aabb.half_extents();
-        let (low, high) = (way - swing, way + swing);
+        let (low, high) = (displacement - swing, displacement + swing);
         let lowest = Vector::<N, D>::from_fn(|axis, _| min(low[axis], N::ZERO) - self.spread);
         let highest = Vector::<N, D>::from_fn(|axis, _| max(high[axis], N::ZERO) + self.spread);
         let (mins, maxs) = (aabb.mins().coords + lowest, aabb.maxs().coords + highest);

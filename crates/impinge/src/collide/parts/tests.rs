@@ -24,13 +24,13 @@ fn soup<N: Space<D>, const D: usize>(
     let mut corners = Vec::new();
     for number in 0..40 {
         let size = N::lit([0.05, 0.2, 0.6, 1.5][number % 4]);
-        let (place, mut arms) = (vector(random), [(); 2].map(|()| vector(random) * size));
+        let (position, mut arms) = (vector(random), [(); 2].map(|()| vector(random) * size));
         match number % 7 {
             3 => arms[1] = arms[0] * N::HALF + arms[1] * N::lit(1e-3),
             5 => arms.iter_mut().for_each(|arm| arm[number % D] = N::ZERO),
             _ => (),
         }
-        corners.extend([place, place + arms[0], place + arms[1]].map(Point::from));
+        corners.extend([position, position + arms[0], position + arms[1]].map(Point::from));
     }
     let triangle = |first: u32| [3 * first, 3 * first + 1, 3 * first + 2];
     let triangles: Vec<_> = (0..40).chain([7]).map(triangle).collect();
@@ -92,8 +92,8 @@ fn searches<N: Space<D>, const D: usize>(
     let (first, parts) = (mesh.geometry().0, mesh.num_parts());
     let mut overlaps = [0; 2];
     for round in 0..48 {
-        let reach = N::lit([0.3, 1.0, 2.0, 8.0][round % 4]);
-        let pose12 = Pose { translation: vector(random) * reach, ..turn(random) };
+        let distance = N::lit([0.3, 1.0, 2.0, 8.0][round % 4]);
+        let pose12 = Pose { translation: vector(random) * distance, ..turn(random) };
         let second = other.geometry().0;
         let distance = check(&Pair { first, second, pose12 }, [parts, other.num_parts()]);
         overlaps[usize::from(distance > N::ZERO)] += 1;
@@ -115,15 +115,15 @@ fn searches_of_surface<N: Space<3>>() {
     let mesh = TriMesh::new(surface.vertices, surface.triangles);
     let (first, parts, random) = (mesh.geometry().0, mesh.num_parts(), &mut Random(5));
     let mut overlaps = [0; 2];
-    for reach in [0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 4.0, 1e4] {
-        let along = Vector::<N, 3>::new(N::lit(reach), N::ZERO, N::ZERO);
-        let aside = random.vector::<N>() * N::lit(reach);
+    for distance in [0.0, 0.5, 0.75, 1.0, 1.25, 1.5, 4.0, 1e4] {
+        let along = Vector::<N, 3>::new(N::lit(distance), N::ZERO, N::ZERO);
+        let aside = random.vector::<N>() * N::lit(distance);
         for pose12 in [
             Pose::from_translation(along),
             Pose { translation: along, ..random.turn() },
             Pose { translation: aside, ..random.turn() },
         ] {
-            for solid in in_space() {
+            for solid in solids_3d() {
                 let pair = Pair { first, second: solid.geometry().0, pose12 };
                 overlaps[usize::from(check(&pair, [parts, 1]) > N::ZERO)] += 1;
             }
@@ -155,13 +155,13 @@ fn bounds<N: Space<D>, const D: usize>(
         );
         let size = aabb.half_extents().norm() * N::lit(2.5) + N::lit(1e-4);
         assert!(of_part > found - size, "{of_part} is far from {found} at {:?}", pair.pose12);
-        let place = Point::from(vector(random));
-        let around = Aabb::new(place, place).merged(&aabb);
+        let position = Point::from(vector(random));
+        let around = Aabb::new(position, position).merged(&aabb);
         assert!(solid.of_box(&around) <= found, "a larger box at {:?}", pair.pose12);
     }
 }
 
-fn in_space<N: Space<3>>() -> Solids<N, 3> {
+fn solids_3d<N: Space<3>>() -> Solids<N, 3> {
     let half = Vector::<N, 3>::new(N::lit(0.5), N::lit(0.3), N::lit(0.2));
     let random = &mut Random(8);
     let points: Vec<_> =
@@ -180,7 +180,7 @@ fn in_space<N: Space<3>>() -> Solids<N, 3> {
     ]
 }
 
-fn in_plane<N: Space<2>>() -> Solids<N, 2> {
+fn solids_2d<N: Space<2>>() -> Solids<N, 2> {
     let half = Vector::<N, 2>::new(N::lit(0.5), N::lit(0.2));
     let random = &mut Random(8);
     let points: Vec<_> =
@@ -196,23 +196,24 @@ fn in_plane<N: Space<2>>() -> Solids<N, 2> {
     ]
 }
 
-fn turned<N: Real>(random: &mut Random) -> Pose<N, 2> {
-    let way = unit(&random.vector::<N>().xy()).map_or_else(Vector::<N, 2>::x, |(way, _)| way);
+fn random_rotation<N: Real>(random: &mut Random) -> Pose<N, 2> {
+    let direction =
+        unit(&random.vector::<N>().xy()).map_or_else(Vector::<N, 2>::x, |(direction, _)| direction);
     let mut pose = Pose::<N, 2>::identity();
-    pose.rotation = Matrix::<N, 2>::new(way.x, -way.y, way.y, way.x);
+    pose.rotation = Matrix::<N, 2>::new(direction.x, -direction.y, direction.y, direction.x);
     pose
 }
 
 #[test]
 fn no_part_is_nearer_than_the_one_that_is_found() {
-    searches::<f32, 3>(&in_space(), Random::vector, Random::turn);
-    searches::<f32, 2>(&in_plane(), |random| random.vector().xy(), turned);
+    searches::<f32, 3>(&solids_3d(), Random::vector, Random::turn);
+    searches::<f32, 2>(&solids_2d(), |random| random.vector().xy(), random_rotation);
     searches_of_surface::<f32>();
 }
 
 #[test]
 fn no_part_is_nearer_in_double_precision() {
-    searches::<f64, 3>(&in_space(), Random::vector, Random::turn);
-    searches::<f64, 2>(&in_plane(), |random| random.vector().xy(), turned);
+    searches::<f64, 3>(&solids_3d(), Random::vector, Random::turn);
+    searches::<f64, 2>(&solids_2d(), |random| random.vector().xy(), random_rotation);
     searches_of_surface::<f64>();
 }

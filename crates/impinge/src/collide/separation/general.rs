@@ -46,7 +46,7 @@ pub(super) fn separation<N: Simplicial<D>, const D: usize>(
     } else {
         convex::separation(&map1, &map2, &pair.pose12, loosened)
     };
-    let found = found.map(|found| shared_corner::settled(pair, found));
+    let found = found.map(|found| shared_corner::with_shared_corner(pair, found));
     found.filter(|found| found.distance <= limit)
 }
 
@@ -86,7 +86,7 @@ fn from_start<N: Simplicial<D>, const D: usize>(
     };
     let loosened = loosened(&map1, &map2, &pair.pose12, limit);
     let found = convex::flat_separation(&map1, &map2, &pair.pose12, loosened, start);
-    let found = found.map(|found| shared_corner::settled(pair, found));
+    let found = found.map(|found| shared_corner::with_shared_corner(pair, found));
     found.filter(|found| found.distance <= limit)
 }
 

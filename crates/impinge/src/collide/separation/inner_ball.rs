@@ -13,8 +13,8 @@ pub(super) fn inner_balls_meet<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -
     else {
         return false;
     };
-    let reach = (radius1 + radius2) * N::lit(SHARE);
-    (pair.pose12.point(&center2) - center1).norm_squared() < reach * reach
+    let max_distance = (radius1 + radius2) * N::lit(SHARE);
+    (pair.pose12.point(&center2) - center1).norm_squared() < max_distance * max_distance
 }
 
 /// Returns a ball inside a solid, about its centre; `None` for kinds without one. The ball of a
@@ -85,7 +85,7 @@ mod tests {
             second: cone.geometry().0,
             pose12: Pose::from_translation(Vector::<f64, 3>::new(x, 0.5, 0.0)),
         };
-        assert!(inner_balls_meet(&at(2.49)), "1 and 1.5 are more than the way");
+        assert!(inner_balls_meet(&at(2.49)), "1 and 1.5 exceed the distance");
         assert!(!inner_balls_meet(&at(2.51)), "though the solids overlap");
         assert!(!inner_balls_meet(&at(f64::NAN)), "nowhere");
     }
@@ -95,11 +95,11 @@ mod tests {
         let at = |x: f64| Point::<f64, 3>::new(x, 0.0, 0.0);
         let (far, ball) = (Segment::new(at(5.0), at(7.0)), Capsule::<f64, 3>::new(1.0, 1.0));
         let (first, second) = (far.geometry().0, ball.geometry().0);
-        let place = |x: f64| Pose::from_translation(Vector::<f64, 3>::new(x, 0.0, 0.0));
-        assert!(!inner_balls_meet(&Pair { first, second, pose12: place(0.0) }), "it begins at 5");
-        assert!(inner_balls_meet(&Pair { first, second, pose12: place(6.0) }), "in its middle");
+        let pose_at = |x: f64| Pose::from_translation(Vector::<f64, 3>::new(x, 0.0, 0.0));
+        assert!(!inner_balls_meet(&Pair { first, second, pose12: pose_at(0.0) }), "it begins at 5");
+        assert!(inner_balls_meet(&Pair { first, second, pose12: pose_at(6.0) }), "in its middle");
         let tip = Triangle::new(at(5.0), at(6.0), at(7.0));
         let first = tip.geometry().0;
-        assert!(!inner_balls_meet(&Pair { first, second, pose12: place(0.0) }), "none is known");
+        assert!(!inner_balls_meet(&Pair { first, second, pose12: pose_at(0.0) }), "none is known");
     }
 }

@@ -40,11 +40,11 @@ mod inner_ball;
 mod overlap;
 mod plane_any;
 pub(crate) mod polygons;
+mod project;
 pub(crate) mod projection;
 mod revolved;
 mod ridges;
 mod rounded;
-mod seen;
 pub(crate) mod segments;
 mod shared_corner;
 mod table2;
@@ -64,15 +64,15 @@ use crate::tables::ByDimension;
 
 pub(crate) use balls::ball_triangle::separation as ball_triangle;
 pub(crate) use chain::{ChainQuestion, Links, links};
-pub(crate) use overlap::{distance_in_plane, distance_in_space};
+pub(crate) use overlap::{distance_2d, distance_3d};
+pub(crate) use project::{project_on_solid_2d, project_on_solid_3d};
 pub(crate) use projection::Projection;
 pub(crate) use rounded::bare;
-pub(crate) use seen::{seen_in_plane, seen_in_space};
-pub(crate) use segments::segment_lanes::{SegmentGap, is_usual, nearest_on_segment};
-pub(crate) use table2::separation as separation_in_plane;
-pub(crate) use table3::separation as separation_in_space;
+pub(crate) use segments::segment_lanes::{SegmentGap, is_square_in_range, nearest_on_segment};
+pub(crate) use table2::separation as separation_2d;
+pub(crate) use table3::separation as separation_3d;
 pub(crate) use triangles::{
-    BallQuestion, NearTriangles, TiledTriangles, TriangleGap, gaps3, near_triangles,
+    BallQuestion, CandidateTriangles, TiledTriangles, TriangleGap, candidate_triangles, gaps3,
 };
 pub(crate) use world::{
     AtIsometry, distance_in_world, in_world, of_ordered, placed, touching_in_world,

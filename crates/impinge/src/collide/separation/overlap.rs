@@ -40,46 +40,46 @@ enum DistanceMethod {
 /// If they overlap and `limit` is zero or more, any number that is not positive may stand for it,
 /// so clear overlaps are not measured. Otherwise it is the distance of the separation, to the bit.
 /// Pairs that are not in the order of kinds go to the separation, which orders them.
-pub(crate) fn distance_in_space<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
-    if let Some(known) = known_in_space(pair) {
+pub(crate) fn distance_3d<N: Simplicial<3>>(pair: &Pair<'_, N, 3>, limit: N) -> Option<N> {
+    if let Some(known) = known_3d(pair) {
         return (known <= limit).then_some(known);
     }
     if limit >= N::ZERO && inner_balls_meet(pair) {
         return Some(N::ZERO);
     }
-    if is_plain(pair, limit) && are_faceted(pair) {
+    if is_distance_only(pair, limit) && are_faceted(pair) {
         return apart::distance(pair, limit);
     }
-    let way = way_in_space(pair);
-    if way == DistanceMethod::Revolved && is_plain(pair, limit) && are_bare(pair) {
+    let method = method_3d(pair);
+    if method == DistanceMethod::Revolved && is_distance_only(pair, limit) && are_bare(pair) {
         return revolved::distance(pair, limit);
     }
-    distance(pair, limit, way)
+    distance(pair, limit, method)
 }
 
-/// Returns the signed distance of two solids in 2D, with the rule of [`distance_in_space`].
-pub(crate) fn distance_in_plane<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
-    if let Some(known) = known(pair, beside_ball_in_plane) {
+/// Returns the signed distance of two solids in 2D, with the rule of [`distance_3d`].
+pub(crate) fn distance_2d<N: Simplicial<2>>(pair: &Pair<'_, N, 2>, limit: N) -> Option<N> {
+    if let Some(known) = known(pair, beside_ball_2d) {
         return (known <= limit).then_some(known);
     }
     if limit >= N::ZERO && inner_balls_meet(pair) {
         return Some(N::ZERO);
     }
-    distance(pair, limit, way_in_plane(pair))
+    distance(pair, limit, method_2d(pair))
 }
 
 /// Returns the signed distance where its formula is a part of the formula for the separation.
-fn known_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
+fn known_3d<N: Real>(pair: &Pair<'_, N, 3>) -> Option<N> {
     use Kind::{Capsule, Segment};
     match (pair.first, pair.second) {
         (Segment(_), Segment(_) | Capsule(_)) | (Capsule(_), Capsule(_)) => {
             Some(segment_segment::distance(pair))
         }
-        _ => known(pair, beside_ball_in_space),
+        _ => known(pair, beside_ball_3d),
     }
 }
 
-/// Computes [`known_in_space`] for the kinds that do not depend on the dimension; balls by the
+/// Computes [`known_3d`] for the kinds that do not depend on the dimension; balls by the
 /// projection of their centre (`beside_ball`).
 #[inline(always)]
 fn known<N: Real, const D: usize>(
@@ -102,18 +102,14 @@ fn known<N: Real, const D: usize>(
 /// Returns the signed distance of a ball from a solid in 3D, in the frame of the solid: the
 /// projection of its centre without the direction. Radii are subtracted in the order of the
 /// separation.
-fn beside_ball_in_space<N: Real>(
-    radius: N,
-    kind: Kind<'_, N, 3>,
-    center: &Point<N, 3>,
-) -> Option<N> {
+fn beside_ball_3d<N: Real>(radius: N, kind: Kind<'_, N, 3>, center: &Point<N, 3>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle::distance_from(triangle.corners(), center),
         Kind::Polytope(hull) => ball_polytope::project(hull, center).distance,
         Kind::Cylinder(cylinder, _) => ball_cylinder::project(cylinder, center).distance,
         Kind::Cone(cone, _) => ball_cone::project(cone, center).distance,
         Kind::Rounded(solid) => {
-            let core = beside_ball_in_space(radius, solid.inner().0, center)?;
+            let core = beside_ball_3d(radius, solid.inner().0, center)?;
             return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
@@ -121,17 +117,13 @@ fn beside_ball_in_space<N: Real>(
     Some(apart - radius)
 }
 
-/// Computes [`beside_ball_in_space`] in 2D.
-fn beside_ball_in_plane<N: Real>(
-    radius: N,
-    kind: Kind<'_, N, 2>,
-    center: &Point<N, 2>,
-) -> Option<N> {
+/// Computes [`beside_ball_3d`] in 2D.
+fn beside_ball_2d<N: Real>(radius: N, kind: Kind<'_, N, 2>, center: &Point<N, 2>) -> Option<N> {
     let apart = match kind {
         Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), center)?.distance,
         Kind::Polytope(polygon) => ball_polygon::project(polygon, center).distance,
         Kind::Rounded(solid) => {
-            let core = beside_ball_in_plane(radius, solid.inner().0, center)?;
+            let core = beside_ball_2d(radius, solid.inner().0, center)?;
             return Some(core - solid.radius());
         }
         other => return beside_ball(radius, other, center),
@@ -157,18 +149,18 @@ fn beside_ball<N: Real, const D: usize>(
     Some(apart - radius)
 }
 
-/// Computes the distance by a method; [`is_plain`] pairs prove an overlap first where that is
+/// Computes the distance by a method; [`is_distance_only`] pairs prove an overlap first where that is
 /// faster.
 fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
     limit: N,
-    way: DistanceMethod,
+    method: DistanceMethod,
 ) -> Option<N> {
-    if is_plain(pair, limit) {
-        if way == DistanceMethod::Search && are_bare(pair) {
+    if is_distance_only(pair, limit) {
+        if method == DistanceMethod::Search && are_bare(pair) {
             return general::distance(pair, limit);
         }
-        if way != DistanceMethod::Formula && certainly_overlap(pair, way) {
+        if method != DistanceMethod::Formula && certainly_overlap(pair, method) {
             return Some(N::ZERO);
         }
     }
@@ -176,7 +168,7 @@ fn distance<N: Simplicial<D> + Space<D>, const D: usize>(
 }
 
 /// Returns whether depths are not needed and the solids are in the order of kinds.
-fn is_plain<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
+fn is_distance_only<N: Real, const D: usize>(pair: &Pair<'_, N, D>, limit: N) -> bool {
     limit >= N::ZERO && Geometry(pair.first).kind() <= Geometry(pair.second).kind()
 }
 
@@ -197,9 +189,9 @@ fn are_bare<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> bool {
 /// Costs a few support points of each solid, which are wasted if they are apart.
 fn certainly_overlap<N: Simplicial<D>, const D: usize>(
     pair: &Pair<'_, N, D>,
-    way: DistanceMethod,
+    method: DistanceMethod,
 ) -> bool {
-    let least = if way == DistanceMethod::Axes { N::lit(DEEP) } else { N::ZERO };
+    let least = if method == DistanceMethod::Axes { N::lit(DEEP) } else { N::ZERO };
     if let (Some(map1), Some(map2)) = (FlatCore::of(pair.first), FlatCore::of(pair.second)) {
         return convex::overlap(&map1, &map2, &pair.pose12, least);
     }
@@ -216,7 +208,7 @@ fn inner<N: Real, const D: usize>(kind: Kind<'_, N, D>) -> Kind<'_, N, D> {
 }
 
 /// Returns the method for two kinds in order, as in the table of 3D.
-fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
+fn method_3d<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
     use Kind::{
         Ball, Capsule, Composite, Cone, Cuboid, Cylinder, Plane, Polytope, Segment, Triangle,
     };
@@ -243,7 +235,7 @@ fn way_in_space<N: Real>(pair: &Pair<'_, N, 3>) -> DistanceMethod {
 }
 
 /// Returns the method for two kinds in order, as in the table of 2D.
-fn way_in_plane<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
+fn method_2d<N: Real>(pair: &Pair<'_, N, 2>) -> DistanceMethod {
     use Kind::{Ball, Composite, Plane};
     let (first, second) = (inner(pair.first), inner(pair.second));
     match (first, second) {
@@ -273,7 +265,7 @@ mod tests {
     fn found<N: Simplicial<D> + Space<D>, const D: usize>(
         solids: &[Box<dyn Shape<N, D>>],
         poses: &[Pose<N, D>],
-        way: fn(&Pair<'_, N, D>) -> DistanceMethod,
+        method: fn(&Pair<'_, N, D>) -> DistanceMethod,
     ) -> (usize, usize) {
         let (mut found, mut overlapping) = (0, 0);
         for (first, second) in solids.iter().flat_map(|a| solids.iter().map(move |b| (a, b))) {
@@ -281,10 +273,10 @@ mod tests {
                 let pair = Pair { first: first.geometry().0, second: second.geometry().0, pose12 };
                 let depth = separation(&pair, N::INFINITY).expect("finite").distance;
                 let is_deep = depth < N::ZERO;
-                let is_searched = way(&pair) != DistanceMethod::Formula;
+                let is_searched = method(&pair) != DistanceMethod::Formula;
                 let is_found = is_searched && certainly_overlap(&pair, DistanceMethod::Features);
                 assert!(is_deep || !is_found, "they are apart at {pose12:?}");
-                let known = distance(&pair, N::INFINITY, way(&pair)).expect("finite");
+                let known = distance(&pair, N::INFINITY, method(&pair)).expect("finite");
                 if depth > N::ZERO {
                     assert_eq!(known, depth, "the same where they are apart at {pose12:?}");
                 } else {
@@ -338,7 +330,7 @@ mod tests {
                 [straight, Pose { rotation, ..straight }]
             })
             .collect();
-        let (found, overlapping) = found(&solids, &poses, way_in_space);
+        let (found, overlapping) = found(&solids, &poses, method_3d);
         assert!(found * 2 > overlapping, "{found} of {overlapping} in 3D");
     }
 
@@ -359,7 +351,7 @@ mod tests {
             .flat_map(|(x, y)| steps(Vector::<N, 2>::new(N::lit(x), N::lit(y)), size))
             .map(Pose::from_translation)
             .collect();
-        let (found, overlapping) = found(&solids, &poses, way_in_plane);
+        let (found, overlapping) = found(&solids, &poses, method_2d);
         assert!(found * 2 > overlapping, "{found} of {overlapping} in 2D");
     }
 
@@ -405,10 +397,10 @@ mod tests {
         };
         let ball: [Box<dyn Shape<f32, 3>>; 1] = [Box::new(Ball::new(0.3))];
         let pose_of = |random: &mut Random| random.turn::<f32>();
-        are_parts(&ball, &solids(), pose_of, known_in_space);
+        are_parts(&ball, &solids(), pose_of, known_3d);
         let plane: [Box<dyn Shape<f32, 3>>; 1] =
             [Box::new(Plane::new(-Vector::<f32, 3>::x_axis()))];
-        are_parts(&solids()[..9], &plane, pose_of, known_in_space);
+        are_parts(&solids()[..9], &plane, pose_of, known_3d);
         let flat: [Box<dyn Shape<f32, 2>>; 4] = [
             Box::new(Triangle::new(corners[0].xy(), corners[1].xy(), corners[3].xy())),
             Box::new(ConvexPolygon::from_points(&corners.map(|corner| corner.xy()))),
@@ -417,7 +409,7 @@ mod tests {
         ];
         let ball: [Box<dyn Shape<f32, 2>>; 1] = [Box::new(Ball::new(0.3))];
         let pose_of = |random: &mut Random| Pose::from_translation(random.vector::<f32>().xy());
-        are_parts(&ball, &flat, pose_of, |pair| known(pair, beside_ball_in_plane));
+        are_parts(&ball, &flat, pose_of, |pair| known(pair, beside_ball_2d));
     }
 
     #[test]
@@ -437,6 +429,6 @@ mod tests {
         let (first, second) = (cone.geometry().0, cone.geometry().0);
         let pair = Pair { first, second, pose12 };
         assert!(!certainly_overlap(&pair, DistanceMethod::Features), "not a number");
-        assert_eq!(distance_in_space(&pair, f32::INFINITY), None, "not a number");
+        assert_eq!(distance_3d(&pair, f32::INFINITY), None, "not a number");
     }
 }

@@ -42,7 +42,7 @@ impl<N: Real, const D: usize> Projection<N, D> {
 }
 
 /// Returns the rounding error of lengths between points within `reach` of the origin.
-pub(super) fn noise<N: Real>(reach: N) -> N {
+pub(super) fn rounding_error<N: Real>(reach: N) -> N {
     N::lit(8.0) * N::EPSILON * reach
 }
 

@@ -21,7 +21,7 @@ const ROUNDING: f64 = 64.0;
 /// Returns `found`, or a distance of zero at a shared corner. Pairs of two boxes stay as they are:
 /// their distance is a difference of their numbers.
 #[inline]
-pub(super) fn settled<N: Real, const D: usize>(
+pub(super) fn with_shared_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     found: Separation<N, D>,
 ) -> Separation<N, D> {
@@ -44,9 +44,9 @@ fn at_corner<N: Real, const D: usize>(
     pair: &Pair<'_, N, D>,
     found: Separation<N, D>,
 ) -> Separation<N, D> {
-    let room = rounding(pair);
+    let tolerance = rounding(pair);
     let facing = |kind: &Kind<'_, N, D>, is_second: bool| {
-        let place = |corner: &Point<N, D>| {
+        let in_first_frame = |corner: &Point<N, D>| {
             if is_second { pair.pose12.point(corner) } else { *corner }
         };
         let height = |corner: &Point<N, D>| {
@@ -54,11 +54,11 @@ fn at_corner<N: Real, const D: usize>(
             if is_second { -along } else { along }
         };
         let mut highest = -N::INFINITY;
-        each_corner(kind, &mut |corner| highest = max(highest, height(&place(corner))));
+        each_corner(kind, &mut |corner| highest = max(highest, height(&in_first_frame(corner))));
         let mut corners = SmallVec::<[Point<N, D>; 8]>::new();
         each_corner(kind, &mut |corner| {
-            let corner = place(corner);
-            if height(&corner) >= highest - room {
+            let corner = in_first_frame(corner);
+            if height(&corner) >= highest - tolerance {
                 corners.push(corner);
             }
         });
@@ -94,11 +94,11 @@ fn is_between<N: Real, const D: usize>(
         let (low, high) = (min(a[axis], b[axis]), max(a[axis], b[axis]));
         low <= point[axis] && point[axis] <= high
     };
-    let is_level = |one: usize, other: usize| {
-        let seen = |p: &Point<N, D>| Point::<f64, 2>::new(p[one].as_f64(), p[other].as_f64());
-        exact::area(&seen(a), &seen(b), &seen(point)) == 0.0
+    let is_collinear = |one: usize, other: usize| {
+        let project = |p: &Point<N, D>| Point::<f64, 2>::new(p[one].as_f64(), p[other].as_f64());
+        exact::area(&project(a), &project(b), &project(point)) == 0.0
     };
-    (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_level(one, other)))
+    (0..D).all(is_within) && (0..D).all(|one| (one + 1..D).all(|other| is_collinear(one, other)))
 }
 
 /// Visits the corners of a flat-sided solid, in its own frame; none for other solids.

@@ -165,13 +165,13 @@ fn space<N: Real>() {
 }
 
 #[test]
-fn every_pair_of_kinds_in_the_plane() {
+fn every_pair_of_kinds_2d() {
     plane::<f32>();
     plane::<f64>();
 }
 
 #[test]
-fn every_pair_of_kinds_in_space() {
+fn every_pair_of_kinds_3d() {
     space::<f32>();
     space::<f64>();
 }

@@ -8,11 +8,11 @@ use crate::collide::Pair;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::convex::Separation;
 use crate::math::na::UnitQuaternion;
-use crate::math::noise::Noise;
+use crate::math::xorshift::Xorshift;
 use crate::math::{Point, Pose, Real, Vector};
 use crate::shape::{ConvexHull, Cuboid, Geometry, Kind, Shape, SupportMap, Triangle};
 
-impl Noise {
+impl Xorshift {
     fn pose<N: Real>(&mut self, away: f64) -> Pose<N, 3> {
         let turn = UnitQuaternion::from_scaled_axis(self.vector::<f64>(3.0));
         let matrix = turn.to_rotation_matrix().into_inner().map(N::lit);
@@ -50,14 +50,14 @@ fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: 
     let local = pair.pose12.inverse_vector(&-normal);
     let low = normal.dot(&pair.pose12.point(&maps[1].core_support(&local)).coords);
     let proof = (low - high - found.distance).as_f64();
-    assert!(proof.abs() <= slack, "{what}: the normal says {} more", proof);
+    assert!(proof.abs() <= slack, "{what}: the height along the normal is {} more", proof);
     let away = found.point2 - found.point1 - normal * found.distance;
     assert!(away.norm().as_f64() <= slack, "{what}: the points are aside by {away:?}");
     let on = [found.point1, pair.pose12.inverse_point(&found.point2)];
     for (map, point) in maps.iter().zip(on) {
         for along in directions::<N>() {
-            let room = along.dot(&(map.core_support(&along) - point)).as_f64();
-            assert!(room >= -slack, "{what}: a point is outside by {room}");
+            let inside_by = along.dot(&(map.core_support(&along) - point)).as_f64();
+            assert!(inside_by >= -slack, "{what}: a point is outside by {inside_by}");
         }
     }
 }
@@ -102,22 +102,22 @@ fn check_pair<N: Real>(own: Algorithm<N, 3>, pair: &Pair<'_, N, 3>, size: f64, t
 
 /// Boxes, hulls and triangles at every depth, of sizes from a tenth to one, some of them flat.
 fn at_random<N: Real>(rounds: usize) {
-    let (mut noise, mut tallies) = (Noise(7), [(); 4].map(|()| Tally::default()));
+    let (mut random, mut tallies) = (Xorshift(7), [(); 4].map(|()| Tally::default()));
     for round in 0..rounds {
-        let triangle = noise.triangle::<N>(round);
-        let mut half = noise.vector::<N>(0.5).abs() + Vector::<N, 3>::repeat(N::lit(0.05));
+        let triangle = random.triangle::<N>(round);
+        let mut half = random.vector::<N>(0.5).abs() + Vector::<N, 3>::repeat(N::lit(0.05));
         if round % 7 == 0 {
             half.y = N::ZERO;
         }
         let cuboid = Cuboid::new(half);
-        let points: Vec<_> = (0..9).map(|_| Point::from(noise.vector::<N>(0.6))).collect();
+        let points: Vec<_> = (0..9).map(|_| Point::from(random.vector::<N>(0.6))).collect();
         let hull = ConvexHull::from_points(&points);
-        let mut pose12 = noise.pose::<N>(if round % 3 == 0 { 1.5 } else { 0.5 });
+        let mut pose12 = random.pose::<N>(if round % 3 == 0 { 1.5 } else { 0.5 });
         if round % 5 == 0 {
             pose12 = Pose::from_translation(pose12.translation);
         }
         let first = triangle.geometry().0;
-        let other = noise.triangle::<N>(round / 2);
+        let other = random.triangle::<N>(round / 2);
         let kinds = [cuboid.geometry().0, hull.geometry().0, other.geometry().0];
         let [with_kinds @ .., with_pairs] = &mut tallies;
         for (second, tally) in kinds.into_iter().zip(with_kinds) {
@@ -143,12 +143,12 @@ fn boxes_hulls_and_triangles_at_random() {
 
 #[test]
 fn scaling_by_powers_of_two_is_exact() {
-    let mut noise = Noise(3);
+    let mut random = Xorshift(3);
     for round in 0..300 {
-        let triangle = noise.triangle::<f32>(round);
-        let half = noise.vector::<f32>(0.5).abs();
-        let points: Vec<_> = (0..9).map(|_| Point::from(noise.vector::<f32>(0.6))).collect();
-        let pose12 = noise.pose::<f32>(0.7);
+        let triangle = random.triangle::<f32>(round);
+        let half = random.vector::<f32>(0.5).abs();
+        let points: Vec<_> = (0..9).map(|_| Point::from(random.vector::<f32>(0.6))).collect();
+        let pose12 = random.pose::<f32>(0.7);
         let at = |factor: f32| {
             let corners = triangle.corners().map(|corner| corner * factor);
             let triangle = Triangle::new(corners[0], corners[1], corners[2]);
@@ -185,17 +185,17 @@ fn a_box_on_a_face_has_its_normal() {
 
 /// Many triangles against one solid, in packets and alone.
 fn together<N: Real>(rounds: usize) {
-    let (mut noise, mut touching) = (Noise(5), 0);
+    let (mut random, mut touching) = (Xorshift(5), 0);
     for round in 0..rounds {
-        let half = noise.vector::<N>(1.0).map(|x| if round % 5 == 0 { N::ZERO } else { x.abs() });
-        let points: Vec<_> = (0..4 + round % 9).map(|_| Point::from(noise.vector(1.0))).collect();
+        let half = random.vector::<N>(1.0).map(|x| if round % 5 == 0 { N::ZERO } else { x.abs() });
+        let points: Vec<_> = (0..4 + round % 9).map(|_| Point::from(random.vector(1.0))).collect();
         let (cuboid, hull) = (Cuboid::new(half), ConvexHull::from_points(&points));
-        let mut pose12 = noise.pose::<N>(1.5);
+        let mut pose12 = random.pose::<N>(1.5);
         if round % 7 == 0 {
             pose12.rotation = Pose::identity().rotation;
         }
         let count = 1 + round % 19;
-        let mut triangles: Vec<_> = (0..count).map(|at| noise.triangle::<N>(round + at)).collect();
+        let mut triangles: Vec<_> = (0..count).map(|at| random.triangle::<N>(round + at)).collect();
         if round % 11 == 0 {
             let huge = |point: &Point<N, 3>| point * N::MAX.sqrt();
             let [a, b, c] = triangles[0].corners();
@@ -223,15 +223,15 @@ fn check_together<N: Real>(
     for lane in 0..tiles.len() * LANES {
         tiles[lane / LANES].put(lane % LANES, triangles[lane.min(count - 1)].corners());
     }
-    let mut near = vec![u8::MAX; tiles.len()];
-    *near.last_mut().expect("one") >>= tiles.len() * LANES - count;
-    let parts = TiledTriangles { tiles: &tiles, near: &near, origin: Vector::<N, 3>::zeros() };
-    let (mut touching, mut plain) = (0, vec![false; count]);
+    let mut masks = vec![u8::MAX; tiles.len()];
+    *masks.last_mut().expect("one") >>= tiles.len() * LANES - count;
+    let parts = TiledTriangles { tiles: &tiles, masks: &masks, origin: Vector::<N, 3>::zeros() };
+    let (mut touching, mut certain) = (0, vec![false; count]);
     let mut is_met = vec![false; count];
     let is_known = gaps3(&parts, solid, pose12, limit, limit, &mut |at, gap| {
         is_met[at] = true;
         if let Some(gap) = gap {
-            plain[at] = true;
+            certain[at] = true;
             check_gap(gap, &triangles[at], solid, pose12, round);
         }
     });
@@ -240,7 +240,7 @@ fn check_together<N: Real>(
         let pair = Pair { first: Kind::Triangle(triangle), second: solid, pose12: *pose12 };
         let is_near = separation(&pair, limit).is_some();
         assert!(is_met[at] || !is_near, "round {round}: {triangle:?} is within the limit");
-        touching += usize::from(is_near && plain[at]);
+        touching += usize::from(is_near && certain[at]);
     }
     touching
 }

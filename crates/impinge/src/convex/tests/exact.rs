@@ -52,7 +52,7 @@ fn within<N: Real, const D: usize>(
     }
 }
 
-fn pairs_in_space<N: Real>() {
+fn pairs_3d<N: Real>() {
     let free = N::INFINITY;
     let [half, one, two] = [0.5, 1.0, 2.0].map(N::lit);
     let (ball, boxed) = (Ball::new(half), cuboid::<N, 3>([1.0, 2.0, 3.0]));
@@ -89,12 +89,12 @@ fn pairs_in_space<N: Real>() {
 }
 
 #[test]
-fn by_hand_in_space() {
-    pairs_in_space::<f32>();
-    pairs_in_space::<f64>();
+fn by_hand_3d() {
+    pairs_3d::<f32>();
+    pairs_3d::<f64>();
 }
 
-fn pairs_in_the_plane<N: Real>() {
+fn pairs_2d<N: Real>() {
     let free = N::INFINITY;
     let (small, wide) = (cuboid::<N, 2>([1.0, 1.0]), cuboid::<N, 2>([4.0, 0.5]));
     let found = separation(&small, &wide, &at([4.0, 5.5]), free);
@@ -109,9 +109,9 @@ fn pairs_in_the_plane<N: Real>() {
 }
 
 #[test]
-fn by_hand_in_the_plane() {
-    pairs_in_the_plane::<f32>();
-    pairs_in_the_plane::<f64>();
+fn by_hand_2d() {
+    pairs_2d::<f32>();
+    pairs_2d::<f64>();
 }
 
 /// Returns all directions that can separate two overlapping boxes.

@@ -24,8 +24,8 @@ impl Generator {
         f64::from((low + (high - low) * f64::from(bits) / 16_777_216.0).as_f32())
     }
 
-    pub(super) fn vector<const D: usize>(&mut self, reach: f64) -> Vector<f64, D> {
-        Vector::from_fn(|_, _| self.between(-reach, reach))
+    pub(super) fn vector<const D: usize>(&mut self, size: f64) -> Vector<f64, D> {
+        Vector::from_fn(|_, _| self.between(-size, size))
     }
 
     /// Returns a direction, uniform enough.
@@ -39,8 +39,8 @@ impl Generator {
         }
     }
 
-    fn list<const D: usize>(&mut self, reach: f64) -> Value {
-        json!(self.vector::<D>(reach).iter().copied().collect::<Vec<_>>())
+    fn list<const D: usize>(&mut self, size: f64) -> Value {
+        json!(self.vector::<D>(size).iter().copied().collect::<Vec<_>>())
     }
 
     /// Returns a solid of a kind with about the size `size`; `thin` makes one extent 200 times

@@ -115,7 +115,7 @@ fn summary(errors: &mut [f64]) -> [f64; 2] {
 /// Bounds of the errors relative to the scale: largest and 99 % of distances, then of points.
 type Bounds = [[f64; 2]; 2];
 
-fn certificates<N, const D: usize>(kinds: usize, bounds: [Bounds; 2])
+fn lower_bounds<N, const D: usize>(kinds: usize, bounds: [Bounds; 2])
 where
     N: Simplicial<D> + Own<D>,
     f64: Simplicial<D> + Own<D>,
@@ -140,17 +140,17 @@ where
 const NONE: Bounds = [[0.0; 2]; 2];
 
 #[test]
-fn certificates_in_the_plane() {
-    certificates::<f32, 2>(FLAT, [[[1e-5, 2e-6], [1e-5, 2e-6]], NONE]);
-    certificates::<f64, 2>(FLAT, [[[1e-14, 4e-15], [1e-14, 4e-15]], NONE]);
+fn lower_bounds_2d() {
+    lower_bounds::<f32, 2>(FLAT, [[[1e-5, 2e-6], [1e-5, 2e-6]], NONE]);
+    lower_bounds::<f64, 2>(FLAT, [[[1e-14, 4e-15], [1e-14, 4e-15]], NONE]);
 }
 
 #[test]
-fn certificates_in_space() {
+fn lower_bounds_3d() {
     let flat = [[1e-5, 2e-6], [1e-5, 2e-6]];
-    certificates::<f32, 3>(KINDS.len(), [flat, [[1e-3, 1e-5], [1e-3, 1e-4]]]);
+    lower_bounds::<f32, 3>(KINDS.len(), [flat, [[1e-3, 1e-5], [1e-3, 1e-4]]]);
     let flat = [[1e-14, 4e-15], [1e-14, 4e-15]];
-    certificates::<f64, 3>(KINDS.len(), [flat, [[1e-10, 1e-11], [1e-7, 1e-8]]]);
+    lower_bounds::<f64, 3>(KINDS.len(), [flat, [[1e-10, 1e-11], [1e-7, 1e-8]]]);
 }
 
 /// Asserts that the answer for swapped solids is the flipped answer, up to rounding.

@@ -124,8 +124,8 @@ impl<N: Real> Own<3> for N {
             let mut e = Vector::<f64, 3>::zeros();
             e[column] = 1.0;
             let twice = axis.cross(&e) * 2.0;
-            let turned: Vector<f64, 3> = e + twice * w + axis.cross(&twice);
-            placed.rotation.set_column(column, &turned.map(|x| N::lit(x)));
+            let rotated: Vector<f64, 3> = e + twice * w + axis.cross(&twice);
+            placed.rotation.set_column(column, &rotated.map(|x| N::lit(x)));
         }
         placed
     }

@@ -91,11 +91,11 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         self.begin_inside();
         match self.between.composites() {
             [None, None] => self.hold([0, 0], N::ZERO),
-            [Some(parts1), None] => self.each_on_way(1, 0, parts1),
+            [Some(parts1), None] => self.each_on_path(1, 0, parts1),
             [None, Some(parts2)] if self.between.is_half_space_first() => {
                 self.of_half_space(parts2);
             }
-            [None, Some(parts2)] => self.each_on_way(0, 0, parts2),
+            [None, Some(parts2)] => self.each_on_path(0, 0, parts2),
             [Some(parts1), Some(parts2)] => self.of_many(parts1, parts2),
         }
     }
@@ -106,7 +106,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let aabb = self.grown(&self.between.whole_in_other(1 - which));
         let (velocity, end) = (self.velocity(1 - which), self.end());
         fewer.search().cast(&aabb, &velocity, end, &mut |part, _| {
-            self.each_on_way(which, part, more);
+            self.each_on_path(which, part, more);
             self.end()
         });
     }
@@ -118,13 +118,13 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let Some(nearest) = nearest else { return };
         self.hold(nearest.parts, N::ZERO);
         if self.first.is_some_and(|first| first.arrival.along <= N::ZERO) {
-            self.each_on_way(0, 0, others);
+            self.each_on_path(0, 0, others);
         }
     }
 
     /// Tests one part of one shape against the parts of the other whose boxes it hits, in the order
     /// of their earliest possible times, as far as the search's times exclude others.
-    fn each_on_way(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
+    fn each_on_path(&mut self, which: usize, part: u32, others: &dyn CompositeShape<N, D>) {
         let aabb = self.grown(&self.between.aabb_in_other(which, part));
         let (velocity, end) = (self.velocity(which), self.end());
         let mover = if which == 0 {
@@ -168,7 +168,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let path = Path {
             end: self.first.map_or(self.path.end, |first| first.arrival.along),
             mirrored: self.path.mirrored && parts[0] == parts[1],
-            ..seen_by(&placed, self.path)
+            ..path_in_first_part(&placed, self.path)
         };
         let arrival = match begin(&placed.pair(), &path, earliest) {
             Beginning::Apart(arrival) => arrival,
@@ -200,7 +200,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
     fn begin_in_contact(&mut self, tolerance: N) {
         if self.start == WholeContact::Unknown {
             let whole = WholeQuestion { between: *self.between, path: self.path, along: N::ZERO };
-            let (start, hit) = whole.ask(tolerance, &mut |_| {});
+            let (start, hit) = whole.contacts_within(tolerance, &mut |_| {});
             self.start = start;
             self.first = hit.or(self.first);
         }
@@ -221,7 +221,7 @@ impl<N: Space<D>, const D: usize> PartImpactSearch<'_, N, D> {
         let pair = path.moved(&self.between.pair, *along);
         let whole = WholeQuestion { between: Between::of_pair(&pair), path, along: *along };
         let (own, mut is_same) = (placed.in_first(separation).normal, false);
-        let (contact, hit) = whole.ask(rounding(placed), &mut |normal| {
+        let (contact, hit) = whole.contacts_within(rounding(placed), &mut |normal| {
             is_same |= (normal - own).norm() <= N::lit(SAME);
         });
         match contact {
@@ -265,7 +265,7 @@ struct WholeQuestion<'p, 'a, N: Real, const D: usize> {
 impl<N: Space<D>, const D: usize> WholeQuestion<'_, '_, N, D> {
     /// Returns the result of the contacts within the target distance plus `tolerance`, and the
     /// deepest that counts. Calls `visit` with the normals of those that count.
-    fn ask(
+    fn contacts_within(
         &self,
         tolerance: N,
         visit: &mut dyn FnMut(&Vector<N, D>),
@@ -306,25 +306,28 @@ fn rounding<N: Real, const D: usize>(placed: &PartPair<'_, N, D>) -> N {
 }
 
 /// Converts a path from the frame of the first shape to that of its part.
-fn seen_by<N: Real, const D: usize>(placed: &PartPair<'_, N, D>, path: &Path<N, D>) -> Path<N, D> {
+fn path_in_first_part<N: Real, const D: usize>(
+    placed: &PartPair<'_, N, D>,
+    path: &Path<N, D>,
+) -> Path<N, D> {
     Path { velocity: placed.to_first_part(&path.velocity), ..*path }
 }
 
 impl<N: Space<D>, const D: usize> PartArrival<N, D> {
     /// The separation of the parts when they touch, in the frame of the first shape, and the
     /// features.
-    pub(crate) fn seen_from(
+    pub(crate) fn separation_with_features(
         &self,
         between: &Between<'_, N, D>,
         path: &Path<N, D>,
     ) -> (Separation<N, D>, [FeatureId; 2]) {
         let (placed, found) = (between.parts(self.parts), &self.arrival.separation);
-        let [seen, local] = match self.is_of_whole {
+        let [in_shape, local] = match self.is_of_whole {
             true => [*found, placed.in_first_part(found)],
             false => [placed.in_first(found), *found],
         };
         let arrival = Arrival { separation: local, ..self.arrival };
-        (seen, arrival.features(&placed.pair(), &seen_by(&placed, path)))
+        (in_shape, arrival.features(&placed.pair(), &path_in_first_part(&placed, path)))
     }
 }
 

@@ -10,7 +10,7 @@ mod ray;
 mod view;
 
 pub(crate) use impact::{PartArrival, first_arrival};
-pub(crate) use point::{Near, PartPoint, nearest_part, surface_point};
+pub(crate) use point::{PartPoint, PartQuery, nearest_part, surface_point};
 pub(crate) use ray::{RayQuestion, each_hit, is_crossed};
 pub(super) use view::tracked;
 pub(crate) use view::{Touched, touched};

@@ -24,7 +24,7 @@ pub(super) struct Mover<'a, N: Real, const D: usize> {
 }
 
 /// The times at which none of the axes tested so far separates the two.
-struct MeetingSpan<N> {
+struct ContactSpan<N> {
     enter: N,
     leave: N,
     /// The largest distance along an axis that does not count as separated.
@@ -49,37 +49,37 @@ impl<'a, N: Space<D>, const D: usize> Mover<'a, N, D> {
     /// depends on the search.
     pub(super) fn earliest(&self, part: &Part<'_, N, D>, end: N) -> Option<N> {
         let Some(corners) = corners(&part.solid, &part.pose) else { return Some(N::ZERO) };
-        let seen = corners.mapped(|corner| corner - self.pose.translation);
+        let relative = corners.mapped(|corner| corner - self.pose.translation);
         let own = max_component(&self.pose.translation) + self.map.reach() + self.map.rounding();
-        let size = seen.iter().fold(own + self.target, |size, at| max(max_component(at), size));
+        let size = relative.iter().fold(own + self.target, |size, at| max(max_component(at), size));
         let slack = self.target + size * N::lit(ROUNDING) * N::EPSILON;
-        let mut meeting = MeetingSpan { enter: N::ZERO, leave: end, slack };
-        let turned = seen.mapped(|at| self.pose.inverse_vector(&at));
+        let mut span = ContactSpan { enter: N::ZERO, leave: end, slack };
+        let local_corners = relative.mapped(|at| self.pose.inverse_vector(&at));
         let speeds = [self.pose.inverse_vector(&self.velocity), self.velocity];
-        for (index, points) in [turned, corners].iter().enumerate() {
+        for (index, points) in [local_corners, corners].iter().enumerate() {
             let own = &self.boxes[index];
             for axis in 0..D {
                 let [a, b, c] = points.each_ref().mapped(|at| at[axis]);
                 let other = [min(min(a, b), c), max(max(a, b), c)];
-                meeting.cut([own.mins()[axis], own.maxs()[axis]], other, speeds[index][axis]);
+                span.cut([own.mins()[axis], own.maxs()[axis]], other, speeds[index][axis]);
             }
         }
-        for along in across(&seen.mapped(|at| at - seen[0])) {
+        for along in across(&relative.mapped(|at| at - relative[0])) {
             let local = self.pose.inverse_vector(&along);
-            let reach = |direction: &Vector<N, D>| {
+            let extent = |direction: &Vector<N, D>| {
                 self.map.core_support(direction).coords.dot(direction) + self.map.rounding()
             };
-            meeting.cut(
-                [-reach(&-local), reach(&local)],
-                range(&seen, &along),
+            span.cut(
+                [-extent(&-local), extent(&local)],
+                range(&relative, &along),
                 self.velocity.dot(&along),
             );
         }
-        (meeting.enter <= meeting.leave).then_some(meeting.enter)
+        (span.enter <= span.leave).then_some(span.enter)
     }
 }
 
-impl<N: Real> MeetingSpan<N> {
+impl<N: Real> ContactSpan<N> {
     /// Intersects the span with the times at which two intervals `[low, high]` along an axis
     /// overlap; `speed` is that of the first. NaN has no effect.
     fn cut(&mut self, own: [N; 2], other: [N; 2], speed: N) {
@@ -91,10 +91,11 @@ impl<N: Real> MeetingSpan<N> {
             return;
         }
         // The rounding error of the quotients is below this.
-        let room = N::lit(4.0) * N::EPSILON;
+        let rounding_error = N::lit(4.0) * N::EPSILON;
         let (one, other) = (down / speed, up / speed);
         let (enter, leave) = (min(one, other), max(one, other));
-        let (enter, leave) = (enter - enter.abs() * room, leave + leave.abs() * room);
+        let (enter, leave) =
+            (enter - enter.abs() * rounding_error, leave + leave.abs() * rounding_error);
         self.enter = if enter > self.enter { enter } else { self.enter };
         self.leave = if leave < self.leave { leave } else { self.leave };
     }

@@ -17,28 +17,28 @@ pub(crate) struct PartPoint<N: Real, const D: usize> {
     pub(crate) point: Point<N, D>,
     pub(crate) feature: FeatureId,
     pub(crate) part: u32,
-    /// The nearest point, in the frame of [`Near`].
+    /// The nearest point, in the frame of [`PartQuery`].
     pub(crate) local: Point<N, D>,
 }
 
 /// A part in a frame near the query point: a part in the composite's frame is translated so that
 /// the query point is the origin.
-pub(crate) struct Near<'a, N: Real, const D: usize> {
+pub(crate) struct PartQuery<'a, N: Real, const D: usize> {
     part: Part<'a, N, D>,
     moved: Vector<N, D>,
     /// The query point in that frame.
-    pub(crate) asked: Point<N, D>,
+    pub(crate) query: Point<N, D>,
 }
 
-impl<'a, N: Real, const D: usize> Near<'a, N, D> {
+impl<'a, N: Real, const D: usize> PartQuery<'a, N, D> {
     pub(crate) fn new(part: Part<'a, N, D>, point: &Point<N, D>) -> Self {
-        let asked = part.pose.inverse_point(point);
-        match recentred(&part.solid, &asked.coords) {
+        let query = part.pose.inverse_point(point);
+        match recentred(&part.solid, &query.coords) {
             Some(solid) => {
                 let part = Part { solid, ..part };
-                Self { part, moved: asked.coords, asked: Point::origin() }
+                Self { part, moved: query.coords, query: Point::origin() }
             }
-            None => Self { part, moved: Vector::<N, D>::zeros(), asked },
+            None => Self { part, moved: Vector::<N, D>::zeros(), query },
         }
     }
 
@@ -52,13 +52,13 @@ impl<'a, N: Real, const D: usize> Near<'a, N, D> {
     }
 }
 
-impl<N: Real, const D: usize> Near<'_, N, D> {
+impl<N: Real, const D: usize> PartQuery<'_, N, D> {
     /// Whether the part is certainly farther than `distance`, by a plane perpendicular to the
     /// direction of its centre. Tests triangles and segments without a pose only. With m the sum of
     /// the corners c relative to the query point, the plane is at the distance min(m · c) / |m|.
     fn is_beyond(&self, distance: N) -> bool {
         let corners: [Vector<N, D>; 3] = match self.solid() {
-            _ if self.asked != Point::origin() => return false,
+            _ if self.query != Point::origin() => return false,
             PartSolid::Triangle(triangle) => triangle.corners().mapped(|corner| corner.coords),
             PartSolid::Segment(segment) => {
                 let (a, b) = (segment.a().coords, segment.b().coords);
@@ -67,30 +67,31 @@ impl<N: Real, const D: usize> Near<'_, N, D> {
             PartSolid::Shape(_) => return false,
         };
         let [a, b, c] = &corners;
-        let way = a + b + c;
+        let sum = a + b + c;
         let (heights, squares) =
-            (corners.mapped(|corner| way.dot(&corner)), corners.mapped(|v| v.norm_squared()));
-        let square = way.norm_squared();
+            (corners.mapped(|corner| sum.dot(&corner)), corners.mapped(|v| v.norm_squared()));
+        let square = sum.norm_squared();
         // The rounding error of the products, 16 units of the sum of all squares, and a thousandth
         // of the distance: parts that are equally near up to rounding are still tested.
-        let noise = N::lit(16.0) * N::EPSILON * (square + squares[0] + squares[1] + squares[2]);
-        let lowest = min(min(heights[0], heights[1]), heights[2]) - noise;
+        let rounding_error =
+            N::lit(16.0) * N::EPSILON * (square + squares[0] + squares[1] + squares[2]);
+        let lowest = min(min(heights[0], heights[1]), heights[2]) - rounding_error;
         let limit = distance * distance * square * N::lit(1.0 + 1.0 / 512.0);
         lowest > N::ZERO && lowest * lowest > limit && limit > N::MIN_POSITIVE
     }
 }
 
-impl<N: Space<D>, const D: usize> Near<'_, N, D> {
+impl<N: Space<D>, const D: usize> PartQuery<'_, N, D> {
     /// The nearest point of the part; `None` if there is none, or on overflow.
     fn nearest(&self, number: u32, point: &Point<N, D>) -> Option<PartPoint<N, D>> {
         let Geometry(kind) = self.part.solid.geometry();
-        let found = <N::Algorithms>::surface_point(kind, &self.asked);
-        let (projected, feature) = found.projection(&self.asked);
+        let found = <N::Algorithms>::surface_point(kind, &self.query);
+        let (projected, feature) = found.projection(&self.query);
         let local = projected.point;
-        let apart = length(&(self.asked - local));
+        let apart = length(&(self.query - local));
         let distance = if projected.is_inside { N::ZERO - apart } else { apart };
-        let is_asked = apart == N::ZERO;
-        let outer = if is_asked { *point } else { self.outer(&local) };
+        let is_at_query = apart == N::ZERO;
+        let outer = if is_at_query { *point } else { self.outer(&local) };
         let is_number = distance <= N::INFINITY;
         is_number.then_some(PartPoint { distance, point: outer, feature, part: number, local })
     }
@@ -110,17 +111,17 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     let mut best: Option<PartPoint<N, D>> = None;
     let limit = if touching { N::ZERO } else { N::INFINITY };
     search.nearest(&start, limit, &mut |index, _| {
-        let near = Near::new(parts.part(index), point);
-        let is_beyond = best.is_some_and(|best| near.is_beyond(best.distance));
+        let part_query = PartQuery::new(parts.part(index), point);
+        let is_beyond = best.is_some_and(|best| part_query.is_beyond(best.distance));
         if !is_beyond
-            && let Some(found) = near.nearest(index, point)
+            && let Some(found) = part_query.nearest(index, point)
             && best.is_none_or(|best| found.is_before(&best))
         {
             best = Some(found);
         }
-        let reach = best.map_or(limit, |best| best.distance);
-        let is_settled = touching && reach <= N::ZERO && best.is_some();
-        if is_settled { -N::ONE } else { loosened(max(reach, N::ZERO)) }
+        let bound = best.map_or(limit, |best| best.distance);
+        let is_decided = touching && bound <= N::ZERO && best.is_some();
+        if is_decided { -N::ONE } else { loosened(max(bound, N::ZERO)) }
     });
     let best = best.filter(|best| !touching || best.distance <= N::ZERO);
     if parts.has_bodies() { deepest_within(parts, point, best) } else { best }
@@ -143,7 +144,7 @@ fn deepest_within<N: Space<D>, const D: usize>(
         let mut nearest: Option<PartPoint<N, D>> = None;
         search.nearest(&start, N::INFINITY, &mut |index, _| {
             if range.contains(&index)
-                && let Some(found) = Near::new(parts.part(index), point).nearest(index, point)
+                && let Some(found) = PartQuery::new(parts.part(index), point).nearest(index, point)
                 && nearest.is_none_or(|nearest| found.is_before(&nearest))
             {
                 nearest = Some(found);
@@ -182,19 +183,19 @@ pub(crate) fn surface_point<N: Space<D>, const D: usize>(
 mod tests {
     use super::*;
     use crate::math::Pose;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::{Segment, Triangle};
 
     /// Parts reported as beyond a distance are, whatever their size and position; most that are,
     /// are reported.
     fn parts_beyond<N: Space<3>>() {
-        let noise = &mut Noise(7);
-        let (mut beyond, mut said) = (0, 0);
+        let random = &mut Xorshift(7);
+        let (mut beyond, mut decided) = (0, 0);
         for round in 0..3000 {
             let scale = [1.0, 1e-12, 1e9][round % 3];
-            let aside = noise.vector::<f64>(3.0);
+            let aside = random.vector::<f64>(3.0);
             let mut corner = || {
-                let at = noise.vector::<f64>([1.0, 0.1, 4.0][round / 3 % 3]) + aside;
+                let at = random.vector::<f64>([1.0, 0.1, 4.0][round / 3 % 3]) + aside;
                 Point::from(at.map(|x| N::lit(x * scale)))
             };
             let corners = [corner(), corner(), corner()];
@@ -204,17 +205,20 @@ mod tests {
             } else {
                 PartSolid::Triangle(Triangle::new(corners[0], corners[1], corners[2]))
             };
-            let near = Near::new(Part { pose: Pose::identity(), solid }, &point);
-            let found = near.nearest(0, &point).expect("finite").distance;
-            assert!(!near.is_beyond(found), "{round}: it is as near as it is");
+            let part_query = PartQuery::new(Part { pose: Pose::identity(), solid }, &point);
+            let found = part_query.nearest(0, &point).expect("finite").distance;
+            assert!(!part_query.is_beyond(found), "{round}: it is as near as it is");
             let share = N::lit(0.25 + 0.5 * f64::from(u32::try_from(round % 2).expect("small")));
             for limit in [found * share, found * N::lit(1.5)] {
-                assert!(!near.is_beyond(limit) || limit < found, "{round}: {found} and {limit}");
+                assert!(
+                    !part_query.is_beyond(limit) || limit < found,
+                    "{round}: {found} and {limit}"
+                );
             }
             beyond += 1;
-            said += usize::from(near.is_beyond(found * share));
+            decided += usize::from(part_query.is_beyond(found * share));
         }
-        assert!(said * 3 > beyond, "{said} of {beyond}");
+        assert!(decided * 3 > beyond, "{decided} of {beyond}");
     }
 
     #[test]

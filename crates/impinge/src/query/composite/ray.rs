@@ -32,8 +32,8 @@ pub(crate) fn each_hit<N: Space<D>, const D: usize>(
     let mut latest = *max_time;
     let Some(start) = around_point(&ray.origin, &parts.search().bounds()) else { return };
     // Written so that NaN counts as before the start.
-    let asks = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
-    if !asks {
+    let is_valid = latest >= N::ZERO && ray.dir.iter().all(|x| x.is_finite_number());
+    if !is_valid {
         return;
     }
     let held = if *solid && parts.has_bodies() { start_inside(parts, ray) } else { None };

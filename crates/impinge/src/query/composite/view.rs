@@ -140,7 +140,7 @@ impl<N: Space<D>, const D: usize> Touched<'_, N, D> {
             Some(is_second) => kinematic.turning_with(is_second),
             None => kinematic,
         };
-        kinematic.seen_from([pose1, pose2], self.turns)
+        kinematic.in_frames([pose1, pose2], self.turns)
     }
 }
 
@@ -168,10 +168,10 @@ fn is_face_normal<N: Space<D>, const D: usize>(
 ) -> bool {
     let Some(composite) = Geometry(kind).as_composite() else { return false };
     let face = composite.surface().and_then(|surface| surface.snapped(part, outward));
-    let is_in_space = <N::Algorithms>::tangents(outward)[1] != Vector::<N, D>::zeros();
-    let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_in_space;
-    let room = N::lit(ROUNDING) * N::EPSILON;
-    face.is_some_and(|face| !is_line && (face - outward).norm() <= room)
+    let is_3d = <N::Algorithms>::tangents(outward)[1] != Vector::<N, D>::zeros();
+    let is_line = matches!(composite.part(part).solid, PartSolid::Segment(_)) && is_3d;
+    let tolerance = N::lit(ROUNDING) * N::EPSILON;
+    face.is_some_and(|face| !is_line && (face - outward).norm() <= tolerance)
 }
 
 /// The part of a composite with this number; `None` for a shape that is its own part.

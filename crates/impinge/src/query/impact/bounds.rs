@@ -131,7 +131,7 @@ pub(super) struct Rate<N> {
 
 impl<N: Real> Rate<N> {
     /// The distance moved in a time, at most.
-    pub(super) fn way(&self, time: N) -> N {
+    pub(super) fn travel(&self, time: N) -> N {
         product(max(self.speed, N::ZERO), time) + product(product(self.bend, time), time)
     }
 
@@ -141,8 +141,8 @@ impl<N: Real> Rate<N> {
             return N::ZERO;
         }
         // The product may overflow where its factors do not.
-        let reach = N::TWO * self.bend.sqrt() * gap.sqrt();
-        let root = length(&Vector::<N, 2>::new(self.speed, reach));
+        let gained_speed = N::TWO * self.bend.sqrt() * gap.sqrt();
+        let root = length(&Vector::<N, 2>::new(self.speed, gained_speed));
         if self.speed > N::ZERO {
             // The usual formula would cancel.
             N::TWO * gap / (self.speed + root)
@@ -226,10 +226,10 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     /// body, which rotates by `S`: a linear function of its position. Its derivative,
     /// `u'' - 2 S u' + S² u`, bends the path.
     pub(super) fn sweep(&self, which: usize, rate: &Rate<N>, span: N) -> PartSweep<N, D> {
-        let way = rate.way(span);
+        let travel = rate.travel(span);
         let [body, other] = [which, 1 - which].mapped(|index| self.bodies[index]);
         let [Some(own), Some(frame)] = [body.constant(), other.constant()] else {
-            return PartSweep::anywhere(way);
+            return PartSweep::anywhere(travel);
         };
         let [center, pivot] = [self.centers[which], self.centers[1 - which]];
         let [turn, turning] = [body, other].mapped(|body| body.turn_bound(self.time, self.time));
@@ -241,23 +241,23 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         let bend = product(bends * N::HALF, span * span);
         let pose = &self.poses[1 - which];
         let (spin, linear) = (own.spin - frame.spin, own.linear - frame.linear);
-        let place = pose.translation;
-        let shift = linear + own.spin * (place - center) - frame.spin * (place - pivot);
-        let size = max(max_component(&place), max_component(&center))
+        let position = pose.translation;
+        let shift = linear + own.spin * (position - center) - frame.spin * (position - pivot);
+        let size = max(max_component(&position), max_component(&center))
             + far
             + max(body.size(), other.size());
-        let spread = bend + N::lit(64.0) * N::EPSILON * (size + way);
-        if spread < way {
+        let spread = bend + N::lit(64.0) * N::EPSILON * (size + travel);
+        if spread < travel {
             let shift = pose.inverse_vector(&shift) * span;
             let turn = pose.rotation.tr_mul(&(spin * pose.rotation)) * span;
             return PartSweep { turn, shift, spread };
         }
-        PartSweep::anywhere(way)
+        PartSweep::anywhere(travel)
     }
 
     /// Whether the parts of the bodies can be advanced separately: one is a composite, and both
     /// have constant velocities.
-    pub(super) fn has_parts_on_known_ways(&self) -> bool {
+    pub(super) fn has_parts_on_known_paths(&self) -> bool {
         let is_known = self.bodies.iter().all(|body| body.constant().is_some());
         is_known && self.bodies.iter().any(|body| body.shape.as_composite().is_some())
     }
@@ -353,9 +353,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
     fn drift(&self, direction: Option<&Vector<N, D>>, to: N) -> N {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let relative = motion1.linear - motion2.linear;
-            let noise = N::lit(8.0) * N::EPSILON * max_component(&relative);
+            let rounding_error = N::lit(8.0) * N::EPSILON * max_component(&relative);
             let speed = direction.map_or_else(|| length(&relative), |n| n.dot(&relative));
-            return if speed.abs() <= noise { N::ZERO } else { speed };
+            return if speed.abs() <= rounding_error { N::ZERO } else { speed };
         }
         let speed = |index: usize, side: N| {
             let body = self.bodies[index];
@@ -384,8 +384,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         let motion = self.bodies[index].constant()?;
         let toward = if index == 0 { self.normal } else { -self.normal };
         let slope = motion.spin.tr_mul(&toward);
-        let noise = N::lit(8.0) * N::EPSILON * self.bodies[index].turn_bound(self.time, self.time);
-        Some(if max_component(&slope) <= noise { Vector::<N, D>::zeros() } else { slope })
+        let rounding_error =
+            N::lit(8.0) * N::EPSILON * self.bodies[index].turn_bound(self.time, self.time);
+        Some(if max_component(&slope) <= rounding_error { Vector::<N, D>::zeros() } else { slope })
     }
 
     /// The speed at which a point of the first body and one of the second approach along the
@@ -395,9 +396,9 @@ impl<'a, N: Space<D>, const D: usize> Moment<'_, 'a, N, D> {
         if let [Some(motion1), Some(motion2)] = self.bodies.mapped(MovingBody::constant) {
             let terms =
                 [motion1.linear - motion2.linear, motion1.spin * arms[0], motion2.spin * arms[1]];
-            let noise = terms.iter().fold(N::ZERO, |sum, term| sum + max_component(term));
+            let rounding_error = terms.iter().fold(N::ZERO, |sum, term| sum + max_component(term));
             let closing = self.normal.dot(&(terms[0] + terms[1] - terms[2]));
-            return (closing, N::lit(8.0) * N::EPSILON * noise);
+            return (closing, N::lit(8.0) * N::EPSILON * rounding_error);
         }
         self.closing_observed(points, &arms, size)
     }
@@ -439,11 +440,11 @@ fn arm_of_box<N: Space<D>, const D: usize>(
     motion: &ConstantVelocities<N, D>,
 ) -> N {
     (0..1_u32 << D).fold(N::ZERO, |most, corner| {
-        let place = Vector::<N, D>::from_fn(|axis, _| {
+        let arm = Vector::<N, D>::from_fn(|axis, _| {
             let end = if corner >> axis & 1 == 0 { aabb.mins() } else { aabb.maxs() };
             end[axis] - center[axis]
         });
-        max(motion.across_local(&place), most)
+        max(motion.across_local(&arm), most)
     })
 }
 

@@ -44,13 +44,13 @@ pub(crate) struct Arrival<N: Real, const D: usize> {
 impl<N: Real, const D: usize> Path<N, D> {
     /// The position of the second solid at a later time, for a pair that starts at `start`.
     #[inline]
-    fn place(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
+    fn position_at(&self, start: &Pair<'_, N, D>, along: N) -> Vector<N, D> {
         start.pose12.translation + self.velocity * along
     }
 
     /// The pair `start` at a later time.
     pub(crate) fn moved<'a>(&self, start: &Pair<'a, N, D>, along: N) -> Pair<'a, N, D> {
-        let pose12 = Pose { translation: self.place(start, along), ..start.pose12 };
+        let pose12 = Pose { translation: self.position_at(start, along), ..start.pose12 };
         Pair { pose12, ..*start }
     }
 
@@ -70,13 +70,14 @@ impl<N: Real, const D: usize> Path<N, D> {
     }
 
     /// The largest speed along a normal that counts as rounding error.
-    fn noise(&self) -> N {
+    fn rounding_error(&self) -> N {
         N::lit(8.0) * N::EPSILON * max_component(&self.velocity)
     }
 
     /// Whether a contact at the start counts.
     pub(crate) fn counts_at_start(&self, normal: &Vector<N, D>, gap: N, tolerance: N) -> bool {
-        self.contact_at_start || is_hit_at_start(gap, self.closing(normal), tolerance, self.noise())
+        self.contact_at_start
+            || is_hit_at_start(gap, self.closing(normal), tolerance, self.rounding_error())
     }
 }
 
@@ -105,9 +106,14 @@ impl<N: Space<D>, const D: usize> Arrival<N, D> {
 /// that does not separate is, any other is not. An unbounded overlap always is.
 ///
 /// A gap within the tolerance and a closing speed within the noise count as zero.
-pub(super) fn is_hit_at_start<N: Real>(gap: N, closing: N, tolerance: N, noise: N) -> bool {
+pub(super) fn is_hit_at_start<N: Real>(
+    gap: N,
+    closing: N,
+    tolerance: N,
+    rounding_error: N,
+) -> bool {
     let deep = gap < -tolerance;
-    closing > noise || (deep && closing >= -noise) || gap == -N::INFINITY
+    closing > rounding_error || (deep && closing >= -rounding_error) || gap == -N::INFINITY
 }
 
 /// The start of the path of two solids.
@@ -156,7 +162,7 @@ pub(crate) fn begin<N: Space<D>, const D: usize>(
         return Beginning::InContact { arrival, counts };
     }
     if gap > tolerance
-        && let Some(arrival) = meeting_of_balls(start, path, tolerance)
+        && let Some(arrival) = arrival_of_balls(start, path, tolerance)
     {
         return Beginning::Apart(Some(arrival));
     }
@@ -178,7 +184,7 @@ fn by_steps<N: Space<D>, const D: usize>(
             return Some(Arrival::reached(along, found));
         }
         let later = along + gap / closing;
-        let in_time = closing > path.noise() && later <= path.end;
+        let in_time = closing > path.rounding_error() && later <= path.end;
         if !in_time {
             return None;
         }
@@ -187,7 +193,7 @@ fn by_steps<N: Space<D>, const D: usize>(
         }
         let step = path.velocity * (later - along);
         along = later;
-        pair.pose12.translation = path.place(start, along);
+        pair.pose12.translation = path.position_at(start, along);
         if let Some(touch) = touching(&pair, &found, &step, path.target, tolerance) {
             return Some(Arrival::reached(along, touch));
         }
@@ -202,23 +208,25 @@ fn by_steps<N: Space<D>, const D: usize>(
 /// The foot is the point of the second centre's path nearest to the first centre: a right triangle
 /// leads from it back to the point of contact. Lengths are divided by a power of two, so that
 /// squares neither overflow nor underflow.
-fn meeting_of_balls<N: Space<D>, const D: usize>(
+fn arrival_of_balls<N: Space<D>, const D: usize>(
     start: &Pair<'_, N, D>,
     path: &Path<N, D>,
     tolerance: N,
 ) -> Option<Arrival<N, D>> {
     let (Kind::Ball(ball1), Kind::Ball(ball2)) = (start.first, start.second) else { return None };
-    let (velocity, reach) = (&path.velocity, ball1.radius() + ball2.radius() + path.target);
-    let scale = max(max_component(&start.pose12.translation), reach).power_of_two_below();
-    let (middle, reach) = (start.pose12.translation / scale, reach / scale);
+    let (velocity, contact_distance) =
+        (&path.velocity, ball1.radius() + ball2.radius() + path.target);
+    let scale =
+        max(max_component(&start.pose12.translation), contact_distance).power_of_two_below();
+    let (middle, contact_distance) = (start.pose12.translation / scale, contact_distance / scale);
     let squared = velocity.norm_squared();
     let foot = -middle.dot(velocity) / squared;
     let across = middle + velocity * foot;
-    let leg = ((reach * reach - across.norm_squared()) / squared).sqrt();
+    let leg = ((contact_distance * contact_distance - across.norm_squared()) / squared).sqrt();
     let along = (foot - leg) * scale;
     // Written so that NaN, from balls that pass each other, is left to the steps too.
-    let is_way = along > N::ZERO && along <= path.end;
-    if !is_way {
+    let is_in_time = along > N::ZERO && along <= path.end;
+    if !is_in_time {
         return None;
     }
     let found = separation(&path.moved(start, along), N::INFINITY)?;
@@ -256,28 +264,31 @@ fn touching<N: Space<D>, const D: usize>(
         return None;
     }
     let is_touch = |distance: N, outward: Vector<N, D>| {
-        let turned = max_component(&(outward - normal));
-        (distance - target).abs() <= tolerance && turned <= N::lit(8.0) * N::EPSILON
+        let deviation = max_component(&(outward - normal));
+        (distance - target).abs() <= tolerance && deviation <= N::lit(8.0) * N::EPSILON
     };
-    let seen_from = |kind: Kind<'_, N, D>, point: &Point<N, D>| <N::Algorithms>::seen(kind, point);
-    let seen = seen_from(*first, &point2);
-    if let Some(seen) = seen.filter(|seen| is_touch(seen.distance, seen.outward)) {
-        let (distance, point1) = (seen.distance, point2 - normal * seen.distance);
+    let project =
+        |kind: Kind<'_, N, D>, point: &Point<N, D>| <N::Algorithms>::project_on_solid(kind, point);
+    let projected = project(*first, &point2);
+    if let Some(projected) =
+        projected.filter(|projected| is_touch(projected.distance, projected.outward))
+    {
+        let (distance, point1) = (projected.distance, point2 - normal * projected.distance);
         return Some(Separation { distance, normal, point1, point2 });
     }
-    let seen = seen_from(*second, &pose12.inverse_point(&point1))?;
-    let point2 = point1 + normal * seen.distance;
-    let is_proved = is_touch(seen.distance, -pose12.vector(&seen.outward));
-    is_proved.then_some(Separation { distance: seen.distance, normal, point1, point2 })
+    let projected = project(*second, &pose12.inverse_point(&point1))?;
+    let point2 = point1 + normal * projected.distance;
+    let is_proved = is_touch(projected.distance, -pose12.vector(&projected.outward));
+    is_proved.then_some(Separation { distance: projected.distance, normal, point1, point2 })
 }
 
 /// The length that tolerances are proportional to: the sizes of the solids plus their distance.
 pub(crate) fn size<N: Real, const D: usize>(pair: &Pair<'_, N, D>) -> N {
-    let reach = |geometry: Geometry<'_, N, D>| {
+    let bounding_radius = |geometry: Geometry<'_, N, D>| {
         geometry.as_support_map().map_or(N::ZERO, |map| map.reach() + map.rounding())
     };
     let apart = max_component(&pair.pose12.translation);
-    apart + reach(Geometry(pair.first)) + reach(Geometry(pair.second))
+    apart + bounding_radius(Geometry(pair.first)) + bounding_radius(Geometry(pair.second))
 }
 
 #[cfg(test)]
@@ -317,9 +328,9 @@ mod tests {
             }
             let expected = by_steps(&start, &path, N::ZERO, found, tolerance);
             count += usize::from(expected.is_some());
-            let Some(arrival) = meeting_of_balls(&start, &path, tolerance) else { continue };
+            let Some(arrival) = arrival_of_balls(&start, &path, tolerance) else { continue };
             met += 1;
-            let expected = expected.expect("they meet by steps too");
+            let expected = expected.expect("they touch by steps too");
             // If they graze each other, they are within the tolerance for a longer time.
             let closing = path.closing(&arrival.separation.normal);
             let late = (arrival.along - expected.along) * closing;

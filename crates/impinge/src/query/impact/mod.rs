@@ -450,7 +450,7 @@ impl<'m, 'a, N: Space<D>, const D: usize> Course<'m, 'a, N, D> {
     #[inline(always)]
     fn impact(&self, touch: &PartArrival<N, D>, toi: N) -> Impact<N, D> {
         let (found, features) = if self.ordered.has_composite() {
-            touch.seen_from(&Between::of_ordered(&self.ordered), &self.path)
+            touch.separation_with_features(&Between::of_ordered(&self.ordered), &self.path)
         } else {
             (touch.arrival.separation, touch.arrival.features(&self.pair, &self.path))
         };

@@ -150,8 +150,8 @@ fn two_leads<N: Space<D>, const D: usize>(
     let times = iter::successors(Some(N::ONE), |time| Some(*time * N::lit(65536.0)));
     let times = times.take_while(|time| time.is_finite_number());
     let longest = Some(options.max_time).filter(|time| time.is_finite_number());
-    let places = longest.into_iter().chain(times).map(later);
-    let mut orders = places.map(|[later1, later2]| order(&later1, &later2));
+    let later_poses = longest.into_iter().chain(times).map(later);
+    let mut orders = later_poses.map(|[later1, later2]| order(&later1, &later2));
     orders.find(|order| order.is_ne()).is_some_and(Ordering::is_gt)
 }
 
@@ -267,7 +267,7 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
         let whole = moment.safe_time(excess, apart, self.end - moment.time);
         let whole = Step { time: whole, near_steps: 0 };
         let size = self.bodies[0].size() + self.bodies[1].size();
-        if excess >= N::lit(PARTS_WITHIN) * size || !moment.has_parts_on_known_ways() {
+        if excess >= N::lit(PARTS_WITHIN) * size || !moment.has_parts_on_known_paths() {
             return whole;
         }
         let rate = moment.first_order(self.end);
@@ -336,11 +336,11 @@ impl<'a, N: Space<D>, const D: usize> ImpactSearch<'a, N, D> {
 
     /// Whether a contact at the start counts, as for [`impact`](super::impact).
     fn counts_at_start(&self, configuration: &Configuration<'_, '_, N, D>) -> bool {
-        let (closing, noise) =
+        let (closing, rounding_error) =
             configuration.poses.moment.closing(&configuration.points, configuration.size);
         let closing = if self.mirrored { -closing.abs() } else { closing };
         self.contact_at_start
-            || is_hit_at_start(configuration.gap, closing, configuration.tolerance, noise)
+            || is_hit_at_start(configuration.gap, closing, configuration.tolerance, rounding_error)
     }
 
     /// Converts the configuration to an impact in the world.
@@ -434,8 +434,8 @@ impl<'a, N: Space<D>, const D: usize> PartSteps<'_, '_, 'a, N, D> {
         let (moment, end) = (&poses.moment, self.search.end);
         let placed = poses.between.parts(parts);
         let parts = moment.parts(&placed, &poses.pose1);
-        let way = min(moment.rate_of(&parts, end).way(left), self.rate.way(left));
-        let found = separation(&placed.pair(), self.spent + way)?;
+        let travel = min(moment.rate_of(&parts, end).travel(left), self.rate.travel(left));
+        let found = separation(&placed.pair(), self.spent + travel)?;
         let gap = found.distance - self.spent;
         Some((gap, moment.safe_time_of(&parts, &found.normal, gap, end)))
     }

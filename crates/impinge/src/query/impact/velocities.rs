@@ -122,7 +122,7 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
     }
 
     /// The rotation in the time since the start, by Rodrigues' formula, which also holds in 2D.
-    fn turned(&self, since: N) -> Matrix<N, D> {
+    fn rotation_after(&self, since: N) -> Matrix<N, D> {
         let (sine, cosine) = (self.turn * since).sine_cosine();
         let squared = self.unit_spin * self.unit_spin;
         Matrix::<N, D>::identity() + self.unit_spin * sine + squared * (N::ONE - cosine)
@@ -142,19 +142,19 @@ impl<N: Space<D>, const D: usize> ConstantVelocities<N, D> {
 
     fn pose(&self, origin: &Vector<N, D>, time: N) -> Pose<N, D> {
         let since = time - self.start_time;
-        let rotation = self.turned(since) * N::pose(&self.start).rotation;
+        let rotation = self.rotation_after(since) * N::pose(&self.start).rotation;
         Pose { rotation, translation: self.translation(origin, since, &rotation) }
     }
 
-    /// The distance of a point of the body from the axis of rotation; `place` is its position
+    /// The distance of a point of the body from the axis of rotation; `offset` is its position
     /// relative to the centre, in the world's axes.
-    pub(super) fn across(&self, place: &Vector<N, D>) -> N {
-        length(&(self.unit_spin * place))
+    pub(super) fn across(&self, offset: &Vector<N, D>) -> N {
+        length(&(self.unit_spin * offset))
     }
 
     /// [`Self::across`] for a position in the local axes.
-    pub(super) fn across_local(&self, place: &Vector<N, D>) -> N {
-        self.across(&(N::pose(&self.start).rotation * place))
+    pub(super) fn across_local(&self, offset: &Vector<N, D>) -> N {
+        self.across(&(N::pose(&self.start).rotation * offset))
     }
 
     fn speed(&self) -> N {
@@ -271,8 +271,8 @@ impl<N: Real> ConstantVelocities<N, 3> {
         // Rotated and normalised: rounding must not lengthen the axis with each frame.
         let axis = isometry.rotation * self.axis();
         let axis = unit(&axis).map_or(axis, |(axis, _)| axis);
-        let turned = Self::spinning(isometry * self.start, linear, axis.cross_matrix(), self.turn);
-        turned.with_start_time(self.start_time).with_local_center(self.local_center)
+        let rotated = Self::spinning(isometry * self.start, linear, axis.cross_matrix(), self.turn);
+        rotated.with_start_time(self.start_time).with_local_center(self.local_center)
     }
 
     /// The motion of a body fixed to this one at `isometry` in its frame: at each time
@@ -332,8 +332,8 @@ impl<N: Real> RigidMotion<N, 3> for ConstantVelocities<N, 3> {
         let since = time - self.start_time;
         let (sine, cosine) = (self.turn * since * N::HALF).sine_cosine();
         let axis = self.axis();
-        let turned = na::Quaternion::new(cosine, axis.x * sine, axis.y * sine, axis.z * sine);
-        let rotation = na::UnitQuaternion::new_normalize(turned) * self.start.rotation;
+        let quaternion = na::Quaternion::new(cosine, axis.x * sine, axis.y * sine, axis.z * sine);
+        let rotation = na::UnitQuaternion::new_normalize(quaternion) * self.start.rotation;
         Isometry3::from_parts(pose.translation.into(), rotation)
     }
 
@@ -381,16 +381,16 @@ mod tests {
 
     #[test]
     fn a_start_time_shifts_the_motion_and_isometries_compose() {
-        let turned =
+        let rotated =
             |x: f64| Isometry3::new(Vector::<f64, 3>::new(x, -1.0, 2.0), [x, -0.2, 0.9].into());
         let angular = Vector::<f64, 3>::new(1.5, -2.5, 0.5);
         let motion =
-            ConstantVelocities::<f64, 3>::new(turned(0.3), [0.5, 2.0, -1.0].into(), angular)
+            ConstantVelocities::<f64, 3>::new(rotated(0.3), [0.5, 2.0, -1.0].into(), angular)
                 .with_local_center(Point::<f64, 3>::new(0.25, 1.5, -0.75));
         let late = motion.with_start_time(2.5);
         assert_eq!((late.start(), late.start_time()), (motion.start(), 2.5), "as given");
         assert!((late.angular_velocity() - angular).norm() < 1e-15, "as given");
-        let (outer, inner) = (turned(-2.0), turned(1.25));
+        let (outer, inner) = (rotated(-2.0), rotated(1.25));
         let composed = late.append_transformation(&outer).prepend_transformation(&inner);
         let corner = Point::<f64, 3>::new(1.0, -2.0, 3.0);
         for time in [0.0, 2.5, 7.25] {
@@ -406,14 +406,14 @@ mod tests {
     }
 
     #[test]
-    fn isometries_compose_in_the_plane() {
-        let turned = |x: f64| Isometry2::new(Vector::<f64, 2>::new(x, -1.0), 3.0 * x);
-        let motion = ConstantVelocities::<f64, 2>::new(turned(0.3), [0.5, 2.0].into(), -1.5)
+    fn isometries_compose_2d() {
+        let rotated = |x: f64| Isometry2::new(Vector::<f64, 2>::new(x, -1.0), 3.0 * x);
+        let motion = ConstantVelocities::<f64, 2>::new(rotated(0.3), [0.5, 2.0].into(), -1.5)
             .with_local_center(Point::<f64, 2>::new(0.25, 1.5))
             .with_start_time(-0.5);
         let linear = Vector::<f64, 2>::new(0.5, 2.0);
         assert_eq!((motion.angular_velocity(), motion.linear_velocity()), (-1.5, &linear), "given");
-        let (outer, inner) = (turned(-2.0), turned(1.25));
+        let (outer, inner) = (rotated(-2.0), rotated(1.25));
         let composed = motion.append_transformation(&outer).prepend_transformation(&inner);
         let corner = Point::<f64, 2>::new(1.0, -2.0);
         for time in [0.0, 2.5, 7.25] {

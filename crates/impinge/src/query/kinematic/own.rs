@@ -71,8 +71,8 @@ impl<N: Real, const D: usize> ContactKinematic<N, D> {
             turns: [true; 2],
         };
         if !kinematic.reproduces(&Pose::relative(&pose1, &pose2)) {
-            let lean1 = lean(&side1.geometry, &normal1);
-            let is_second = lean(&side2.geometry, &normal2) < lean1;
+            let tilt1 = tilt(&side1.geometry, &normal1);
+            let is_second = tilt(&side2.geometry, &normal2) < tilt1;
             kinematic.rule = if is_second { NormalRule::Second } else { NormalRule::First };
         }
         kinematic
@@ -92,7 +92,7 @@ fn core<N: Real, const D: usize>(
 
 /// The tilt of a flat side: the length of the difference of its normal and `outward`; 4, above
 /// every tilt, for a side that is not flat.
-fn lean<N: Real, const D: usize>(
+fn tilt<N: Real, const D: usize>(
     geometry: &NeighborhoodGeometry<N, D>,
     outward: &Vector<N, D>,
 ) -> N {

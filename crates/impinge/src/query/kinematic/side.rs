@@ -2,7 +2,7 @@
 
 use super::NeighborhoodGeometry;
 use crate::math::{Point, Real, Vector, unit};
-use crate::shape::{Cylinder, FacingPart, Feature, FeatureId, Geometry, Kind, SupportMap};
+use crate::shape::{Cylinder, Feature, FeatureId, Geometry, Kind, SupportMap, SupportPart};
 
 /// A cylinder whose axis has at most this sine with the contact plane touches along its side: its
 /// axis is the core.
@@ -13,11 +13,11 @@ pub(super) struct KinematicSide<N: Real, const D: usize> {
     pub(super) rounding: N,
     /// The manifold's normal away from the solid.
     outward: Vector<N, D>,
-    facing: SideFacing<N, D>,
+    support: SideSupport<N, D>,
 }
 
 /// The supporting feature of a solid towards the other one.
-enum SideFacing<N: Real, const D: usize> {
+enum SideSupport<N: Real, const D: usize> {
     /// A half-space, with its outward normal.
     Boundary(Vector<N, D>),
     /// A ball.
@@ -25,7 +25,7 @@ enum SideFacing<N: Real, const D: usize> {
     /// A cylinder that lies on its side.
     Axis,
     /// A part of a box.
-    Part(FacingPart<N, D>),
+    Part(SupportPart<N, D>),
     /// The generic case: the supporting feature, in which the feature of a contact is looked up by
     /// its id. A curved face is represented by its tangent plane.
     Feature(Feature<N, D>),
@@ -34,23 +34,23 @@ enum SideFacing<N: Real, const D: usize> {
 impl<N: Real, const D: usize> KinematicSide<N, D> {
     /// The side of a solid; `outward` is the manifold's normal away from it.
     pub(super) fn new(kind: Kind<'_, N, D>, outward: Vector<N, D>) -> Self {
-        let (facing, rounding) = match kind {
-            Kind::Plane(plane) => (SideFacing::Boundary(plane.normal().into_inner()), N::ZERO),
-            Kind::Ball(ball) => (SideFacing::Center, ball.radius()),
+        let (support, rounding) = match kind {
+            Kind::Plane(plane) => (SideSupport::Boundary(plane.normal().into_inner()), N::ZERO),
+            Kind::Ball(ball) => (SideSupport::Center, ball.radius()),
             Kind::Cylinder(cylinder, _) if is_lying(cylinder, &outward) => {
-                (SideFacing::Axis, cylinder.radius())
+                (SideSupport::Axis, cylinder.radius())
             }
             Kind::Rounded(solid) => {
                 let inner = Self::new(solid.inner().0, outward);
                 return Self { rounding: inner.rounding + solid.radius(), ..inner };
             }
-            Kind::Cuboid(cuboid) => match cuboid.facing_part(&outward) {
-                Some(part) => (SideFacing::Part(part), N::ZERO),
+            Kind::Cuboid(cuboid) => match cuboid.part_toward(&outward) {
+                Some(part) => (SideSupport::Part(part), N::ZERO),
                 None => return Self::of_core(kind, outward),
             },
             other => return Self::of_core(other, outward),
         };
-        Self { rounding, outward, facing }
+        Self { rounding, outward, support }
     }
 
     fn of_core(kind: Kind<'_, N, D>, outward: Vector<N, D>) -> Self {
@@ -58,7 +58,7 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
             Geometry(kind).as_support_map().expect("neither a half-space nor a composite");
         let mut feature = Feature::default();
         map.core_feature(&outward, &mut feature);
-        Self { rounding: map.rounding(), outward, facing: SideFacing::Feature(feature) }
+        Self { rounding: map.rounding(), outward, support: SideSupport::Feature(feature) }
     }
 
     /// The point of the core below a point of the surface.
@@ -68,25 +68,25 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
 
     /// The local geometry of the core at the feature `id`.
     pub(super) fn geometry(&self, id: FeatureId) -> NeighborhoodGeometry<N, D> {
-        match (&self.facing, id) {
-            (SideFacing::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
-            (SideFacing::Axis, FeatureId::Face(_)) => NeighborhoodGeometry::Line(upward()),
-            (SideFacing::Part(_), FeatureId::Edge(index)) => {
-                NeighborhoodGeometry::Line(FacingPart::edge_direction(index))
+        match (&self.support, id) {
+            (SideSupport::Boundary(normal), _) => NeighborhoodGeometry::Plane(*normal),
+            (SideSupport::Axis, FeatureId::Face(_)) => NeighborhoodGeometry::Line(upward()),
+            (SideSupport::Part(_), FeatureId::Edge(index)) => {
+                NeighborhoodGeometry::Line(SupportPart::edge_direction(index))
             }
-            (SideFacing::Part(part), FeatureId::Face(_)) => {
+            (SideSupport::Part(part), FeatureId::Face(_)) => {
                 NeighborhoodGeometry::Plane(part.normal.unwrap_or(self.outward))
             }
-            (SideFacing::Feature(feature), FeatureId::Edge(_)) => line(feature, id),
-            (SideFacing::Feature(feature), FeatureId::Face(_)) => {
+            (SideSupport::Feature(feature), FeatureId::Edge(_)) => line(feature, id),
+            (SideSupport::Feature(feature), FeatureId::Face(_)) => {
                 NeighborhoodGeometry::Plane(feature.normal.unwrap_or(self.outward))
             }
             // The ends of a lying cylinder are on the rims.
             (
-                SideFacing::Center
-                | SideFacing::Axis
-                | SideFacing::Part(_)
-                | SideFacing::Feature(_),
+                SideSupport::Center
+                | SideSupport::Axis
+                | SideSupport::Part(_)
+                | SideSupport::Feature(_),
                 _,
             ) => NeighborhoodGeometry::Point,
         }
@@ -94,23 +94,23 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
 
     /// The tilt of the supporting face: the length of the difference of its normal and the
     /// contact's; 2, the maximum, without such a face.
-    pub(super) fn lean(&self) -> N {
-        let normal = match &self.facing {
-            SideFacing::Boundary(normal) => Some(*normal),
-            SideFacing::Part(part) => part.normal,
-            SideFacing::Feature(feature) => feature.normal,
-            SideFacing::Center | SideFacing::Axis => None,
+    pub(super) fn tilt(&self) -> N {
+        let normal = match &self.support {
+            SideSupport::Boundary(normal) => Some(*normal),
+            SideSupport::Part(part) => part.normal,
+            SideSupport::Feature(feature) => feature.normal,
+            SideSupport::Center | SideSupport::Axis => None,
         };
         normal.map_or(N::TWO, |normal| (normal - self.outward).norm())
     }
 
     /// An edge of the supporting feature that is perpendicular to the contact's normal.
-    pub(super) fn level_edge(&self) -> Option<Vector<N, D>> {
-        match &self.facing {
-            SideFacing::Part(part) => {
-                part.most_level_side(&self.outward).filter(|side| is_level(side, &self.outward))
-            }
-            SideFacing::Feature(feature) => level_edge(feature, &self.outward),
+    pub(super) fn perpendicular_edge(&self) -> Option<Vector<N, D>> {
+        match &self.support {
+            SideSupport::Part(part) => part
+                .flattest_side(&self.outward)
+                .filter(|side| is_perpendicular(side, &self.outward)),
+            SideSupport::Feature(feature) => perpendicular_edge(feature, &self.outward),
             _ => None,
         }
     }
@@ -118,18 +118,19 @@ impl<N: Real, const D: usize> KinematicSide<N, D> {
 
 /// The side of a feature that is most nearly perpendicular to a direction; `None` if it is not so
 /// up to rounding.
-fn level_edge<N: Real, const D: usize>(
+fn perpendicular_edge<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     outward: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
     let sides = (0..feature.side_ids.len()).filter_map(|index| along(feature, index));
-    let lean = |side: &Vector<N, D>| side.dot(outward).abs();
-    let level = sides.reduce(|best, side| if lean(&side) < lean(&best) { side } else { best });
-    level.filter(|side| is_level(side, outward))
+    let component = |side: &Vector<N, D>| side.dot(outward).abs();
+    let flattest =
+        sides.reduce(|best, side| if component(&side) < component(&best) { side } else { best });
+    flattest.filter(|side| is_perpendicular(side, outward))
 }
 
 /// Whether two unit vectors are perpendicular up to rounding.
-fn is_level<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
+fn is_perpendicular<N: Real, const D: usize>(side: &Vector<N, D>, outward: &Vector<N, D>) -> bool {
     side.dot(outward).abs() <= super::least_angle()
 }
 
@@ -156,9 +157,9 @@ fn line<N: Real, const D: usize>(
     feature: &Feature<N, D>,
     id: FeatureId,
 ) -> NeighborhoodGeometry<N, D> {
-    let mut named = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
+    let mut matching = feature.side_ids.iter().enumerate().filter(|&(_, &side)| side == id);
     // A round cap is represented by a polygon whose sides all have the id of the rim.
-    let (Some((index, _)), None) = (named.next(), named.next()) else {
+    let (Some((index, _)), None) = (matching.next(), matching.next()) else {
         return NeighborhoodGeometry::Point;
     };
     along(feature, index).map_or(NeighborhoodGeometry::Point, NeighborhoodGeometry::Line)

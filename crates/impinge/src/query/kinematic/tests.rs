@@ -11,7 +11,7 @@ use crate::query::{Placement, materialise};
 use crate::shape::{Ball, Capsule, Cuboid, Cylinder, FeatureId, Plane, Segment, Shape};
 
 fn reproduces<N: Scene<D>, const D: usize>(accuracy: f64) {
-    let mut seen = 0;
+    let mut checked = 0;
     for_all_pairs::<N, D>(40, 1.0, |pair| {
         let (_, raw) = manifold(pair, &request(0.05, 0.05));
         for point in &raw.points {
@@ -29,10 +29,10 @@ fn reproduces<N: Scene<D>, const D: usize>(accuracy: f64) {
             let back = kinematic.flipped().predicted(&pose21).flipped(&pose21);
             let error = (back.point1 - found.point1).norm() + (back.normal - found.normal).norm();
             assert!(error <= N::lit(accuracy), "flipped: {error} {}", describe(pair));
-            seen += 1;
+            checked += 1;
         }
     });
-    assert!(seen > 300, "{seen} contacts");
+    assert!(checked > 300, "{checked} contacts");
 }
 
 #[test]
@@ -49,7 +49,7 @@ struct Case<'a, const D: usize> {
     pose12: Pose<f64, D>,
     followed: [FeatureId; 2],
     /// The weight of errors of the position, besides those of distance and normal.
-    place_weight: f64,
+    position_weight: f64,
 }
 
 impl<const D: usize> Case<'_, D>
@@ -75,7 +75,7 @@ where
         let moved = f64::pose(motion.shift * step, turn).compose(&self.pose12);
         let (_, raw) = manifold(&self.pair(moved), &request(0.1, 0.0));
         let (predicted, point) = (kinematic.predicted(&moved), &raw.points[self.followed(&raw)]);
-        (predicted.point1 - point.point1).norm() * self.place_weight
+        (predicted.point1 - point.point1).norm() * self.position_weight
             + (predicted.distance - point.distance).abs()
             + (predicted.normal - raw.normal).norm()
     }
@@ -130,7 +130,7 @@ fn follow<const D: usize>(
     f64: Scene<D>,
 {
     let followed = first_features(solids, pose12, is_it);
-    Case { solids, pose12, followed, place_weight: 1.0 }.check();
+    Case { solids, pose12, followed, position_weight: 1.0 }.check();
 }
 
 #[test]
@@ -198,8 +198,8 @@ fn capsules_segments_and_cylinders() {
     follow([&segment, &capsule], crossing, |a, b| matches!((a, b), (Edge(_), Edge(_))));
     // The edge of the box along y, in front of the capsule, which leans across it.
     let corner = at(0.9, 0.0, 0.0, [0.0, std::f64::consts::FRAC_PI_4, 0.0]);
-    let leaning = at(0.0, 0.0, 0.0, [0.7, 0.0, 0.0]);
-    follow([&capsule, &cuboid], Pose::relative(&leaning, &corner), |a, b| {
+    let tilted = at(0.0, 0.0, 0.0, [0.7, 0.0, 0.0]);
+    follow([&capsule, &cuboid], Pose::relative(&tilted, &corner), |a, b| {
         matches!((a, b), (Edge(_), Edge(_)))
     });
     let lying = at(0.0, 0.74, 0.0, [0.0, 0.0, std::f64::consts::FRAC_PI_2]);
@@ -211,7 +211,7 @@ fn capsules_segments_and_cylinders() {
     let (solids, pose12) = ([&ground as &dyn Shape<f64, 3>, &cylinder], below.inverse());
     let followed = first_features(solids, pose12, |a, _| matches!(a, Face(_)));
     assert!(matches!(followed[1], Edge(_)), "a rim: {followed:?}");
-    Case { solids, pose12, followed, place_weight: 0.0 }.check();
+    Case { solids, pose12, followed, position_weight: 0.0 }.check();
 }
 
 /// After a common motion of both solids, the contact has moved with them.
@@ -238,7 +238,7 @@ fn common_motion_carries_the_contact_along() {
         assert!(error < 1e-12, "carried along: {error}");
         assert!((moved.depth - tracked.contact.depth).abs() < 1e-12, "as deep as before");
         assert_eq!(other.contact, tracked.contact.flipped(), "swapped");
-        assert_eq!(other.id, tracked.id, "one contact, one name");
+        assert_eq!(other.id, tracked.id, "one contact, one id");
         let back = other.kinematic.contact(&(common * m2), &(common * m1)).flipped();
         assert!((back.world1 - moved.world1).norm() < 1e-12, "swapped and moved");
         assert_eq!(other.kinematic.feature1(), tracked.kinematic.feature2(), "swapped features");
@@ -260,5 +260,5 @@ fn a_vanishing_connection_keeps_the_normal() {
     let kinematic = ContactKinematic::new(&pair, &raw.normal, &raw.points[0]);
     let met = kinematic.predicted(&at(0.0, 0.0, 0.0, [0.0; 3]));
     assert_eq!(met.normal, separation.normal, "the old one");
-    assert_eq!(met.distance.as_f64(), 0.0, "they meet");
+    assert_eq!(met.distance.as_f64(), 0.0, "they touch");
 }

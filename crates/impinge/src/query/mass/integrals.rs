@@ -24,9 +24,9 @@ impl<const D: usize> LocalUnits<D> {
         let mut mins = Vector::<f64, D>::repeat(f64::INFINITY);
         let mut maxs = -mins;
         for point in points {
-            let place = point.coords.map(N::as_f64);
-            mins = mins.zip_map(&place, |a, b| if b < a { b } else { a });
-            maxs = maxs.zip_map(&place, |a, b| if b > a { b } else { a });
+            let position = point.coords.map(N::as_f64);
+            mins = mins.zip_map(&position, |a, b| if b < a { b } else { a });
+            maxs = maxs.zip_map(&position, |a, b| if b > a { b } else { a });
         }
         let half = maxs * 0.5 - mins * 0.5;
         let size = half.iter().fold(radius.as_f64(), |size, &x| if x > size { x } else { size });

@@ -45,11 +45,11 @@ impl Plate {
 
     /// Adds the prism on the front of the plate, or a part of it.
     ///
-    /// The prism has the height `height`; `share` of its mass is added, with its centre at `level`
+    /// The prism has the height `height`; `share` of its mass is added, with its centre at `altitude`
     /// above the plate.
     pub(super) fn add_prism(
         &self,
-        [height, share, level]: [f64; 3],
+        [height, share, altitude]: [f64; 3],
         normal: &V3,
         sum: &mut Integrals<3>,
     ) {
@@ -57,7 +57,7 @@ impl Plate {
         let mass = self.area * height * share;
         sum.add(
             mass,
-            &(self.center + normal * level),
+            &(self.center + normal * altitude),
             &((self.second + across) * (height * share)),
         );
     }

@@ -74,12 +74,12 @@ impl<const D: usize> Slices<D> {
         let center = self.first / self.mass;
         let mut seconds = Vector::<f64, D>::repeat(self.across);
         seconds[1] = self.along - self.first * center;
-        Moments::along_axes(self.mass, axis * center, turned_to(axis), &seconds)
+        Moments::along_axes(self.mass, axis * center, rotation_to(axis), &seconds)
     }
 }
 
 /// The rotation that maps the y axis to a unit vector or its opposite, whichever is nearer.
-fn turned_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
+fn rotation_to<const D: usize>(axis: &Vector<f64, D>) -> Matrix<f64, D> {
     let mut y = Vector::<f64, D>::zeros();
     y[1] = 1.0;
     let axis = if axis[1] < 0.0 { -axis } else { *axis };
@@ -105,11 +105,11 @@ pub(super) fn two_balls<N: Real, const D: usize>(
     // The sine of the side's normal along the axis.
     let sine = (r1 - r2) / length;
     let cosine = ((1.0 - sine) * (1.0 + sine)).sqrt();
-    let (half, lean) = (length * 0.5, libm::atan2(sine, cosine));
+    let (half, tilt) = (length * 0.5, libm::atan2(sine, cosine));
     let mut slices = Slices::<D>::default();
-    slices.add_arc([-half, 0.0], r1, [-QUARTER, lean]);
+    slices.add_arc([-half, 0.0], r1, [-QUARTER, tilt]);
     slices.add_line([r1 * sine - half, r1 * cosine], [r2 * sine + half, r2 * cosine]);
-    slices.add_arc([half, 0.0], r2, [lean, QUARTER]);
+    slices.add_arc([half, 0.0], r2, [tilt, QUARTER]);
     let body = slices.moments(&((b - a) / length));
     units.grown(&Moments { center: body.center + (a + b) * 0.5, ..body })
 }
@@ -140,11 +140,11 @@ pub(super) fn round_cone<N: Real, const D: usize>(
     let side = [2.0 * h, aside];
     let length = (side[0] * side[0] + side[1] * side[1]).sqrt();
     let [cosine, sine] = if length > 0.0 { side.map(|x| x / length) } else { [1.0, 0.0] };
-    let lean = libm::atan2(sine, cosine);
+    let tilt = libm::atan2(sine, cosine);
     let mut slices = Slices::<D>::default();
-    slices.add_arc([-h, aside], r, [-QUARTER, lean]);
+    slices.add_arc([-h, aside], r, [-QUARTER, tilt]);
     slices.add_line([r * sine - h, aside + r * cosine], [h + r * sine, r * cosine]);
-    slices.add_arc([h, 0.0], r, [lean, QUARTER]);
+    slices.add_arc([h, 0.0], r, [tilt, QUARTER]);
     units.grown(&slices.moments(&y_axis()))
 }
 

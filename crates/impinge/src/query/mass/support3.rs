@@ -48,7 +48,7 @@ const NOTHING: f64 = 1e-6;
 /// The mass and moments of a convex solid by its support points, up to about 1e-4.
 pub(super) fn by_support<N: Real>(map: &dyn SupportMap<N, 3>) -> Result<Moments<3>, MassError> {
     let mut points = Vec::new();
-    let mut round = RoundFrame::plain(LocalUnits::about_origin(1.0));
+    let mut round = RoundFrame::at_origin(LocalUnits::about_origin(1.0));
     for _ in 0..ROUNDS {
         sow(map, &round, &mut points)?;
         round = RoundFrame::of_points(&points);
@@ -88,7 +88,7 @@ struct RoundFrame {
 }
 
 impl RoundFrame {
-    fn plain(units: LocalUnits<3>) -> Self {
+    fn at_origin(units: LocalUnits<3>) -> Self {
         Self { units, center: V3::zeros(), axes: M3::identity(), widths: V3::repeat(1.0) }
     }
 

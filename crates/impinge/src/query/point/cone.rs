@@ -13,12 +13,13 @@ pub(super) fn surface_point<N: Real>(cone: &Cone<N>, point: &Point<N, 3>) -> Sur
     let middle = Point::<N, 2>::new(N::ZERO, -half_height);
     let rim = Point::<N, 2>::new(radius, -half_height);
     let apex = Point::<N, 2>::new(N::ZERO, half_height);
-    let (on_base, base_place) = nearest([&middle, &rim], &meridian.flat);
-    let (on_side, side_place) = nearest([&rim, &apex], &meridian.flat);
-    let base_feature = if base_place >= N::ONE { FeatureId::Edge(0) } else { FeatureId::Face(0) };
-    let side_feature = match side_place {
-        place if place >= N::ONE => FeatureId::Vertex(0),
-        place if place <= N::ZERO => FeatureId::Edge(0),
+    let (on_base, base_fraction) = nearest([&middle, &rim], &meridian.flat);
+    let (on_side, side_fraction) = nearest([&rim, &apex], &meridian.flat);
+    let base_feature =
+        if base_fraction >= N::ONE { FeatureId::Edge(0) } else { FeatureId::Face(0) };
+    let side_feature = match side_fraction {
+        fraction if fraction >= N::ONE => FeatureId::Vertex(0),
+        fraction if fraction <= N::ZERO => FeatureId::Edge(0),
         _ => FeatureId::Face(1),
     };
     let base = SurfacePoint::on(on_base, base_feature);

@@ -14,7 +14,7 @@ use crate::math::{Mapped, Point};
 
 /// The direction of a ray from a point to infinity, along an axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RayWay {
+pub(super) struct RayDirection {
     pub(super) axis: usize,
     /// Towards larger coordinates.
     pub(super) is_ascending: bool,
@@ -34,8 +34,12 @@ fn sign(determinant: f64) -> i64 {
 
 /// The contribution of a segment in 2D, whose left is inside. A point on a segment across the ray
 /// may go undetected; then its winding number is that of a point beside it.
-pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: RayWay) -> Added {
-    let across = 1 - way.axis;
+pub(super) fn of_segment(
+    ends: [Point<f64, 2>; 2],
+    point: &Point<f64, 2>,
+    direction: RayDirection,
+) -> Added {
+    let across = 1 - direction.axis;
     let at = point[across];
     let rises = ends[0][across] <= at && at < ends[1][across];
     let falls = ends[1][across] <= at && at < ends[0][across];
@@ -45,10 +49,10 @@ pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: R
     let side = sign(area(&ends[0], &ends[1], point));
     // If the segment rises on the side of larger x, the point is on its left; exchanging x and y
     // exchanges left and right.
-    let is_above = (rises == (side > 0)) == (way.axis == 0);
+    let is_above = (rises == (side > 0)) == (direction.axis == 0);
     match side {
         0 => None,
-        _ if is_above == way.is_ascending => Some(side),
+        _ if is_above == direction.is_ascending => Some(side),
         _ => Some(0),
     }
 }
@@ -58,11 +62,12 @@ pub(super) fn of_segment(ends: [Point<f64, 2>; 2], point: &Point<f64, 2>, way: R
 pub(super) fn of_triangle(
     corners: [Point<f64, 3>; 3],
     point: &Point<f64, 3>,
-    way: RayWay,
+    direction: RayDirection,
 ) -> Added {
-    let seen =
-        |p: &Point<f64, 3>| Point::<f64, 2>::new(p[(way.axis + 1) % 3], p[(way.axis + 2) % 3]);
-    let around = around_seen(&corners.each_ref().mapped(seen), &seen(point));
+    let project = |p: &Point<f64, 3>| {
+        Point::<f64, 2>::new(p[(direction.axis + 1) % 3], p[(direction.axis + 2) % 3])
+    };
+    let around = winding_around(&corners.each_ref().mapped(project), &project(point));
     if around == 0 {
         return Some(0);
     }
@@ -71,14 +76,16 @@ pub(super) fn of_triangle(
     let is_above = side * around < 0;
     match side {
         0 => None,
-        _ if is_above == way.is_ascending => Some(if way.is_ascending { around } else { -around }),
+        _ if is_above == direction.is_ascending => {
+            Some(if direction.is_ascending { around } else { -around })
+        }
         _ => Some(0),
     }
 }
 
 /// The winding of three sides around a point in 2D: 0, or the sign of their turn. A point on a side
 /// counts as moved by (ε, ε²).
-fn around_seen(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
+fn winding_around(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
     let one = |at: usize| {
         let (a, b) = (&corners[at], &corners[(at + 1) % 3]);
         let (rises, falls) = (a.y <= point.y && point.y < b.y, b.y <= point.y && point.y < a.y);
@@ -96,9 +103,10 @@ fn around_seen(corners: &[Point<f64, 2>; 3], point: &Point<f64, 2>) -> i64 {
 mod tests {
     use super::*;
 
-    fn ways(axes: usize) -> impl Iterator<Item = RayWay> {
-        (0..axes)
-            .flat_map(|axis| [true, false].mapped(|is_ascending| RayWay { axis, is_ascending }))
+    fn directions(axes: usize) -> impl Iterator<Item = RayDirection> {
+        (0..axes).flat_map(|axis| {
+            [true, false].mapped(|is_ascending| RayDirection { axis, is_ascending })
+        })
     }
 
     /// All eight points of a grid of three by three around the middle one, as an outline.
@@ -110,11 +118,15 @@ mod tests {
             let point = Point::<f64, 2>::new(f64::from(x), f64::from(y));
             let inside = x == 1 && y == 1;
             let on_line = !inside && (0..3).contains(&x) && (0..3).contains(&y);
-            for way in ways(2) {
-                let each = (0..8).map(|at| of_segment([corner(at), corner(at + 1)], &point, way));
+            for direction in directions(2) {
+                let each =
+                    (0..8).map(|at| of_segment([corner(at), corner(at + 1)], &point, direction));
                 let winding: Option<i64> = each.sum();
                 let expected = Some(i64::from(inside));
-                assert!(winding == expected || on_line, "{winding:?} at {point} along {way:?}");
+                assert!(
+                    winding == expected || on_line,
+                    "{winding:?} at {point} along {direction:?}"
+                );
             }
         }
     }
@@ -133,8 +145,8 @@ mod tests {
                 };
                 let (a, b, c, d) = (at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0));
                 let outward = [[a, b, c], [a, c, d]];
-                let turned = |[a, b, c]: [Point<f64, 3>; 3]| [a, c, b];
-                triangles.extend(if end > 1.0 { outward } else { outward.mapped(turned) });
+                let reversed = |[a, b, c]: [Point<f64, 3>; 3]| [a, c, b];
+                triangles.extend(if end > 1.0 { outward } else { outward.mapped(reversed) });
             }
         }
         let steps = || (-1..6).map(|step| f64::from(step) * 0.5);
@@ -144,11 +156,14 @@ mod tests {
             let point = Point::<f64, 3>::new(x, y, z);
             let inside = point.iter().all(|&x| x > 0.0 && x < 2.0);
             let on_surface = !inside && point.iter().all(|&x| (0.0..=2.0).contains(&x));
-            for way in ways(3) {
-                let each = triangles.iter().map(|&corners| of_triangle(corners, &point, way));
+            for direction in directions(3) {
+                let each = triangles.iter().map(|&corners| of_triangle(corners, &point, direction));
                 let winding: Option<i64> = each.sum();
                 let expected = Some(i64::from(inside));
-                assert!(winding == expected || on_surface, "{winding:?} at {point} along {way:?}");
+                assert!(
+                    winding == expected || on_surface,
+                    "{winding:?} at {point} along {direction:?}"
+                );
             }
         }
     }

@@ -11,9 +11,9 @@ pub(super) fn surface_point<N: Real, const D: usize>(
     ellipsoid: &Ellipsoid<N, D>,
     point: &Point<N, D>,
 ) -> SurfacePoint<N, D> {
-    let (feature, seen) = (FeatureId::Face(0), project(ellipsoid, point));
+    let (feature, projected) = (FeatureId::Face(0), project(ellipsoid, point));
     if ellipsoid.half_axes().iter().any(|&half_axis| half_axis == N::ZERO) {
-        return SurfacePoint::on(seen.point, feature).snapped(point, ellipsoid.reach());
+        return SurfacePoint::on(projected.point, feature).snapped(point, ellipsoid.reach());
     }
-    SurfacePoint { point: seen.point, feature, is_inside: seen.distance <= N::ZERO }
+    SurfacePoint { point: projected.point, feature, is_inside: projected.distance <= N::ZERO }
 }

@@ -5,7 +5,7 @@
 //! computation using the angle weighted pseudonormal", 2005) need a manifold, and in floating point
 //! fail at needles; the tests compare the two.
 
-use super::crossing::{RayWay, of_segment, of_triangle};
+use super::crossing::{RayDirection, of_segment, of_triangle};
 use crate::bounding_volume::Aabb;
 use crate::math::{Point, Real, Space, max, max_component};
 use crate::partitioning::BoxTree;
@@ -69,12 +69,12 @@ impl<N: Real> TriMesh<N, 3> {
         counts: impl Fn(u32) -> bool,
     ) -> Option<i64> {
         let (tree, (scale, at)) = (self.tree(), scaled(self.tree(), point));
-        winding(tree, point, |part, way| {
+        winding(tree, point, |part, direction| {
             if !counts(part) {
                 return Some(0);
             }
             let corners = self.triangle(part).corners().map(|corner| lifted(&corner, scale));
-            of_triangle(corners, &at, way)
+            of_triangle(corners, &at, direction)
         })
     }
 }
@@ -126,13 +126,13 @@ impl<N: Real> Polyline<N, 2> {
         counts: impl Fn(u32) -> bool,
     ) -> Option<i64> {
         let (tree, (scale, at)) = (self.tree(), scaled(self.tree(), point));
-        winding(tree, point, |part, way| {
+        winding(tree, point, |part, direction| {
             if !counts(part) {
                 return Some(0);
             }
             let segment = self.segment(part);
             let ends = [segment.a(), segment.b()].map(|end| lifted(end, scale));
-            of_segment(ends, &at, way)
+            of_segment(ends, &at, direction)
         })
     }
 }
@@ -167,41 +167,46 @@ fn signed<N: Space<D>, const D: usize>(
 fn winding<N: Space<D>, const D: usize>(
     tree: &BoxTree<N, D>,
     point: &Point<N, D>,
-    mut added: impl FnMut(u32, RayWay) -> Option<i64>,
+    mut added: impl FnMut(u32, RayDirection) -> Option<i64>,
 ) -> Option<i64> {
-    let Some((way, probe)) = tree.bounds().and_then(|bounds| way_out(bounds, point)) else {
+    let Some((direction, probe)) = tree.bounds().and_then(|bounds| shortest_exit(bounds, point))
+    else {
         return Some(0);
     };
     let mut sum = Some(0);
     tree.visit_overlapping(&probe, |part| {
         let part = u32::try_from(part).expect("a tree has fewer than 2^32 boxes");
-        sum = sum.and_then(|sum| Some(sum + added(part, way)?));
+        sum = sum.and_then(|sum| Some(sum + added(part, direction)?));
     });
     sum
 }
 
 /// The shortest way out of a box along an axis, as a thin box; `None` for a point outside the box
 /// or not finite.
-fn way_out<N: Real, const D: usize>(
+fn shortest_exit<N: Real, const D: usize>(
     bounds: &Aabb<N, D>,
     point: &Point<N, D>,
-) -> Option<(RayWay, Aabb<N, D>)> {
+) -> Option<(RayDirection, Aabb<N, D>)> {
     let (mins, maxs) = (bounds.mins(), bounds.maxs());
     let is_within = (0..D).all(|axis| mins[axis] <= point[axis] && point[axis] <= maxs[axis]);
     if !is_within {
         return None;
     }
-    let length = |way: &RayWay| match way.is_ascending {
-        true => maxs[way.axis] - point[way.axis],
-        false => point[way.axis] - mins[way.axis],
+    let length = |direction: &RayDirection| match direction.is_ascending {
+        true => maxs[direction.axis] - point[direction.axis],
+        false => point[direction.axis] - mins[direction.axis],
     };
-    let all =
-        (0..D).flat_map(|axis| [true, false].map(|is_ascending| RayWay { axis, is_ascending }));
-    let way = all.reduce(|best, way| if length(&way) < length(&best) { way } else { best })?;
+    let all = (0..D)
+        .flat_map(|axis| [true, false].map(|is_ascending| RayDirection { axis, is_ascending }));
+    let direction =
+        all.reduce(
+            |best, direction| if length(&direction) < length(&best) { direction } else { best },
+        )?;
     let mut end = *point;
-    end[way.axis] = if way.is_ascending { maxs[way.axis] } else { mins[way.axis] };
-    let (low, high) = if way.is_ascending { (*point, end) } else { (end, *point) };
-    Some((way, Aabb::try_new(low, high).ok()?))
+    end[direction.axis] =
+        if direction.is_ascending { maxs[direction.axis] } else { mins[direction.axis] };
+    let (low, high) = if direction.is_ascending { (*point, end) } else { (end, *point) };
+    Some((direction, Aabb::try_new(low, high).ok()?))
 }
 
 /// The power of two by which coordinates are divided, so that products of three neither overflow

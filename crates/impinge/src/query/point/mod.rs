@@ -32,7 +32,7 @@ pub(super) use segment::{feature_at, nearest as nearest_on_segment};
 pub(crate) use surface::SurfacePoint;
 pub(super) use surface::length;
 
-use super::composite::{Near, PartPoint};
+use super::composite::{PartPoint, PartQuery};
 use crate::math::{AbstractRotation, Isometry, Point, Pose, Real, Space, max};
 use crate::shape::{CompositeShape, FeatureId, Geometry, Kind, Shape};
 use crate::tables::entries;
@@ -202,8 +202,8 @@ pub(crate) fn located_at<N: Space<D>, const D: usize>(
     point: &Point<N, D>,
     solid: bool,
 ) -> (PointProjection<N, D>, PointLocation<N>) {
-    let asked = pose.inverse_point(point);
-    let (local, location) = shape.project_local_point_with_location(&asked, solid);
+    let local_point = pose.inverse_point(point);
+    let (local, location) = shape.project_local_point_with_location(&local_point, solid);
     (placed(&local, pose, point, solid), location)
 }
 
@@ -375,11 +375,11 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
         point: &Point<N, D>,
         solid: bool,
     ) -> PointLocation<N> {
-        let near = Near::new(parts.part(self.part), point);
-        let is_own = solid && self.distance <= N::ZERO && near.asked != self.local;
+        let part_query = PartQuery::new(parts.part(self.part), point);
+        let is_own = solid && self.distance <= N::ZERO && part_query.query != self.local;
         let (at, feature) =
-            if is_own { (&near.asked, None) } else { (&self.local, Some(self.feature)) };
-        let barycentric = Barycentric::of(near.solid().geometry(), at, feature);
+            if is_own { (&part_query.query, None) } else { (&self.local, Some(self.feature)) };
+        let barycentric = Barycentric::of(part_query.solid().geometry(), at, feature);
         PointLocation { part: self.part, feature: self.feature, barycentric }
     }
 }

@@ -22,22 +22,22 @@ pub(super) fn surface_point<N: Space<D>, const D: usize>(
     let ball = Ball::new(N::ZERO);
     let pose12 = Pose::from_translation(-point.coords);
     let pair = Pair { first: Kind::Ball(&ball), second: inner.0, pose12 };
-    let Some(seen) = separation(&pair, N::INFINITY) else {
+    let Some(found) = separation(&pair, N::INFINITY) else {
         // The point is not finite.
         return SurfacePoint::on(solid.center(), FeatureId::Face(0));
     };
-    let nearest = point + seen.point2.coords - seen.normal * radius;
+    let nearest = point + found.point2.coords - found.normal * radius;
     SurfacePoint {
         point: nearest,
         feature: feature_below(inner, &nearest),
-        is_inside: seen.distance <= radius,
+        is_inside: found.distance <= radius,
     }
 }
 
 /// The feature of the inner shape below a point of the surface.
 fn feature_below<N: Space<D>, const D: usize>(
     inner: Geometry<'_, N, D>,
-    place: &Point<N, D>,
+    point: &Point<N, D>,
 ) -> FeatureId {
-    <N::Algorithms>::surface_point(inner.0, place).feature
+    <N::Algorithms>::surface_point(inner.0, point).feature
 }

@@ -19,14 +19,14 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
         Self { point, feature, is_inside: false }
     }
 
-    /// The one of two nearest points of parts that is nearer to `asked`; the first if equal.
-    pub(super) fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
-        if self.is_beaten_by(&other, asked) { other } else { self }
+    /// The one of two nearest points of parts that is nearer to `query`; the first if equal.
+    pub(super) fn nearer(self, other: Self, query: &Point<N, D>) -> Self {
+        if self.is_beaten_by(&other, query) { other } else { self }
     }
 
-    /// Whether the other of two nearest points of parts is nearer to `asked`.
-    pub(super) fn is_beaten_by(&self, other: &Self, asked: &Point<N, D>) -> bool {
-        let (first, second) = (asked - self.point, asked - other.point);
+    /// Whether the other of two nearest points of parts is nearer to `query`.
+    pub(super) fn is_beaten_by(&self, other: &Self, query: &Point<N, D>) -> bool {
+        let (first, second) = (query - self.point, query - other.point);
         let (square1, square2) = (first.norm_squared(), second.norm_squared());
         // Squares of large and of small lengths overflow and underflow.
         let usable = |square: N| square > N::MIN_POSITIVE && square < N::INFINITY;
@@ -41,17 +41,17 @@ impl<N: Real, const D: usize> SurfacePoint<N, D> {
     ///
     /// `reach` is the largest distance of the set from the local origin: the rounding error of
     /// coordinates is proportional to it and to those of the query point.
-    pub(super) fn snapped(self, asked: &Point<N, D>, reach: N) -> Self {
-        let scale = max(max_component(&asked.coords), reach);
-        let near = length(&(asked - self.point)) <= N::lit(8.0) * N::EPSILON * scale;
-        if near { Self { point: *asked, ..self } } else { self }
+    pub(super) fn snapped(self, query: &Point<N, D>, reach: N) -> Self {
+        let scale = max(max_component(&query.coords), reach);
+        let near = length(&(query - self.point)) <= N::lit(8.0) * N::EPSILON * scale;
+        if near { Self { point: *query, ..self } } else { self }
     }
 
     /// Converts to the public form. A point that is its own projection is inside, whatever the
     /// arithmetic of the shape says: distance zero and being inside are equivalent.
-    pub(crate) fn projection(self, asked: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
-        let finite = asked.iter().all(|x| x.is_finite_number());
-        let touches = self.is_inside || length(&(asked - self.point)) == N::ZERO;
+    pub(crate) fn projection(self, query: &Point<N, D>) -> (PointProjection<N, D>, FeatureId) {
+        let finite = query.iter().all(|x| x.is_finite_number());
+        let touches = self.is_inside || length(&(query - self.point)) == N::ZERO;
         let is_inside = finite && touches;
         (PointProjection { is_inside, point: self.point }, self.feature)
     }

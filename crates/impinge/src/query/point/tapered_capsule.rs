@@ -14,6 +14,6 @@ pub(super) fn surface_point<N: Real, const D: usize>(
     if capsule.radii() == [N::ZERO; 2] {
         return segment_point(capsule.segment(), point);
     }
-    let (seen, feature) = project(capsule, point);
-    SurfacePoint { point: seen.point, feature, is_inside: seen.distance <= N::ZERO }
+    let (projected, feature) = project(capsule, point);
+    SurfacePoint { point: projected.point, feature, is_inside: projected.distance <= N::ZERO }
 }

@@ -15,9 +15,9 @@ pub(super) struct OnTriangle<N: Real, const D: usize> {
 }
 
 impl<N: Real, const D: usize> OnTriangle<N, D> {
-    /// The one nearer to `asked`, the first if equal.
-    fn nearer(self, other: Self, asked: &Point<N, D>) -> Self {
-        if self.found.is_beaten_by(&other.found, asked) { other } else { self }
+    /// The one nearer to `query`, the first if equal.
+    fn nearer(self, other: Self, query: &Point<N, D>) -> Self {
+        if self.found.is_beaten_by(&other.found, query) { other } else { self }
     }
 }
 
@@ -49,11 +49,11 @@ pub(super) fn on_side<N: Real, const D: usize>(
 ) -> OnTriangle<N, D> {
     let next = (side + 1) % 3;
     let [from, to] = [side, next].mapped(|corner| corner as usize);
-    let (place, fraction) = segment::nearest([&corners[from], &corners[to]], point);
+    let (nearest, fraction) = segment::nearest([&corners[from], &corners[to]], point);
     let mut weights = [N::ZERO; 3];
     (weights[from], weights[to]) = (N::ONE - fraction, fraction);
     let feature = feature_at(fraction, [side, next], FeatureId::flat::<D>(1, side));
-    OnTriangle { found: SurfacePoint::on(place, feature), weights }
+    OnTriangle { found: SurfacePoint::on(nearest, feature), weights }
 }
 
 /// The nearest point of the chord across the longest side at the projection of `point` on that
@@ -72,15 +72,18 @@ fn on_chord<N: Real, const D: usize>(
     let from = longest_side(corners);
     let (to, top) = ((from + 1) % 3, (from + 2) % 3);
     let base = &sides[from];
-    let place = base.weights[to];
+    let base_share = base.weights[to];
     let (_, peak) = segment::nearest([&corners[from], &corners[to]], &corners[top]);
     // On the side where the chord ends: the index of its base corner, and the fraction of it below
     // the end.
-    let (start, share) =
-        if place <= peak { (from, place / peak) } else { (to, (N::ONE - place) / (N::ONE - peak)) };
+    let (start, share) = if base_share <= peak {
+        (from, base_share / peak)
+    } else {
+        (to, (N::ONE - base_share) / (N::ONE - peak))
+    };
     let end = corners[start] + (corners[top] - corners[start]) * share;
     let (inner, fraction) = segment::nearest([&base.found.point, &end], point);
-    let is_inner = [place, fraction].iter().all(|&share| share > N::ZERO && share < N::ONE);
+    let is_inner = [base_share, fraction].iter().all(|&share| share > N::ZERO && share < N::ONE);
     is_inner.then(|| {
         let mut weights = base.weights.mapped(|weight| weight * (N::ONE - fraction));
         weights[start] += fraction * (N::ONE - share);

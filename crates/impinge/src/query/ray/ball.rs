@@ -19,7 +19,7 @@ pub(super) struct Roots<N: Real, const D: usize> {
 impl<N: Real, const D: usize> Roots<N, D> {
     /// The points of entering and leaving, computed from the middle: accurate however far the
     /// line's origin is.
-    pub(super) fn places(&self) -> [Vector<N, D>; 2] {
+    pub(super) fn points(&self) -> [Vector<N, D>; 2] {
         [self.middle - self.half_chord, self.middle + self.half_chord]
     }
 
@@ -87,7 +87,7 @@ pub(super) fn around<N: Real, const D: usize>(
         return Some(Span::everything());
     }
     let found = roots(&(ray.origin - center), &ray.dir, radius)?;
-    let [entry, exit] = found.places();
+    let [entry, exit] = found.points();
     // A ball of radius zero has no normal of its own: it faces the ray.
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
     let enter = Crossing::new(found.enter, unit_or(&entry, against), feature);

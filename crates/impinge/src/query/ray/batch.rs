@@ -55,8 +55,8 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
     #[track_caller]
     pub(crate) fn each<A>(&self, answers: &mut [A], mut answer: impl FnMut(&Ray<N, D>) -> A) {
         self.check(answers.len());
-        for (ray, place) in self.rays.iter().zip(answers) {
-            *place = answer(ray);
+        for (ray, slot) in self.rays.iter().zip(answers) {
+            *slot = answer(ray);
         }
     }
 
@@ -76,7 +76,7 @@ impl<'a, N: Real, const D: usize> RayBatch<'a, N, D> {
     }
 
     #[track_caller]
-    fn check(&self, places: usize) {
-        assert_eq!(places, self.rays.len(), "a batch of rays needs a place for each answer");
+    fn check(&self, slots: usize) {
+        assert_eq!(slots, self.rays.len(), "a batch of rays needs a place for each answer");
     }
 }

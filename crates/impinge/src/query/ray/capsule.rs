@@ -2,7 +2,7 @@
 
 use super::ball::{around, roots};
 use super::clip::in_order;
-use super::segment::{RayNames, span as segment_span};
+use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit, unit_or};
@@ -18,7 +18,7 @@ pub(super) fn span<N: Real, const D: usize>(
 ) -> Option<Span<N, D>> {
     let (segment, radius) = (capsule.segment(), capsule.radius());
     if radius == N::ZERO {
-        return segment_span([segment.a(), segment.b()], RayNames::SEGMENT, ray);
+        return segment_span([segment.a(), segment.b()], RayFeatures::SEGMENT, ray);
     }
     let at_a = around(segment.a(), radius, FeatureId::Vertex(0), ray);
     let at_b = around(segment.b(), radius, FeatureId::Vertex(1), ray);
@@ -50,7 +50,7 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
     let normals = [(enter, against), (leave, -against)]
         .mapped(|(t, fallback)| unit_or(&(flat_origin + flat_dir * t), fallback));
     let [enter_normal, leave_normal] =
-        refined(&found.places(), normals, [enter == found.enter, leave == found.leave]);
+        refined(&found.points(), normals, [enter == found.enter, leave == found.leave]);
     let feature = FeatureId::Edge(0);
     let enter = Crossing::new(enter, enter_normal, feature);
     let leave = Crossing::new(leave, leave_normal, feature);
@@ -60,9 +60,9 @@ fn side<N: Real, const D: usize>(capsule: &Capsule<N, D>, ray: &Ray<N, D>) -> Op
 
 /// Replaces the normals by accurate ones where the line passes through the round side itself.
 fn refined<N: Real, const D: usize>(
-    places: &[Vector<N, D>; 2],
+    points: &[Vector<N, D>; 2],
     normals: [Vector<N, D>; 2],
     round: [bool; 2],
 ) -> [Vector<N, D>; 2] {
-    [0, 1].mapped(|end| if round[end] { unit_or(&places[end], normals[end]) } else { normals[end] })
+    [0, 1].mapped(|end| if round[end] { unit_or(&points[end], normals[end]) } else { normals[end] })
 }

@@ -2,7 +2,7 @@
 
 use super::clip::clipped;
 use super::cylinder::{cap, span as cylinder_span};
-use super::segment::{RayNames, span as segment_span};
+use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Point, Real, Vector, cross2, max, min, unit_or};
@@ -17,7 +17,7 @@ pub(super) fn span<N: Real>(cone: &Cone<N>, ray: &Ray<N, 3>) -> Option<Span<N, 3
     }
     if radius == N::ZERO {
         let apex = Point::<N, 3>::new(N::ZERO, half_height, N::ZERO);
-        return segment_span([&-apex, &apex], RayNames::SEGMENT, ray);
+        return segment_span([&-apex, &apex], RayFeatures::SEGMENT, ray);
     }
     let side = Nappe::new(cone, ray).span()?;
     let caps = [(-N::ONE, FeatureId::Face(0)), (N::ONE, FeatureId::Vertex(0))];

@@ -20,12 +20,12 @@ fn round_side<N: Real>(radius: N, ray: &Ray<N, 3>) -> Option<Span<N, 3>> {
     let flat = |v: &Vector<N, 3>| Vector::<N, 2>::new(v.x, v.z);
     let (origin, dir) = (flat(&ray.origin.coords), flat(&ray.dir));
     let found = roots(&origin, &dir, radius)?;
-    let [entry, exit] = found.places();
+    let [entry, exit] = found.points();
     // For a radius of zero the normal faces the line.
     let against = unit_or(&-dir, Vector::<N, 2>::zeros());
     let [enter, leave] = [(found.enter, entry, against), (found.leave, exit, -against)].mapped(
-        |(t, place, fallback)| {
-            let normal = unit_or(&place, fallback);
+        |(t, point, fallback)| {
+            let normal = unit_or(&point, fallback);
             let normal = Vector::<N, 3>::new(normal.x, N::ZERO, normal.y);
             Crossing::new(t, normal, FeatureId::Face(2))
         },

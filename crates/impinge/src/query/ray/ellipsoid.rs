@@ -52,12 +52,12 @@ fn inside<N: Real, const D: usize>(
     let long = |least, &half: &N| if half > N::ZERO { min(half, least) } else { least };
     let least = halves.iter().fold(N::INFINITY, long);
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
-    let crossing = |t: N, place: &Vector<N, D>, fallback| {
-        let slope = place
+    let crossing = |t: N, point: &Vector<N, D>, fallback| {
+        let slope = point
             .zip_map(halves, |x, half| if half > N::ZERO { x * (least / half) } else { N::ZERO });
         Crossing::new(t / speed, unit_or(&slope, fallback), FeatureId::Face(0))
     };
-    let [entry, exit] = found.places();
+    let [entry, exit] = found.points();
     let enter = crossing(found.enter, &entry, against);
     let leave = crossing(found.leave, &exit, -against);
     Some(Span { enter, leave, thin: false })
@@ -71,10 +71,10 @@ fn through<N: Real, const D: usize>(
 ) -> Option<Span<N, D>> {
     let t = -ray.origin[axis] / ray.dir[axis];
     let run = ray.dir * t;
-    let mut place = ray.origin + run;
-    place[axis] = N::ZERO;
+    let mut point = ray.origin + run;
+    point[axis] = N::ZERO;
     let size = max(max_component(&ray.origin.coords), max_component(&run));
-    if project(ellipsoid, &place).distance > rounding(size) {
+    if project(ellipsoid, &point).distance > rounding(size) {
         return None;
     }
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());

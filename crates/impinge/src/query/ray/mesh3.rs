@@ -109,8 +109,8 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
     #[inline(always)]
     fn new(mesh: &TriMesh<N, 3>, ray: &'a Ray<N, 3>, max_time: N, solid: bool) -> Option<Self> {
         let is_finite = filled(|axis| ray.dir[axis].is_finite_number()) == [true; 3];
-        let asks = is_finite && max_time >= N::ZERO;
-        if !asks || (solid && mesh.has_bodies()) {
+        let is_valid = is_finite && max_time >= N::ZERO;
+        if !is_valid || (solid && mesh.has_bodies()) {
             return None;
         }
         let own = TriangleRay::new(ray)?;
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn all_ways_have_the_same_bits() {
+    fn all_paths_have_the_same_bits() {
         for (scale, speed) in [(1.0, 1.0), (1e18, 1.0), (1e-18, 1e6), (1.0, 1e-30), (1e12, 1e12)] {
             agrees::<f32>(scale, speed);
             agrees::<f64>(scale, speed);

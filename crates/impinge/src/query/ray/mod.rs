@@ -168,7 +168,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
         let local: Vec<_> = batch.rays.iter().map(|r| r.inverse_transformed_by(&pose)).collect();
         self.cast_local_rays(&RayBatch { rays: &local, ..*batch }, hits);
         for hit in hits.iter_mut().flatten() {
-            hit.normal = entries::turned_vector(&pose, &hit.normal);
+            hit.normal = entries::rotated_vector(&pose, &hit.normal);
         }
     }
 
@@ -275,7 +275,7 @@ pub trait RayCast<N: Space<D>, const D: usize> {
     ) -> Vec<RayIntersection<N, D>> {
         let pose = R::view(m).pose();
         let mut hits = self.local_ray_hits(&entries::ray_within(ray, &pose), max_time, solid);
-        hits.iter_mut().for_each(|hit| hit.normal = entries::turned_vector(&pose, &hit.normal));
+        hits.iter_mut().for_each(|hit| hit.normal = entries::rotated_vector(&pose, &hit.normal));
         hits
     }
 
@@ -354,7 +354,7 @@ impl<N: Space<D>, const D: usize, S: Shape<N, D> + ?Sized> RayCast<N, D> for S {
         let pose = R::view(m).pose();
         let local = entries::ray_within(ray, &pose);
         let in_world = |hit: RayIntersection<N, D>| RayIntersection {
-            normal: entries::turned_vector(&pose, &hit.normal),
+            normal: entries::rotated_vector(&pose, &hit.normal),
             ..hit
         };
         let counts = |hit: &RayIntersection<N, D>| counts(&in_world(*hit));
@@ -389,7 +389,7 @@ pub(crate) fn cast_at<N: Space<D>, const D: usize>(
 ) -> Option<RayIntersection<N, D>> {
     let local = ray.inverse_transformed_by(pose);
     let hit = shape.cast_local_ray_until(&local, max_time, solid)?;
-    Some(RayIntersection { normal: entries::turned_vector(pose, &hit.normal), ..hit })
+    Some(RayIntersection { normal: entries::rotated_vector(pose, &hit.normal), ..hit })
 }
 
 /// See [`RayCast::cast_local_ray_until`].

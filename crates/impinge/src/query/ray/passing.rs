@@ -40,8 +40,8 @@ fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
     let unit = N::lit(SLACK) * N::EPSILON;
     let (origin, dir) = (&ray.origin.coords, &ray.dir);
     let (squared, distance) = (dir.norm_squared(), origin.norm_squared());
-    let (reach, away) = (radius * radius, origin.dot(dir));
-    let is_outside = exceeds(distance, reach, unit * distance + lost());
+    let (radius_squared, away) = (radius * radius, origin.dot(dir));
+    let is_outside = exceeds(distance, radius_squared, unit * distance + lost());
     if !is_outside {
         return false;
     }
@@ -49,7 +49,7 @@ fn passes_ball<N: Real, const D: usize>(radius: N, ray: &Ray<N, D>) -> bool {
         return true;
     }
     let apart = distance * squared;
-    exceeds(apart - away * away, reach * squared, unit * apart + lost())
+    exceeds(apart - away * away, radius_squared * squared, unit * apart + lost())
 }
 
 /// The separating axes of a line and a box, and those of a box behind the ray (Gottschalk, Lin and
@@ -61,10 +61,10 @@ fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> 
     (0..D).any(|axis| {
         let next = (axis + 1) % D;
         is_behind(half, ray, axis, unit) || {
-            let turned = (origin[axis] * dir[next] - origin[next] * dir[axis]).abs();
+            let moment = (origin[axis] * dir[next] - origin[next] * dir[axis]).abs();
             let (one, two) = (half[axis] * dir[next].abs(), half[next] * dir[axis].abs());
-            let sizes = one + two + reaches(origin, dir, axis, next);
-            exceeds(turned, one + two, unit * sizes + lost())
+            let sizes = one + two + product_magnitudes(origin, dir, axis, next);
+            exceeds(moment, one + two, unit * sizes + lost())
         }
     })
 }
@@ -72,7 +72,7 @@ fn passes_box<N: Real, const D: usize>(half: &Vector<N, D>, ray: &Ray<N, D>) -> 
 /// The sum of the magnitudes of the two products in one component of the cross product of origin
 /// and direction.
 #[inline(always)]
-fn reaches<N: Real, const D: usize>(
+fn product_magnitudes<N: Real, const D: usize>(
     origin: &Point<N, D>,
     dir: &Vector<N, D>,
     axis: usize,
@@ -105,9 +105,9 @@ pub(super) fn may_hold<N: Real, const D: usize>(kind: Kind<'_, N, D>, point: &Po
             !(0..D).any(is_beside)
         }
         Kind::Ball(ball) => {
-            let reach = ball.radius() * ball.radius();
-            let slack = N::lit(16.0) * N::EPSILON * reach + N::MIN_POSITIVE;
-            let is_beyond = point.coords.norm_squared() > reach + slack;
+            let radius_squared = ball.radius() * ball.radius();
+            let slack = N::lit(16.0) * N::EPSILON * radius_squared + N::MIN_POSITIVE;
+            let is_beyond = point.coords.norm_squared() > radius_squared + slack;
             !is_beyond
         }
         _ => true,

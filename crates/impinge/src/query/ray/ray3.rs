@@ -14,7 +14,7 @@ pub(crate) fn span<N: Real>(kind: Kind<'_, N, 3>, ray: &Ray<N, 3>) -> Option<Spa
     match kind {
         Kind::Ball(solid) => ball::span(solid.radius(), ray),
         Kind::Segment(solid) => {
-            segment::span([solid.a(), solid.b()], segment::RayNames::SEGMENT, ray)
+            segment::span([solid.a(), solid.b()], segment::RayFeatures::SEGMENT, ray)
         }
         Kind::Capsule(solid) => capsule::span(solid, ray),
         Kind::Triangle(solid) => triangle3::span(solid, ray),

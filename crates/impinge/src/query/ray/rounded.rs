@@ -18,18 +18,19 @@ pub(super) fn span<N: Space<D>, const D: usize>(
     if solid.radius() == N::ZERO {
         return <N::Algorithms>::ray_span(inner.0, ray);
     }
-    let point = Ball::new(N::ZERO);
-    let see = |place: &Vector<N, D>| {
-        let pose12 = Pose::from_translation(-place);
-        let pair = Pair { first: Kind::Ball(&point), second: Kind::Rounded(solid), pose12 };
+    let ball = Ball::new(N::ZERO);
+    let distance = |point: &Vector<N, D>| {
+        let pose12 = Pose::from_translation(-point);
+        let pair = Pair { first: Kind::Ball(&ball), second: Kind::Rounded(solid), pose12 };
         let found = separation(&pair, N::INFINITY)?;
         Some((found.distance, -found.normal))
     };
-    let name = |place: &Vector<N, D>, _: &Vector<N, D>| {
-        <N::Algorithms>::surface_point(inner.0, &Point::from(*place)).feature
+    let feature = |point: &Vector<N, D>, _: &Vector<N, D>| {
+        <N::Algorithms>::surface_point(inner.0, &Point::from(*point)).feature
     };
     let radius = solid.reach() + solid.rounding();
-    RaySolid { see: &see, name: &name, radius, precision: precision(inner) }.span(ray)
+    RaySolid { distance: &distance, feature: &feature, radius, precision: precision(inner) }
+        .span(ray)
 }
 
 /// The accuracy of point distances, as a fraction of the size: closed forms are exact up to

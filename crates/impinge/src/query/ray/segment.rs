@@ -8,12 +8,12 @@ use crate::shape::FeatureId;
 
 /// The ids of a segment and of its ends.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct RayNames {
+pub(super) struct RayFeatures {
     pub(super) ends: [u32; 2],
     pub(super) between: FeatureId,
 }
 
-impl RayNames {
+impl RayFeatures {
     /// The ids of a segment that is a shape.
     pub(super) const SEGMENT: Self = Self { ends: [0, 1], between: FeatureId::Edge(0) };
 }
@@ -23,7 +23,7 @@ impl RayNames {
 /// entered at one end and left at the other.
 pub(super) fn span<N: Real, const D: usize>(
     ends: [&Point<N, D>; 2],
-    names: RayNames,
+    features: RayFeatures,
     ray: &Ray<N, D>,
 ) -> Option<Span<N, D>> {
     let squared = ray.dir.norm_squared();
@@ -31,21 +31,21 @@ pub(super) fn span<N: Real, const D: usize>(
     let [at_a, at_b] = [a, b].mapped(|end| end.dot(&ray.dir) / squared);
     let (across_a, across_b) = (a - ray.dir * at_a, b - ray.dir * at_b);
     let rounding = N::lit(8.0) * N::EPSILON * max(a.norm(), b.norm());
-    let seen = [Point::from(across_a), Point::from(across_b)];
-    let (nearest, fraction) = nearest_on_segment([&seen[0], &seen[1]], &Point::origin());
+    let across = [Point::from(across_a), Point::from(across_b)];
+    let (nearest, fraction) = nearest_on_segment([&across[0], &across[1]], &Point::origin());
     let hits = nearest.coords.norm() <= rounding;
     if !hits {
         return None;
     }
     let against = unit_or(&-ray.dir, Vector::<N, D>::zeros());
     if (across_b - across_a).norm() <= rounding {
-        let ends = [(at_a, names.ends[0]), (at_b, names.ends[1])];
+        let ends = [(at_a, features.ends[0]), (at_b, features.ends[1])];
         return Some(lengthwise(ends, against));
     }
     let t = at_a + (at_b - at_a) * fraction;
     let along = unit_or(&(b - a), Vector::<N, D>::zeros());
     let normal = unit_or(&(against - along * along.dot(&against)), against);
-    let crossing = Crossing::new(t, normal, feature_at(fraction, names.ends, names.between));
+    let crossing = Crossing::new(t, normal, feature_at(fraction, features.ends, features.between));
     Some(Span::thin(crossing, crossing))
 }
 

@@ -21,30 +21,31 @@ pub(super) fn span<N: Simplicial<D>, const D: usize>(
     map: &dyn SupportMap<N, D>,
     ray: &Ray<N, D>,
 ) -> Option<Span<N, D>> {
-    let see = |place: &Vector<N, D>| {
-        let pose12 = Pose::from_translation(*place);
+    let distance = |point: &Vector<N, D>| {
+        let pose12 = Pose::from_translation(*point);
         let found = separation(map, &Ball::new(N::ZERO), &pose12, N::INFINITY)?;
         Some((found.distance, found.normal))
     };
-    let name = |_: &Vector<N, D>, normal: &Vector<N, D>| {
+    let feature = |_: &Vector<N, D>, normal: &Vector<N, D>| {
         let mut feature = Feature::default();
         map.core_feature(normal, &mut feature);
         feature.id
     };
     let precision = max(N::lit(16.0) * N::EPSILON, N::lit(1.0 / 549_755_813_888.0));
     let radius = map.reach() + map.rounding();
-    RaySolid { see: &see, name: &name, radius, precision }.span(ray)
+    RaySolid { distance: &distance, feature: &feature, radius, precision }.span(ray)
 }
 
 /// Returns the signed distance of a point and the unit vector out of the solid along which it is
 /// measured; `None` if the point is not finite.
-pub(super) type See<'a, N, const D: usize> = &'a dyn Fn(&Vector<N, D>) -> Option<(N, Vector<N, D>)>;
+pub(super) type DistanceFn<'a, N, const D: usize> =
+    &'a dyn Fn(&Vector<N, D>) -> Option<(N, Vector<N, D>)>;
 
 /// A convex solid given by the distances of points in its local frame.
 pub(super) struct RaySolid<'a, N: Real, const D: usize> {
-    pub(super) see: See<'a, N, D>,
+    pub(super) distance: DistanceFn<'a, N, D>,
     /// Returns the feature at a point of the surface, given with the normal there.
-    pub(super) name: &'a dyn Fn(&Vector<N, D>, &Vector<N, D>) -> FeatureId,
+    pub(super) feature: &'a dyn Fn(&Vector<N, D>, &Vector<N, D>) -> FeatureId,
     /// The solid lies within this distance of the local origin.
     pub(super) radius: N,
     /// The accuracy of distances, as a fraction of the radius.
@@ -59,14 +60,14 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
         if around.leave < N::ZERO {
             return None;
         }
-        let [first, last] = around.places();
-        let room = around.leave - around.enter;
-        let enter = Advance { seen: self, from: first, dir: ray.dir, room }.first_contact()?;
+        let [first, last] = around.points();
+        let duration = around.leave - around.enter;
+        let enter = Advance { solid: self, from: first, dir: ray.dir, duration }.first_contact()?;
         let enter = Crossing { t: around.enter + enter.t, ..enter };
         if enter.t >= N::ZERO {
             return Some(Span { enter, leave: Crossing::never(N::INFINITY), thin: false });
         }
-        let backward = Advance { seen: self, from: last, dir: -ray.dir, room };
+        let backward = Advance { solid: self, from: last, dir: -ray.dir, duration };
         let leave = match backward.first_contact() {
             Some(found) => Crossing { t: around.leave - found.t, ..found },
             // By rounding the backward search missed: the line only touches.
@@ -78,11 +79,11 @@ impl<N: Real, const D: usize> RaySolid<'_, N, D> {
 
 /// A point that moves along a line from outside the solid.
 struct Advance<'a, N: Real, const D: usize> {
-    seen: &'a RaySolid<'a, N, D>,
+    solid: &'a RaySolid<'a, N, D>,
     from: Vector<N, D>,
     dir: Vector<N, D>,
     /// The time for which it may move.
-    room: N,
+    duration: N,
 }
 
 impl<N: Real, const D: usize> Advance<'_, N, D> {
@@ -93,10 +94,10 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
     /// Application to Continuous Collision Detection" (2004), but are computed anew each time: each
     /// one proves that the solid is not hit before it, so the time never overshoots.
     fn first_contact(&self) -> Option<Crossing<N, D>> {
-        let touching = self.seen.precision * self.seen.radius;
+        let touching = self.solid.precision * self.solid.radius;
         let mut t = N::ZERO;
         for _ in 0..ROUNDS {
-            let (distance, normal) = (self.seen.see)(&(self.from + self.dir * t))?;
+            let (distance, normal) = (self.solid.distance)(&(self.from + self.dir * t))?;
             let approach = -normal.dot(&self.dir);
             if distance <= touching {
                 // A last step improves the time unless the plane is nearly parallel to the line.
@@ -105,8 +106,8 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
                 return Some(self.crossing(t + step, normal));
             }
             t += distance / approach;
-            let on_the_way = approach > N::ZERO && t <= self.room;
-            if !on_the_way {
+            let is_within = approach > N::ZERO && t <= self.duration;
+            if !is_within {
                 return None;
             }
         }
@@ -114,7 +115,7 @@ impl<N: Real, const D: usize> Advance<'_, N, D> {
     }
 
     fn crossing(&self, t: N, normal: Vector<N, D>) -> Crossing<N, D> {
-        let feature = (self.seen.name)(&(self.from + self.dir * t), &normal);
+        let feature = (self.solid.feature)(&(self.from + self.dir * t), &normal);
         Crossing::new(t, normal, feature)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::ball::around;
 use super::clip::in_order;
-use super::segment::{RayNames, span as segment_span};
+use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{Mapped, Real, Vector, max, min, unit_or};
@@ -16,10 +16,10 @@ pub(super) fn span<N: Real, const D: usize>(
 ) -> Option<Span<N, D>> {
     if capsule.radii() == [N::ZERO; 2] {
         let segment = capsule.segment();
-        return segment_span([segment.a(), segment.b()], RayNames::SEGMENT, ray);
+        return segment_span([segment.a(), segment.b()], RayFeatures::SEGMENT, ray);
     }
-    let ball = |end: usize, name| {
-        around(capsule.end(end), capsule.radii()[end], FeatureId::Vertex(name), ray)
+    let ball = |end: usize, index| {
+        around(capsule.end(end), capsule.radii()[end], FeatureId::Vertex(index), ray)
     };
     let Some(taper) = capsule.taper() else {
         return if capsule.larger_end() == 0 { ball(0, 0) } else { ball(1, 1) };
@@ -47,7 +47,7 @@ struct TaperedSide<'a, N: Real, const D: usize> {
     flat_dir: Vector<N, D>,
     climb: N,
     /// The right-hand side at that point, and its rate of change.
-    room: N,
+    surface_radius: N,
     widening: N,
 }
 
@@ -56,18 +56,18 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         let [radius1, radius2] = capsule.radii();
         let to_middle = capsule.segment().a() + taper.along * (taper.length * N::HALF) - ray.origin;
         let start = to_middle.dot(&ray.dir) / ray.dir.norm_squared();
-        let place = ray.origin + ray.dir * start - capsule.segment().a();
-        let (height, climb) = (place.dot(&taper.along), ray.dir.dot(&taper.along));
+        let offset = ray.origin + ray.dir * start - capsule.segment().a();
+        let (height, climb) = (offset.dot(&taper.along), ray.dir.dot(&taper.along));
         Self {
             taper,
             heights: [radius1 * taper.sine, taper.length + radius2 * taper.sine],
             start,
             against: unit_or(&-ray.dir, Vector::<N, D>::zeros()),
-            flat: place - taper.along * height,
+            flat: offset - taper.along * height,
             height,
             flat_dir: ray.dir - taper.along * climb,
             climb,
-            room: radius1 - taper.sine * height,
+            surface_radius: radius1 - taper.sine * height,
             widening: -taper.sine * climb,
         }
     }
@@ -107,10 +107,10 @@ impl<'a, N: Real, const D: usize> TaperedSide<'a, N, D> {
         let (cosine, always) = (self.taper.cosine, (-N::INFINITY, N::INFINITY));
         let form = |a: N, b: N| (cosine * a - b) * (cosine * a + b);
         let quadratic = form(self.flat_dir.norm(), self.widening.abs());
-        let constant = form(self.flat.norm(), self.room.abs());
+        let constant = form(self.flat.norm(), self.surface_radius.abs());
         let along = self.flat.dot(&self.flat_dir);
-        let linear = cosine * cosine * along - self.room * self.widening;
-        let moment = (self.flat_dir * self.room - self.flat * self.widening).norm();
+        let linear = cosine * cosine * along - self.surface_radius * self.widening;
+        let moment = (self.flat_dir * self.surface_radius - self.flat * self.widening).norm();
         let discriminant = (moment - cosine * self.twist()) * (moment + cosine * self.twist());
         if discriminant < N::ZERO && quadratic > N::ZERO && constant > N::ZERO {
             return None;

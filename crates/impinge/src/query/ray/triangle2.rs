@@ -20,7 +20,7 @@ struct RayCorner<N: Real> {
 /// Whether it hits depends on the three signs alone, and each is computed from one corner and the
 /// ray: triangles that share corners leave no gap.
 pub(super) fn span<N: Real>(triangle: &Triangle<N, 2>, ray: &Ray<N, 2>) -> Option<Span<N, 2>> {
-    let corners = triangle.corners().map(|corner| seen(&corner, ray));
+    let corners = triangle.corners().map(|corner| ray_corner(&corner, ray));
     let [a, b, c] = corners.map(|corner| corner.side);
     let left = a > N::ZERO && b > N::ZERO && c > N::ZERO;
     let right = a < N::ZERO && b < N::ZERO && c < N::ZERO;
@@ -45,7 +45,7 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 2>, ray: &Ray<N, 2>) -> Optio
     Some(Span { thin, ..in_order(enter, leave) })
 }
 
-fn seen<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> RayCorner<N> {
+fn ray_corner<N: Real>(corner: &Point<N, 2>, ray: &Ray<N, 2>) -> RayCorner<N> {
     let to_corner = corner - ray.origin;
     let t = to_corner.dot(&ray.dir) / ray.dir.norm_squared();
     RayCorner { t, side: cross2(&ray.dir, &to_corner) }

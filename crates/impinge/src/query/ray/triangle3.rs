@@ -1,6 +1,6 @@
 //! A line and a triangle in 3D.
 
-use super::segment::{RayNames, span as segment_span};
+use super::segment::{RayFeatures, span as segment_span};
 use super::span::{Crossing, Span};
 use crate::bounding_volume::Ray;
 use crate::math::{
@@ -23,8 +23,8 @@ pub(super) fn span<N: Real>(triangle: &Triangle<N, 3>, ray: &Ray<N, 3>) -> Optio
         Through::EdgeOn => (0..3).fold(None, |span, side| {
             let next = (side + 1) % 3;
             let ends = [&corners[side as usize], &corners[next as usize]];
-            let names = RayNames { ends: [side, next], between: FeatureId::Edge(side) };
-            Span::union_of(span, segment_span(ends, names, ray))
+            let features = RayFeatures { ends: [side, next], between: FeatureId::Edge(side) };
+            Span::union_of(span, segment_span(ends, features, ray))
         }),
     }
 }

@@ -219,11 +219,11 @@ fn own_factors<N: Real, const D: usize>(
     rotation: &Matrix<N, D>,
     magnitudes: &Vector<N, D>,
 ) -> Option<Vector<N, D>> {
-    let turned = rotation.transpose() * Matrix::<N, D>::from_diagonal(magnitudes) * rotation;
-    let noise = N::lit(16.0) * N::EPSILON * max_component(magnitudes);
-    let is_beside = |at: (usize, usize)| at.0 != at.1 && turned[at].abs() > noise;
+    let rotated = rotation.transpose() * Matrix::<N, D>::from_diagonal(magnitudes) * rotation;
+    let tolerance = N::lit(16.0) * N::EPSILON * max_component(magnitudes);
+    let is_beside = |at: (usize, usize)| at.0 != at.1 && rotated[at].abs() > tolerance;
     let mut all = (0..D).flat_map(|row| (0..D).map(move |column| (row, column)));
-    (!all.any(is_beside)).then(|| turned.diagonal())
+    (!all.any(is_beside)).then(|| rotated.diagonal())
 }
 
 /// See [`Compound::firsts`].
@@ -426,13 +426,13 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for Compound<N, D> {
             Some(_) => shape.local_aabb().transformed_by(&turn.compose(own)),
             None => boxed(&**shape, &turn.compose(own)),
         });
-        let turned = boxes.reduce(|all, aabb| all.merged(&aabb)).unwrap_or_else(Aabb::unbounded);
+        let bounds = boxes.reduce(|all, aabb| all.merged(&aabb)).unwrap_or_else(Aabb::unbounded);
         let arms = self.poses.iter().map(|own| length_of(&own.translation)).fold(N::ZERO, max);
-        let (low, high) = (turned.mins().coords, turned.maxs().coords);
+        let (low, high) = (bounds.mins().coords, bounds.maxs().coords);
         let finite = |x: N| if x.is_finite_number() { x.abs() } else { N::ZERO };
         let extent = low.zip_map(&high, |low, high| max(finite(low), finite(high)));
         // Rounding is proportional to the positions of the children and the extent of the box.
-        Aabb::of_turned(low, high, N::TWO * arms + length_of(&extent), pose)
+        Aabb::of_rotated(low, high, N::TWO * arms + length_of(&extent), pose)
     }
 
     /// About the centre of the box; no larger than the sphere around the box.

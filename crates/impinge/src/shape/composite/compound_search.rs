@@ -58,8 +58,8 @@ impl<N: Space<D>, const D: usize> PartSearch<N, D> for Compound<N, D> {
                 lowest = min(lowest, visit(first, time));
                 return lowest;
             };
-            let turned = self.poses[child].inverse_vector(velocity);
-            composite.search().cast(&local, &turned, lowest, &mut |part, own| {
+            let local_velocity = self.poses[child].inverse_vector(velocity);
+            composite.search().cast(&local, &local_velocity, lowest, &mut |part, own| {
                 lowest = min(lowest, visit(first + part, max(own, time)));
                 lowest
             });

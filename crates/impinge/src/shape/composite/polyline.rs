@@ -160,8 +160,8 @@ impl<N: Space<D>, const D: usize> Polyline<N, D> {
         let scaled = |point: &Point<N, D>| Point::from(point.coords.component_mul(scale));
         let vertices: Vec<_> = self.vertices.iter().map(scaled).collect();
         let is_mirrored = scale.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1;
-        let turned = |&[a, b]: &[u32; 2]| if is_mirrored { [b, a] } else { [a, b] };
-        let made = Self::try_new(vertices, self.segments.iter().map(turned).collect())?;
+        let reversed = |&[a, b]: &[u32; 2]| if is_mirrored { [b, a] } else { [a, b] };
+        let made = Self::try_new(vertices, self.segments.iter().map(reversed).collect())?;
         let Self { front, is_solid, keeps_internal_edges, .. } = *self;
         Ok(Self { front, is_solid, keeps_internal_edges, ..made })
     }

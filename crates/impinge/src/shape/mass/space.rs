@@ -53,8 +53,8 @@ impl<N: Real> MassProperties<N, 3> {
         let inertia = inertia.map(N::as_f64);
         let symmetric = inertia * 0.5 + inertia.transpose() * 0.5;
         let (values, _) = crate::math::eigen::symmetric_eigen(&symmetric);
-        let noise = values.amax() * 64.0 * N::EPSILON.as_f64();
-        for &moment in values.iter().filter(|&&moment| moment < -noise) {
+        let tolerance = values.amax() * 64.0 * N::EPSILON.as_f64();
+        for &moment in values.iter().filter(|&&moment| moment < -tolerance) {
             amount("a principal moment of inertia", moment)?;
         }
         let mass = amount("the mass", mass.as_f64())?;
@@ -122,7 +122,7 @@ impl<N: Real> MassProperties<N, 3> {
     /// `position`.
     #[must_use]
     pub fn inertia_at(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
-        self.along(&self.turned(position), &self.principal)
+        self.along(&self.world_axes(position), &self.principal)
     }
 
     /// The inverse of [`Self::inertia_at`]: times a torque it gives the angular acceleration. Zero
@@ -142,7 +142,7 @@ impl<N: Real> MassProperties<N, 3> {
     /// ```
     #[must_use]
     pub fn inverse_inertia_at(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
-        self.along(&self.turned(position), &self.principal.map(inverse))
+        self.along(&self.world_axes(position), &self.principal.map(inverse))
     }
 
     /// The inertia tensor about another point of the body's frame, in the axes of that frame, by
@@ -155,7 +155,7 @@ impl<N: Real> MassProperties<N, 3> {
     }
 
     /// The principal axes in the world's axes.
-    fn turned(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
+    fn world_axes(&self, position: &Isometry3<N>) -> Matrix<N, 3> {
         <N as Space<3>>::pose(position).rotation * self.axes
     }
 

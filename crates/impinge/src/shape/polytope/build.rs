@@ -128,21 +128,21 @@ impl<N: Real> Polytope<N, 3> {
     ///
     /// `ends` must have exactly one entry for each edge.
     pub(in crate::shape) fn name_edges(&mut self, ends: &[[u32; 2]]) {
-        let place = |edge: &PolytopeEdge| {
+        let index_of = |edge: &PolytopeEdge| {
             let [a, b] = edge.vertices;
             let found = ends.iter().position(|&ends| ends == [a, b] || ends == [b, a]);
             found.expect("each edge is one of those given")
         };
-        let places: Vec<usize> = self.edges.iter().map(place).collect();
+        let new_indices: Vec<usize> = self.edges.iter().map(index_of).collect();
         for side in &mut self.loop_sides {
-            *side = count32(places[*side as usize]);
+            *side = count32(new_indices[*side as usize]);
         }
         let mut edges = self.edges.clone();
-        for (edge, &place) in self.edges.iter().zip(&places) {
+        for (edge, &index) in self.edges.iter().zip(&new_indices) {
             let faces = edge.faces;
-            let is_turned = edge.vertices != ends[place];
-            let faces = if is_turned { [faces[1], faces[0]] } else { faces };
-            edges[place] = PolytopeEdge { vertices: ends[place], faces };
+            let is_reversed = edge.vertices != ends[index];
+            let faces = if is_reversed { [faces[1], faces[0]] } else { faces };
+            edges[index] = PolytopeEdge { vertices: ends[index], faces };
         }
         self.edges = edges;
         self.collect_fans();
@@ -155,16 +155,16 @@ impl<N: Real> Polytope<N, 3> {
         let twins = twins(self.vertices.len(), &sides);
         self.edges.reserve(sides.len() / 2);
         self.loop_sides = vec![NONE; sides.len()];
-        for (place, side) in sides.iter().enumerate() {
-            let twin = twins[place];
-            if twin == NONE || twins[twin as usize] as usize != place {
+        for (index, side) in sides.iter().enumerate() {
+            let twin = twins[index];
+            if twin == NONE || twins[twin as usize] as usize != index {
                 return None;
             }
-            if self.loop_sides[place] == NONE {
+            if self.loop_sides[index] == NONE {
                 let edge = count32(self.edges.len());
                 let faces = [side.face, sides[twin as usize].face];
                 self.edges.push(PolytopeEdge { vertices: [side.from, side.to], faces });
-                self.loop_sides[place] = edge;
+                self.loop_sides[index] = edge;
                 self.loop_sides[twin as usize] = edge;
             }
         }
@@ -199,18 +199,18 @@ struct DirectedSide {
 /// Searches the sides that leave the end with fewer of them. On a closed surface this takes linear
 /// time: Chiba and Nishizeki, "Arboricity and Subgraph Listing Algorithms" (1985).
 fn twins(vertices: usize, sides: &[DirectedSide]) -> Vec<u32> {
-    let leaving = (0..).zip(sides).map(|(place, side)| (side.from, [side.to, place]));
+    let leaving = (0..).zip(sides).map(|(index, side)| (side.from, [side.to, index]));
     let (starts, leaving) = grouped::<[u32; 2]>(vertices, leaving);
     let around =
         |vertex: u32| starts[vertex as usize] as usize..starts[vertex as usize + 1] as usize;
     let mut twins = vec![NONE; sides.len()];
-    for (place, side) in (0..).zip(sides) {
+    for (index, side) in (0..).zip(sides) {
         let back = around(side.to);
         if back.len() <= around(side.from).len()
             && let Some(&[_, twin]) = leaving[back].iter().find(|&&[to, _]| to == side.from)
         {
-            twins[place as usize] = twin;
-            twins[twin as usize] = place;
+            twins[index as usize] = twin;
+            twins[twin as usize] = index;
         }
     }
     twins

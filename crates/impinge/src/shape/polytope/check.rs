@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_seen() {
+    fn damage_is_detected() {
         let solid = tetrahedron(&LOOPS).expect("closed");
         assert_eq!(solid.validate(), Ok(()), "a tetrahedron");
         let mut dented = solid.clone();
@@ -144,14 +144,14 @@ mod tests {
         );
         assert_eq!(polygon.validate(), Ok(()), "a triangle");
         polygon.vertices.swap(0, 1);
-        assert!(polygon.validate().is_err(), "turned over");
+        assert!(polygon.validate().is_err(), "reversed");
     }
 
     #[test]
     fn open_surfaces_are_refused() {
-        let mut turned = LOOPS;
-        turned[0].reverse();
-        assert_eq!(tetrahedron(&turned), None, "a face turned over");
+        let mut reversed = LOOPS;
+        reversed[0].reverse();
+        assert_eq!(tetrahedron(&reversed), None, "a reversed face");
         assert_eq!(tetrahedron(&LOOPS[..3]), None, "a face is missing");
     }
 }

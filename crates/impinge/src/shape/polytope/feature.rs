@@ -3,7 +3,9 @@
 use crate::math::{Point, Real, Vector, unit, unit_or};
 use crate::shape::polytope::count32;
 use crate::shape::tilt::Tilt;
-use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, Shown, SupportMap};
+use crate::shape::{
+    ConvexPolyhedron, FaceRing, Feature, FeatureId, Polytope, SideOrVertex, SupportMap,
+};
 
 /// The supporting feature for a direction: the index of a face, a side or a vertex.
 #[derive(Clone, Copy, Debug)]
@@ -34,44 +36,44 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// Returns the vertex, side or face, within the supporting feature for the unit vector
-    /// `direction`, that a point of the surface lies on, up to `noise`.
+    /// `direction`, that a point of the surface lies on, up to `tolerance`.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
         direction: &Vector<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> FeatureId {
-        match self.part_toward(direction, Tilt::usual()) {
+        match self.part_toward(direction, Tilt::default_limit()) {
             HullPart::Vertex(vertex) => FeatureId::Vertex(count32(vertex)),
-            HullPart::Side(side) => {
-                self.end_at(&self.side(side).vertices, point, noise).unwrap_or(Self::side_id(side))
-            }
+            HullPart::Side(side) => self
+                .end_at(&self.side(side).vertices, point, tolerance)
+                .unwrap_or(Self::side_id(side)),
             HullPart::Face(index) => {
                 let face = &self.faces[index as usize];
-                let end = self.end_at(self.face_vertices(face), point, noise);
+                let end = self.end_at(self.face_vertices(face), point, tolerance);
                 let side = || {
                     let mut sides = self.face_sides(face).iter();
-                    sides.find(|&&side| self.is_on_side(side, point, noise)).copied()
+                    sides.find(|&&side| self.is_on_side(side, point, tolerance)).copied()
                 };
                 end.or_else(|| side().map(Self::side_id)).unwrap_or(FeatureId::Face(index))
             }
         }
     }
 
-    /// Returns the first of `vertices` within `2 noise` of a point.
-    fn end_at(&self, vertices: &[u32], point: &Point<N, D>, noise: N) -> Option<FeatureId> {
-        let near = N::lit(4.0) * noise * noise;
+    /// Returns the first of `vertices` within `2 tolerance` of a point.
+    fn end_at(&self, vertices: &[u32], point: &Point<N, D>, tolerance: N) -> Option<FeatureId> {
+        let near = N::lit(4.0) * tolerance * tolerance;
         let is_near =
             |&&vertex: &&u32| (point - self.vertices[vertex as usize]).norm_squared() <= near;
         vertices.iter().find(is_near).map(|&vertex| FeatureId::Vertex(vertex))
     }
 
-    /// Whether a point lies within `noise` of the line of a side.
-    fn is_on_side(&self, side: u32, point: &Point<N, D>, noise: N) -> bool {
+    /// Whether a point lies within `tolerance` of the line of a side.
+    fn is_on_side(&self, side: u32, point: &Point<N, D>, tolerance: N) -> bool {
         let [a, b] = self.side(side).vertices.map(|end| self.vertices[end as usize]);
         let (along, arm) = (b - a, point - a);
         let aside = arm - along * (along.dot(&arm) / along.norm_squared());
-        aside.norm_squared() <= noise * noise
+        aside.norm_squared() <= tolerance * tolerance
     }
 
     /// Returns the side at a vertex with the smallest slope along a direction, and the sine of that
@@ -106,7 +108,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     /// The id of a part.
-    fn named(part: HullPart) -> FeatureId {
+    fn id_of(part: HullPart) -> FeatureId {
         match part {
             HullPart::Face(face) => FeatureId::Face(face),
             HullPart::Side(side) => Self::side_id(side),
@@ -139,9 +141,9 @@ impl<N: Real, const D: usize> Polytope<N, D> {
                 let [from, to] = *self.face_vertices(&self.faces[face as usize]) else {
                     return None;
                 };
-                let named =
+                let with_id =
                     |vertex: u32| (FeatureId::Vertex(vertex), self.vertices[vertex as usize]);
-                Some((FeatureId::Face(face), [named(from), named(to)]))
+                Some((FeatureId::Face(face), [with_id(from), with_id(to)]))
             }
             HullPart::Vertex(_) => None,
         }
@@ -162,7 +164,7 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     #[track_caller]
-    fn place(id: FeatureId, dimension: usize, count: usize) -> u32 {
+    fn index_of(id: FeatureId, dimension: usize, count: usize) -> u32 {
         let (FeatureId::Vertex(index) | FeatureId::Edge(index) | FeatureId::Face(index)) = id;
         let is_there = (index as usize) < count && id == FeatureId::flat::<D>(dimension, index);
         assert!(is_there, "the solid has no {} named {id:?}", FeatureId::word::<D>(dimension));
@@ -170,36 +172,36 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     }
 
     #[track_caller]
-    fn side_place(&self, id: FeatureId) -> u32 {
+    fn side_index(&self, id: FeatureId) -> u32 {
         let count = if self.edges.is_empty() { self.faces.len() } else { self.edges.len() };
-        Self::place(id, 1, count)
+        Self::index_of(id, 1, count)
     }
 }
 
 impl<N: Real> Polytope<N, 2> {
-    /// See [`Shown::of`].
-    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Shown<N> {
+    /// See [`SideOrVertex::of`].
+    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> SideOrVertex<N> {
         if let ([vertices], [planes]) = (self.blocks(), self.planes())
             && self.faces.len() == self.vertices.len()
         {
-            return self.shown_of_few(vertices, &planes.normals, direction);
+            return self.supporting_of_few(vertices, &planes.normals, direction);
         }
-        let part = self.part_toward(direction, Tilt::usual());
+        let part = self.part_toward(direction, Tilt::default_limit());
         if let Some((id, ends)) = self.ends_of(part) {
-            return Shown::side(id, ends);
+            return SideOrVertex::side(id, ends);
         }
         let vertex = if let HullPart::Vertex(vertex) = part { vertex } else { 0 };
-        Shown::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
+        SideOrVertex::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 
-    /// [`Self::shown`] for up to eight vertices, from the rows of the vertices and of the sides'
+    /// [`Self::supporting`] for up to eight vertices, from the rows of the vertices and of the sides'
     /// normals: the rule of [`Self::part_toward`] without access to the lists of sides.
-    fn shown_of_few(
+    fn supporting_of_few(
         &self,
         [xs, ys]: &[[N; 8]; 2],
         normals: &[[N; 8]; 2],
         direction: &Vector<N, 2>,
-    ) -> Shown<N> {
+    ) -> SideOrVertex<N> {
         let count = self.vertices.len().min(8);
         let at = |vertex: usize| Point::<N, 2>::new(xs[vertex], ys[vertex]);
         let height = |vertex: usize| xs[vertex] * direction.x + ys[vertex] * direction.y;
@@ -223,12 +225,12 @@ impl<N: Real> Polytope<N, 2> {
         let (side, to) = if is_after { (vertex, after) } else { (before, vertex) };
         let slope = if is_after { slope_after } else { slope_before };
         let normal = Vector::<N, 2>::new(normals[0][side], normals[1][side]);
-        let (tilt, named) =
-            (Tilt::usual(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
+        let (tilt, with_id) =
+            (Tilt::default_limit(), |end: usize| (FeatureId::Vertex(count32(end)), at(end)));
         if tilt.admits_face(&normal, direction) || tilt.admits(slope * slope) {
-            Shown::side(FeatureId::Face(count32(side)), [named(side), named(to)])
+            SideOrVertex::side(FeatureId::Face(count32(side)), [with_id(side), with_id(to)])
         } else {
-            Shown::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
+            SideOrVertex::vertex(FeatureId::Vertex(count32(vertex)), at(vertex))
         }
     }
 }
@@ -236,8 +238,8 @@ impl<N: Real> Polytope<N, 2> {
 impl<N: Real> Polytope<N, 3> {
     /// The id of the [`SupportMap::core_feature`].
     #[inline]
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> FeatureId {
-        Self::named(self.part_toward(direction, Tilt::usual()))
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> FeatureId {
+        Self::id_of(self.part_toward(direction, Tilt::default_limit()))
     }
 
     /// Fills a blank ring with face `index`. Returns false if the face has more corners than a ring
@@ -250,8 +252,8 @@ impl<N: Real> Polytope<N, 3> {
         }
         (ring.id, ring.normal) = (FeatureId::Face(index), face.normal);
         for (&vertex, &side) in vertices.iter().zip(sides) {
-            let names = [FeatureId::Vertex(vertex), Self::side_id(side)];
-            ring.push(&self.vertices[vertex as usize], names);
+            let ids = [FeatureId::Vertex(vertex), Self::side_id(side)];
+            ring.push(&self.vertices[vertex as usize], ids);
         }
         true
     }
@@ -271,34 +273,34 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Polytope<N, D> {
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(self.part_toward(direction, Tilt::usual()), out);
+        self.fill(self.part_toward(direction, Tilt::default_limit()), out);
     }
 }
 
 impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
     fn vertex(&self, id: FeatureId) -> Point<N, D> {
-        self.vertices[Self::place(id, 0, self.vertices.len()) as usize]
+        self.vertices[Self::index_of(id, 0, self.vertices.len()) as usize]
     }
 
     fn edge(&self, id: FeatureId) -> [(FeatureId, Point<N, D>); 2] {
-        self.ends(self.side_place(id))
+        self.ends(self.side_index(id))
     }
 
     fn face(&self, id: FeatureId, out: &mut Feature<N, D>) {
-        self.fill_face(Self::place(id, D - 1, self.faces.len()), out);
+        self.fill_face(Self::index_of(id, D - 1, self.faces.len()), out);
     }
 
     fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
         match id {
             FeatureId::Face(_) => {
-                self.faces[Self::place(id, D - 1, self.faces.len()) as usize].normal
+                self.faces[Self::index_of(id, D - 1, self.faces.len()) as usize].normal
             }
             FeatureId::Edge(_) => {
-                self.mean_normal(self.side(self.side_place(id)).faces.into_iter())
+                self.mean_normal(self.side(self.side_index(id)).faces.into_iter())
             }
             FeatureId::Vertex(_) => {
                 // Each face at a vertex has two sides there, so each counts twice.
-                let fan = self.fan(Self::place(id, 0, self.vertices.len()) as usize);
+                let fan = self.fan(Self::index_of(id, 0, self.vertices.len()) as usize);
                 self.mean_normal(fan.iter().flat_map(|&side| self.side(side).faces))
             }
         }
@@ -314,6 +316,6 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Polytope<N, D> {
     }
 
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
-        Self::named(self.part_toward(direction, Tilt::least()))
+        Self::id_of(self.part_toward(direction, Tilt::least()))
     }
 }

@@ -259,16 +259,17 @@ impl<N: Real, const D: usize> Polytope<N, D> {
     ///
     /// Written so that the compiler keeps each array in one register.
     fn support_vertex_of_few(&self, direction: &Vector<N, D>) -> usize {
-        let (mut heights, mut places) = (heights(&self.quartets[0], direction), [0_u32; QUARTET]);
-        for (place, quartet) in (1_u32..).zip(&self.quartets[1..]) {
+        let (mut heights, mut best_quartets) =
+            (heights(&self.quartets[0], direction), [0_u32; QUARTET]);
+        for (quartet_index, quartet) in (1_u32..).zip(&self.quartets[1..]) {
             let candidates = self::heights(quartet, direction);
             for lane in 0..QUARTET {
                 let is_higher = candidates[lane] > heights[lane];
                 heights[lane] = if is_higher { candidates[lane] } else { heights[lane] };
-                places[lane] = if is_higher { place } else { places[lane] };
+                best_quartets[lane] = if is_higher { quartet_index } else { best_quartets[lane] };
             }
         }
-        let index = |lane: usize| places[lane] as usize * QUARTET + lane;
+        let index = |lane: usize| best_quartets[lane] as usize * QUARTET + lane;
         (1..QUARTET)
             .fold((heights[0], index(0)), |best, lane| {
                 let is_tie = heights[lane] == best.0 && index(lane) < best.1;

@@ -68,17 +68,17 @@ fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>, B>(
 ) -> usize {
     let mut highest = heights(&blocks[0]);
     // Block numbers are small enough to be exact in the scalar type.
-    let (mut places, mut place) = (V::all(simd, N::ZERO), N::ZERO);
+    let (mut indices, mut index) = (V::all(simd, N::ZERO), N::ZERO);
     for block in &blocks[1..] {
-        place += N::ONE;
+        index += N::ONE;
         let heights = heights(block);
         let is_higher = heights.simd_gt(highest);
-        places = is_higher.select(V::all(simd, place), places);
+        indices = is_higher.select(V::all(simd, index), indices);
         highest = is_higher.select(heights, highest);
     }
     let all = V::all(simd, highest_lane(highest));
     let (mut ties, mut numbers) = (highest.simd_eq(all).to_bitmask(), [N::ZERO; LANES]);
-    places.store(&mut numbers);
+    indices.store(&mut numbers);
     let mut first = usize::MAX;
     while ties != 0 {
         let lane = ties.trailing_zeros() as usize;

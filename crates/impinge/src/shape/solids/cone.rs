@@ -83,7 +83,7 @@ impl<N: Real> Cone<N> {
 
     /// The sine of the slope, along a unit vector, of the generating line that faces it: positive
     /// if the apex lies farther along. `None` for a point.
-    fn lean(&self, direction: &Vector<N, 3>) -> Option<N> {
+    fn sine(&self, direction: &Vector<N, 3>) -> Option<N> {
         let line = Vector::<N, 2>::new(-self.radius, N::TWO * self.half_height);
         let (line, _) = unit(&line)?;
         Some(line.x * radial_of(direction).norm() + line.y * direction.y)
@@ -91,17 +91,17 @@ impl<N: Real> Cone<N> {
 }
 
 impl<N: Real> Cone<N> {
-    /// The apex, base, rim or round side that a point of the surface lies on, up to `noise`; `None`
-    /// for a cone with a half height or radius of at most `4 noise`.
+    /// The apex, base, rim or round side that a point of the surface lies on, up to `tolerance`; `None`
+    /// for a cone with a half height or radius of at most `4 tolerance`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> Option<FeatureId> {
-        let (y, aside) = axial_on(point, [self.half_height, self.radius], noise)?;
-        Some(if y <= noise - self.half_height {
-            if aside >= self.radius - noise { FeatureId::Edge(0) } else { FeatureId::Face(0) }
-        } else if y >= self.half_height - N::TWO * noise && aside <= N::TWO * noise {
+        let (y, aside) = axial_on(point, [self.half_height, self.radius], tolerance)?;
+        Some(if y <= tolerance - self.half_height {
+            if aside >= self.radius - tolerance { FeatureId::Edge(0) } else { FeatureId::Face(0) }
+        } else if y >= self.half_height - N::TWO * tolerance && aside <= N::TWO * tolerance {
             FeatureId::Vertex(0)
         } else {
             FeatureId::Face(1)
@@ -112,17 +112,17 @@ impl<N: Real> Cone<N> {
 impl<N: Real> Cone<N> {
     /// The supporting feature for a unit vector; `None` for the base, and for both sides of a cone
     /// without height.
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
-        let is_axial = Tilt::usual().admits(radial_of(direction).norm_squared());
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
+        let is_axial = Tilt::default_limit().admits(radial_of(direction).norm_squared());
         if is_axial && (direction.y < N::ZERO || self.half_height == N::ZERO) {
             return None;
         }
         let (apex, rim) = (FeatureId::Vertex(0), FeatureId::Edge(0));
-        let lean = self.lean(direction).unwrap_or(N::ZERO);
-        Some(if Tilt::usual().admits(lean * lean) && self.half_height > N::ZERO {
+        let sine = self.sine(direction).unwrap_or(N::ZERO);
+        Some(if Tilt::default_limit().admits(sine * sine) && self.half_height > N::ZERO {
             let ends = [(rim, self.base().rim_toward(direction)), (apex, self.apex())];
             RoundPart::Line(FeatureId::Face(1), ends)
-        } else if lean > N::ZERO {
+        } else if sine > N::ZERO {
             RoundPart::Point(apex, self.apex())
         } else {
             RoundPart::Point(rim, self.base().rim_toward(direction))
@@ -159,7 +159,7 @@ impl<N: Real> SupportMap<N, 3> for Cone<N> {
     }
 
     fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
-        match self.part_shown(direction) {
+        match self.supporting_part(direction) {
             Some(part) => part.fill(out),
             None => {
                 let is_below = direction.y < N::ZERO;
@@ -176,15 +176,15 @@ impl<N: Real> Shape<N, 3> for Cone<N> {
     }
 
     fn local_aabb(&self) -> Aabb<N, 3> {
-        let reach = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
-        Aabb::around(Point::origin(), reach)
+        let extents = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
+        Aabb::around(Point::origin(), extents)
     }
 
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
-        let (apex, disk) = (axis * self.half_height, self.base().reach(&pose.rotation));
+        let (apex, disk) = (axis * self.half_height, self.base().extents(&pose.rotation));
         let (low, high) = (apex.zip_map(&(-apex - disk), min), apex.zip_map(&(-apex + disk), max));
-        Aabb::of_turned(low, high, self.reach(), pose)
+        Aabb::of_rotated(low, high, self.reach(), pose)
     }
 
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {

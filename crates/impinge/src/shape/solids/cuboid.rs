@@ -7,7 +7,7 @@ use crate::shape::scale::Scale;
 use crate::shape::solids::segment::length_of;
 use crate::shape::{
     ConvexPolyhedron, Feature, FeatureId, Geometry, Kind, ScaleError, Shape, ShapeError,
-    ShapeHandle, Shown, SupportMap, tilt::Tilt,
+    ShapeHandle, SideOrVertex, SupportMap, tilt::Tilt,
 };
 
 /// The points whose coordinate on each axis has a magnitude of at most the half extent.
@@ -80,30 +80,30 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Cuboid<N, D> {
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(CuboidPart::facing(direction, Tilt::usual()), out);
+        self.fill(CuboidPart::toward(direction, Tilt::default_limit()), out);
     }
 }
 
 impl<N: Real, const D: usize> Cuboid<N, D> {
-    /// The vertex, edge or face that a point of the surface lies on, up to `noise`; `None` for a
-    /// point inside, and for a box with a half extent of at most `4 noise`.
-    pub(crate) fn part_at(&self, point: &Point<N, D>, noise: N) -> Option<FeatureId> {
+    /// The vertex, edge or face that a point of the surface lies on, up to `tolerance`; `None` for a
+    /// point inside, and for a box with a half extent of at most `4 tolerance`.
+    pub(crate) fn part_at(&self, point: &Point<N, D>, tolerance: N) -> Option<FeatureId> {
         let mut free = 0;
         for axis in 0..D {
             let half = self.half_extents[axis];
-            if half <= N::lit(4.0) * noise {
+            if half <= N::lit(4.0) * tolerance {
                 return None;
             }
-            free |= u32::from(point[axis].abs() < half - noise) << axis;
+            free |= u32::from(point[axis].abs() < half - tolerance) << axis;
         }
         let part = CuboidPart::<D> { free, corner: signs(&point.coords) };
-        (free != CuboidPart::<D>::ALL).then(|| part.name())
+        (free != CuboidPart::<D>::ALL).then(|| part.id())
     }
 
     /// The id of a part from `2 D` bits: its free axes, and above them its positive ones.
     #[inline]
-    pub(crate) const fn part_named(bits: u8) -> FeatureId {
-        CuboidPart::<D>::NAMES[bits as usize & ((1 << (2 * D)) - 1)]
+    pub(crate) const fn id_of_bits(bits: u8) -> FeatureId {
+        CuboidPart::<D>::IDS[bits as usize & ((1 << (2 * D)) - 1)]
     }
 }
 
@@ -118,13 +118,13 @@ pub(in crate::shape) struct CuboidPart<const D: usize> {
 
 /// The supporting feature of a box: a point, a segment or a face with sides.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FacingPart<N: Real, const D: usize> {
+pub(crate) struct SupportPart<N: Real, const D: usize> {
     part: CuboidPart<D>,
     /// The outward normal; `None` if the part is no face.
     pub(crate) normal: Option<Vector<N, D>>,
 }
 
-impl<N: Real, const D: usize> FacingPart<N, D> {
+impl<N: Real, const D: usize> SupportPart<N, D> {
     /// The direction of edge `index` of a box in 3D.
     pub(crate) fn edge_direction(index: u32) -> Vector<N, D> {
         axis_vector((index / 4) as usize)
@@ -132,13 +132,13 @@ impl<N: Real, const D: usize> FacingPart<N, D> {
 
     /// The direction of the side of the part that is most nearly perpendicular to a vector, the
     /// first of equals; `None` for a point.
-    pub(crate) fn most_level_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
+    pub(crate) fn flattest_side(&self, vector: &Vector<N, D>) -> Option<Vector<N, D>> {
         let first = if self.normal.is_some() { self.part.own_axis() + 1 } else { 0 };
         let axes =
             (first..first + D).map(|axis| axis % D).filter(|&axis| has(self.part.free, axis));
-        let lean = |axis: usize| vector[axis].abs();
-        let level = axes.reduce(|best, axis| if lean(axis) < lean(best) { axis } else { best })?;
-        Some(axis_vector(level))
+        let tilt = |axis: usize| vector[axis].abs();
+        let axis = axes.reduce(|best, axis| if tilt(axis) < tilt(best) { axis } else { best })?;
+        Some(axis_vector(axis))
     }
 }
 
@@ -156,28 +156,28 @@ impl<const D: usize> CuboidPart<D> {
 
     /// The ids of all parts, by [`Self::free`] and then [`Self::corner`]; in at most three
     /// dimensions.
-    const NAMES: [FeatureId; 64] = {
-        let mut names = [FeatureId::Vertex(0); 64];
+    const IDS: [FeatureId; 64] = {
+        let mut ids = [FeatureId::Vertex(0); 64];
         let mut bits = 0;
         while bits < 1 << (2 * D) {
             let free = bits & Self::ALL;
             if free != Self::ALL {
-                names[bits as usize] = Self { free, corner: bits >> D }.name();
+                ids[bits as usize] = Self { free, corner: bits >> D }.id();
             }
             bits += 1;
         }
-        names
+        ids
     };
 
     /// The supporting feature for a unit vector. Frees axes, the smallest component first, while
-    /// the tilt admits the sum of their squares; equals the rule for the flattest edge and its most
+    /// the tilt admits the sum of their squares; equals the rule for the axis edge and its most
     /// aligned face.
-    pub(in crate::shape) fn facing<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
-        let (mut free, mut leans) = (0, N::ZERO);
+    pub(in crate::shape) fn toward<N: Real>(direction: &Vector<N, D>, tilt: Tilt<N>) -> Self {
+        let (mut free, mut sine_squared) = (0, N::ZERO);
         for _ in 1..D {
             let Some(axis) = weakest(direction, free) else { break };
-            leans += direction[axis] * direction[axis];
-            if !tilt.admits(leans) {
+            sine_squared += direction[axis] * direction[axis];
+            if !tilt.admits(sine_squared) {
                 break;
             }
             free |= 1 << axis;
@@ -186,7 +186,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// The face whose normal is most aligned with a direction.
-    fn face_facing<N: Real>(direction: &Vector<N, D>) -> Self {
+    fn face_toward<N: Real>(direction: &Vector<N, D>) -> Self {
         let mut strongest = 0;
         for axis in 1..D {
             if direction[axis].abs() > direction[strongest].abs() {
@@ -212,7 +212,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// The id by the numbering documented at [`Cuboid`].
-    pub(in crate::shape) const fn name(self) -> FeatureId {
+    pub(in crate::shape) const fn id(self) -> FeatureId {
         let dimension = self.dimension();
         let index = if dimension == 0 {
             self.corner
@@ -228,7 +228,7 @@ impl<const D: usize> CuboidPart<D> {
     }
 
     /// The part with an id; `None` if the box has no such part.
-    fn named(id: FeatureId) -> Option<Self> {
+    fn of_id(id: FeatureId) -> Option<Self> {
         let part = match id {
             FeatureId::Vertex(corner) => Self { free: 0, corner },
             FeatureId::Face(index) => {
@@ -243,7 +243,7 @@ impl<const D: usize> CuboidPart<D> {
                 Self { free: 1_u32.checked_shl(axis)?, corner }
             }
         };
-        (part.free <= Self::ALL && part.corner <= Self::ALL && part.name() == id).then_some(part)
+        (part.free <= Self::ALL && part.corner <= Self::ALL && part.id() == id).then_some(part)
     }
 
     /// The corners in the order documented at [`Cuboid`]: a Gray code over the free axes, which
@@ -270,7 +270,7 @@ impl<const D: usize> CuboidPart<D> {
         let (mut ids, mut at) = ([FeatureId::Vertex(0); 4], 0);
         while at < ring.count {
             let (from, to) = (ring.corners[at], ring.corners[(at + 1) % ring.count]);
-            ids[at] = Self { free: from ^ to, corner: from }.name();
+            ids[at] = Self { free: from ^ to, corner: from }.id();
             at += 1;
         }
         ids
@@ -297,7 +297,7 @@ impl<const D: usize> CuboidPart<D> {
             let mut corner = 0;
             while corner < 1 << D {
                 let part = Self { free: 1 << axis, corner };
-                if let FeatureId::Edge(index) = part.name() {
+                if let FeatureId::Edge(index) = part.id() {
                     let ring = part.ring();
                     edges[index as usize] = Some([ring.corners[0], ring.corners[1]]);
                 }
@@ -385,19 +385,19 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
     }
 
     /// The [`SupportMap::core_feature`] without corners; `None` if it is flat along a free axis.
-    pub(crate) fn facing_part(&self, direction: &Vector<N, D>) -> Option<FacingPart<N, D>> {
-        let part = CuboidPart::<D>::facing(direction, Tilt::usual());
+    pub(crate) fn part_toward(&self, direction: &Vector<N, D>) -> Option<SupportPart<N, D>> {
+        let part = CuboidPart::<D>::toward(direction, Tilt::default_limit());
         let is_flat = |axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO;
         if (0..D).any(is_flat) {
             return None;
         }
         let is_face = part.dimension() + 1 == D;
-        Some(FacingPart { part, normal: is_face.then(|| part.normal()) })
+        Some(SupportPart { part, normal: is_face.then(|| part.normal()) })
     }
 
     fn fill(&self, part: CuboidPart<D>, out: &mut Feature<N, D>) {
         out.clear();
-        out.id = part.name();
+        out.id = part.id();
         let (ring, side_ids) = match out.id {
             FeatureId::Face(index) => CuboidPart::<D>::FACES[index as usize],
             _ => (part.ring(), CuboidPart::<D>::side_ids(&part.ring())),
@@ -417,7 +417,7 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 
     #[track_caller]
     fn part(id: FeatureId, dimension: usize) -> CuboidPart<D> {
-        match CuboidPart::named(id) {
+        match CuboidPart::of_id(id) {
             Some(part) if part.dimension() == dimension => part,
             _ => panic!("a cuboid has no {} named {id:?}", FeatureId::word::<D>(dimension)),
         }
@@ -425,17 +425,17 @@ impl<N: Real, const D: usize> Cuboid<N, D> {
 }
 
 impl<N: Real> Cuboid<N, 2> {
-    /// See [`Shown::of`]; `None` if the side has no length.
-    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
-        let part = CuboidPart::<2>::facing(direction, Tilt::usual());
-        let named = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
-        let FeatureId::Face(index) = part.name() else {
-            let (id, point) = named(part.corner);
-            return Some(Shown::vertex(id, point));
+    /// See [`SideOrVertex::of`]; `None` if the side has no length.
+    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> Option<SideOrVertex<N>> {
+        let part = CuboidPart::<2>::toward(direction, Tilt::default_limit());
+        let with_id = |corner: u32| (FeatureId::Vertex(corner), self.corner(corner));
+        let FeatureId::Face(index) = part.id() else {
+            let (id, point) = with_id(part.corner);
+            return Some(SideOrVertex::vertex(id, point));
         };
         let is_flat = (0..2).any(|axis| has(part.free, axis) && self.half_extents[axis] == N::ZERO);
         let [from, to, ..] = CuboidPart::<2>::FACES[index as usize].0.corners;
-        (!is_flat).then(|| Shown::side(FeatureId::Face(index), [named(from), named(to)]))
+        (!is_flat).then(|| SideOrVertex::side(FeatureId::Face(index), [with_id(from), with_id(to)]))
     }
 }
 
@@ -461,22 +461,22 @@ impl<N: Real, const D: usize> ConvexPolyhedron<N, D> for Cuboid<N, D> {
     }
 
     fn feature_normal(&self, id: FeatureId) -> Vector<N, D> {
-        match CuboidPart::<D>::named(id) {
+        match CuboidPart::<D>::of_id(id) {
             Some(part) => part.normal(),
             None => panic!("a cuboid has no feature named {id:?}"),
         }
     }
 
     fn support_face_toward(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill(CuboidPart::face_facing(direction), out);
+        self.fill(CuboidPart::face_toward(direction), out);
     }
 
     fn support_feature_toward(&self, direction: &Vector<N, D>, angle: N, out: &mut Feature<N, D>) {
-        self.fill(CuboidPart::facing(direction, Tilt::of_angle(angle)), out);
+        self.fill(CuboidPart::toward(direction, Tilt::of_angle(angle)), out);
     }
 
     fn support_feature_id_toward(&self, direction: &Vector<N, D>) -> FeatureId {
-        CuboidPart::facing(direction, Tilt::least()).name()
+        CuboidPart::toward(direction, Tilt::least()).id()
     }
 }
 
@@ -490,7 +490,7 @@ impl<N: Real, const D: usize> Shape<N, D> for Cuboid<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        Aabb::around_turned(pose, pose.turned_reach(&self.half_extents))
+        Aabb::around_rotated(pose, pose.rotated_extents(&self.half_extents))
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

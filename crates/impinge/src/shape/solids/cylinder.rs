@@ -79,17 +79,17 @@ impl<N: Real> Cylinder<N> {
 }
 
 impl<N: Real> Cylinder<N> {
-    /// The cap, rim or round side that a point of the surface lies on, up to `noise`; `None` for a
-    /// cylinder with a half height or radius of at most `4 noise`.
+    /// The cap, rim or round side that a point of the surface lies on, up to `tolerance`; `None` for a
+    /// cylinder with a half height or radius of at most `4 tolerance`.
     pub(crate) fn part_at<const D: usize>(
         &self,
         point: &Point<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> Option<FeatureId> {
-        let (y, aside) = axial_on(point, [self.half_height, self.radius], noise)?;
+        let (y, aside) = axial_on(point, [self.half_height, self.radius], tolerance)?;
         let side = u32::from(y < N::ZERO);
-        let is_at_end = y.abs() >= self.half_height - noise;
-        Some(if is_at_end && aside >= self.radius - noise {
+        let is_at_end = y.abs() >= self.half_height - tolerance;
+        Some(if is_at_end && aside >= self.radius - tolerance {
             FeatureId::Edge(side)
         } else {
             FeatureId::Face(if is_at_end { side } else { 2 })
@@ -104,13 +104,14 @@ impl<N: Real> Cylinder<N> {
     }
 
     /// The supporting feature for a unit vector; `None` for a cap.
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
-        if Tilt::usual().admits(radial_of(direction).norm_squared()) {
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<RoundPart<N>> {
+        if Tilt::default_limit().admits(radial_of(direction).norm_squared()) {
             return None;
         }
         let (side, y) = self.end_toward(direction);
         let (rim, near) = (FeatureId::Edge(side), self.disk(y).rim_toward(direction));
-        let is_line = Tilt::usual().admits(direction.y * direction.y) && self.half_height > N::ZERO;
+        let is_line =
+            Tilt::default_limit().admits(direction.y * direction.y) && self.half_height > N::ZERO;
         Some(if is_line {
             let far = Point::<N, 3>::new(near.x, -y, near.z);
             RoundPart::Line(FeatureId::Face(2), [(FeatureId::Edge(1 - side), far), (rim, near)])
@@ -149,12 +150,12 @@ impl<N: Real> SupportMap<N, 3> for Cylinder<N> {
     }
 
     fn core_feature(&self, direction: &Vector<N, 3>, out: &mut Feature<N, 3>) {
-        match self.part_shown(direction) {
+        match self.supporting_part(direction) {
             Some(part) => part.fill(out),
             None => {
                 let (side, y) = self.end_toward(direction);
-                let names = [FeatureId::Face(side), FeatureId::Edge(side)];
-                self.disk(y).fill_polygon(names[0], names[1], direction, out);
+                let ids = [FeatureId::Face(side), FeatureId::Edge(side)];
+                self.disk(y).fill_polygon(ids[0], ids[1], direction, out);
             }
         }
     }
@@ -166,14 +167,14 @@ impl<N: Real> Shape<N, 3> for Cylinder<N> {
     }
 
     fn local_aabb(&self) -> Aabb<N, 3> {
-        let reach = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
-        Aabb::around(Point::origin(), reach)
+        let extents = Vector::<N, 3>::new(self.radius, self.half_height, self.radius);
+        Aabb::around(Point::origin(), extents)
     }
 
     fn aabb(&self, pose: &Pose<N, 3>) -> Aabb<N, 3> {
         let axis = pose.rotation.column(1).into_owned();
-        let disk = self.disk(N::ZERO).reach(&pose.rotation);
-        Aabb::around_turned(pose, axis.abs() * self.half_height + disk)
+        let disk = self.disk(N::ZERO).extents(&pose.rotation);
+        Aabb::around_rotated(pose, axis.abs() * self.half_height + disk)
     }
 
     fn scaled(&self, scale: &Vector<N, 3>) -> Result<ShapeHandle<N, 3>, ScaleError> {

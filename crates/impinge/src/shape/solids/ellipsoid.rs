@@ -63,8 +63,8 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Ellipsoid<N, D> {
     fn core_support(&self, direction: &Vector<N, D>) -> Point<N, D> {
         let stretched = direction.component_mul(&self.half_axes);
         let squared = stretched.norm_squared();
-        let is_usual = squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt();
-        let on_sphere = if is_usual {
+        let is_in_range = squared > N::MIN_POSITIVE.sqrt() && squared < N::MAX.sqrt();
+        let on_sphere = if is_in_range {
             stretched / squared.sqrt()
         } else {
             // Both factors are scaled to about 1, so that no product overflows or underflows.
@@ -104,10 +104,10 @@ impl<N: Real, const D: usize> Shape<N, D> for Ellipsoid<N, D> {
     }
 
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        let reach = Vector::<N, D>::from_fn(|axis, _| {
+        let extents = Vector::<N, D>::from_fn(|axis, _| {
             length_of(&pose.rotation.row(axis).transpose().component_mul(&self.half_axes))
         });
-        Aabb::around_turned(pose, reach)
+        Aabb::around_rotated(pose, extents)
     }
 
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {

@@ -11,14 +11,14 @@ fn axial<N: Real, const D: usize>(point: &Point<N, D>) -> (N, N) {
 }
 
 /// The coordinates of [`axial`] for a point of the surface of a solid about the y axis; `None` if
-/// `half_height` or `radius` is at most `4 noise`, where a point would lie on several parts at
+/// `half_height` or `radius` is at most `4 tolerance`, where a point would lie on several parts at
 /// once.
 pub(in crate::shape) fn axial_on<N: Real, const D: usize>(
     point: &Point<N, D>,
     [half_height, radius]: [N; 2],
-    noise: N,
+    tolerance: N,
 ) -> Option<(N, N)> {
-    let least = N::lit(4.0) * noise;
+    let least = N::lit(4.0) * tolerance;
     (half_height > least && radius > least).then(|| axial(point))
 }
 
@@ -80,7 +80,7 @@ impl<N: Real> Disk<N> {
     /// The extents, along each outer axis, of the disk about the origin under a rotation. Computed
     /// from the columns that span the disk: from its axis alone a small tilt would lose half of all
     /// digits.
-    pub(in crate::shape) fn reach(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
+    pub(in crate::shape) fn extents(self, rotation: &Matrix<N, 3>) -> Vector<N, 3> {
         Vector::<N, 3>::from_fn(|axis, _| {
             let spans = Vector::<N, 2>::new(rotation[(axis, 0)], rotation[(axis, 2)]);
             length_of(&spans) * self.radius

@@ -100,14 +100,15 @@ pub(in crate::shape) fn box_at<N: Real, const D: usize, const K: usize>(
     let mut low = Vector::<N, D>::repeat(N::INFINITY);
     let mut high = -low;
     for point in points {
-        let turned = pose.vector(&point.coords);
+        let rotated = pose.vector(&point.coords);
         // The sum of magnitudes bounds the distance from the origin from above, without a root.
         size = max(point.iter().fold(N::ZERO, |sum, x| sum + x.abs()), size);
         for axis in 0..D {
-            (low[axis], high[axis]) = (min(turned[axis], low[axis]), max(turned[axis], high[axis]));
+            (low[axis], high[axis]) =
+                (min(rotated[axis], low[axis]), max(rotated[axis], high[axis]));
         }
     }
-    Aabb::of_turned(low, high, size, pose)
+    Aabb::of_rotated(low, high, size, pose)
 }
 
 impl<N: Real, const D: usize> SupportMap<N, D> for Segment<N, D> {

@@ -182,32 +182,32 @@ impl<N: Real, const D: usize> SupportMap<N, D> for TaperedCapsule<N, D> {
 
     fn reach(&self) -> N {
         let [radius1, radius2] = self.core_radii();
-        let reach = |end: &Point<N, D>, radius| length_of(&end.coords) + radius;
-        max(reach(self.segment.a(), radius1), reach(self.segment.b(), radius2))
+        let distance = |end: &Point<N, D>, radius| length_of(&end.coords) + radius;
+        max(distance(self.segment.a(), radius1), distance(self.segment.b(), radius2))
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
         let large = self.larger_end();
-        let names = [FeatureId::Vertex(0), FeatureId::Vertex(1)];
+        let ids = [FeatureId::Vertex(0), FeatureId::Vertex(1)];
         let Some(taper) = self.taper() else {
-            return out.set_point(names[large], self.core_support(direction));
+            return out.set_point(ids[large], self.core_support(direction));
         };
         let (away, across) = taper.away(direction);
         let climb = direction.dot(&taper.along);
         // Positive if the second end lies farther along the direction than the first.
-        let lean = taper.cosine * climb - taper.sine * across;
+        let sine = taper.cosine * climb - taper.sine * across;
         let faces = taper.cosine * across + taper.sine * climb > N::ZERO;
-        if !(faces && Tilt::usual().admits(lean * lean)) {
-            let end = usize::from(lean > N::ZERO);
-            return out.set_point(names[end], self.core_support(direction));
+        if !(faces && Tilt::default_limit().admits(sine * sine)) {
+            let end = usize::from(sine > N::ZERO);
+            return out.set_point(ids[end], self.core_support(direction));
         }
         // On the larger ball: the support point itself, or the end of the side if the support point
         // is on the smaller ball.
-        let is_on_large = (lean > N::ZERO) == (large == 1);
+        let is_on_large = (sine > N::ZERO) == (large == 1);
         let side = away * taper.cosine + taper.along * taper.sine;
         let toward = if is_on_large { *direction } else { side };
         let ends = [0, 1].mapped(|end| self.end(end) + toward * self.core_radii()[end]);
-        out.set_segment(FeatureId::Edge(0), [(names[0], ends[0]), (names[1], ends[1])]);
+        out.set_segment(FeatureId::Edge(0), [(ids[0], ends[0]), (ids[1], ends[1])]);
     }
 }
 

@@ -150,10 +150,10 @@ fn power_of_two_below(corners: &[Vector<f64, 3>; 4]) -> f64 {
 
 /// The vertices, edges and faces of four corners in any position.
 fn polytope<N: Real>(corners: [Point<N, 3>; 4], is_mirrored: bool) -> Polytope<N, 3> {
-    let places = doubles(&corners);
+    let positions = doubles(&corners);
     let faces = FACES.map(|[a, b, c]| if is_mirrored { [a, c, b] } else { [a, b, c] });
     let faces = faces.into_iter().map(|face| {
-        let [a, b, c] = face.map(|corner| &places[corner as usize]);
+        let [a, b, c] = face.map(|corner| &positions[corner as usize]);
         // The cross product of rounded sides would be off by the rounding error times length over
         // height.
         let normal = area_vector(a, b, c).try_normalize(0.0);
@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn either_orientation_is_outward_and_named_alike() {
+    fn either_orientation_is_outward_with_the_same_ids() {
         let [a, b, c, d] = corners([[0.0; 3], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 4.0]]);
         for given in [[a, b, c, d], [b, a, c, d], [d, c, b, a], [c, d, a, b]] {
             let solid = Tetrahedron::new(given);
@@ -268,7 +268,7 @@ mod tests {
                 assert!((opposite - face.vertices[0]).dot(&normal) < 0.0, "outward: {face:?}");
             }
             for (index, ends) in (0..).zip(EDGES) {
-                let found = solid.edge(FeatureId::Edge(index)).map(|(name, _)| name);
+                let found = solid.edge(FeatureId::Edge(index)).map(|(id, _)| id);
                 assert_eq!(found, ends.map(FeatureId::Vertex), "edge {index}");
             }
         }
@@ -277,22 +277,22 @@ mod tests {
     #[test]
     fn without_volume_it_is_flat() {
         let up = Vector::<f64, 3>::z();
-        let shown = |points, direction: &Vector<f64, 3>| {
+        let supporting = |points, direction: &Vector<f64, 3>| {
             let (solid, mut feature) = (Tetrahedron::new(corners(points)), Feature::default());
             assert_eq!(solid.polytope(), None, "no volume");
             solid.core_feature(direction, &mut feature);
             feature
         };
         let square = [[0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
-        let top = shown(square, &up);
+        let top = supporting(square, &up);
         assert_eq!((top.vertices.len(), top.normal), (4, Some(up)), "all of it: {top:?}");
-        let side = shown(square, &Vector::<f64, 3>::x());
+        let side = supporting(square, &Vector::<f64, 3>::x());
         assert_eq!(side.id, FeatureId::Edge(3), "between the vertices 1 and 2: {side:?}");
         let inner = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.25, 0.25, 0.0]];
-        let below = shown(inner, &-up);
+        let below = supporting(inner, &-up);
         assert_eq!((below.vertices.len(), below.id), (3, FeatureId::Face(3)), "{below:?}");
         let line = [[0.0; 3], [1.0; 3], [3.0; 3], [2.0; 3]];
-        assert_eq!(shown(line, &up).id, FeatureId::Edge(1), "from end to end");
-        assert_eq!(shown([[5.0; 3]; 4], &up).id, FeatureId::Vertex(0), "a point");
+        assert_eq!(supporting(line, &up).id, FeatureId::Edge(1), "from end to end");
+        assert_eq!(supporting([[5.0; 3]; 4], &up).id, FeatureId::Vertex(0), "a point");
     }
 }

@@ -20,12 +20,12 @@ pub(in crate::shape) struct FlatOutline<N: Real> {
 
 impl<N: Real> FlatOutline<N> {
     pub(in crate::shape) fn of(corners: &[Point<N, 3>; 4]) -> Self {
-        let places = scaled(corners);
-        let noise = STRAIGHT * N::EPSILON.as_f64();
-        let normal = widest_normal(&places).filter(|&(_, area)| area > noise);
+        let positions = scaled(corners);
+        let tolerance = STRAIGHT * N::EPSILON.as_f64();
+        let normal = widest_normal(&positions).filter(|&(_, area)| area > tolerance);
         let ring = match normal {
-            Some((normal, _)) => ring(&places, &normal, noise),
-            None => ends(&places),
+            Some((normal, _)) => ring(&positions, &normal, tolerance),
+            None => ends(&positions),
         };
         let points = ring.iter().map(|&corner| corners[corner as usize]).collect();
         let normal = normal.map_or_else(Vector::<N, 3>::y, |(normal, _)| normal.map(N::lit));
@@ -39,7 +39,7 @@ impl<N: Real> FlatOutline<N> {
         }
         let back = -self.normal;
         for normal in [self.normal, back] {
-            if Tilt::usual().admits_face(&normal, direction) {
+            if Tilt::default_limit().admits_face(&normal, direction) {
                 return self.fill_face(normal, normal == back, out);
             }
         }
@@ -52,7 +52,7 @@ impl<N: Real> FlatOutline<N> {
         let flatter =
             if self.slope(before, direction) < self.slope(best, direction) { before } else { best };
         let slope = self.slope(flatter, direction);
-        if Tilt::usual().admits(slope * slope) {
+        if Tilt::default_limit().admits(slope * slope) {
             self.fill_side(flatter, out);
         } else {
             out.set_point(FeatureId::Vertex(self.ring[best]), self.points[best]);
@@ -78,11 +78,11 @@ impl<N: Real> FlatOutline<N> {
 
     /// Writes a side, or the vertex if there is only one.
     fn fill_side(&self, side: usize, out: &mut Feature<N, 3>) {
-        let named = |at: usize| (FeatureId::Vertex(self.ring[at]), self.points[at]);
+        let with_id = |at: usize| (FeatureId::Vertex(self.ring[at]), self.points[at]);
         if self.ring.len() == 1 {
-            return out.set_point(named(0).0, named(0).1);
+            return out.set_point(with_id(0).0, with_id(0).1);
         }
-        out.set_segment(self.edge_id(side), [named(side), named(self.next(side))]);
+        out.set_segment(self.edge_id(side), [with_id(side), with_id(self.next(side))]);
     }
 
     /// Writes the whole outline, with the id of the face opposite to the corner that is not in the
@@ -103,8 +103,8 @@ impl<N: Real> FlatOutline<N> {
 }
 
 /// The normal of the largest triangle, and twice its area.
-fn widest_normal(places: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> {
-    let [a, b, c, d] = places;
+fn widest_normal(positions: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> {
+    let [a, b, c, d] = positions;
     let triangles = [[a, b, c], [a, c, d], [a, d, b], [b, d, c]];
     let across = triangles.mapped(|[a, b, c]| (b - a).cross(&(c - a)));
     let widest = across.into_iter().fold(Vector::<f64, 3>::zeros(), |most, area| {
@@ -114,22 +114,23 @@ fn widest_normal(places: &[Vector<f64, 3>; 4]) -> Option<(Vector<f64, 3>, f64)> 
 }
 
 /// The corners of the outline, in order around the normal: no corner lies outside of a side.
-fn ring(places: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, noise: f64) -> Vec<u32> {
+fn ring(positions: &[Vector<f64, 3>; 4], normal: &Vector<f64, 3>, tolerance: f64) -> Vec<u32> {
     let is_left = |a: usize, b: usize, c: usize| {
-        let side = places[b] - places[a];
-        side.cross(&(places[c] - places[a])).dot(normal) >= -noise * side.norm()
+        let side = positions[b] - positions[a];
+        side.cross(&(positions[c] - positions[a])).dot(normal) >= -tolerance * side.norm()
     };
     let side_from = |a: usize, taken: &[u32]| {
         let leads = |b: &usize| {
             let others = (0..4).filter(|c| *c != a && c != b);
             *b != a && others.into_iter().all(|c| is_left(a, *b, c))
         };
-        let far = |b: &usize| (places[*b] - places[a]).norm();
+        let far = |b: &usize| (positions[*b] - positions[a]).norm();
         let open = (0..4).filter(leads).filter(|b| *b == start_of(taken) || !has(taken, *b));
         open.reduce(|best, b| if far(&b) > far(&best) { b } else { best })
     };
     let far = |corner: usize| {
-        (places[corner] - (places[0] + places[1] + places[2] + places[3]) * 0.25).norm()
+        (positions[corner] - (positions[0] + positions[1] + positions[2] + positions[3]) * 0.25)
+            .norm()
     };
     let start = (1..4).fold(0, |best, corner| if far(corner) > far(best) { corner } else { best });
     let mut ring = vec![index32(start)];
@@ -159,8 +160,8 @@ fn index32(corner: usize) -> u32 {
 }
 
 /// The two corners that are farthest apart; the first alone if they all coincide.
-fn ends(places: &[Vector<f64, 3>; 4]) -> Vec<u32> {
-    let apart = |[a, b]: [u32; 2]| (places[a as usize] - places[b as usize]).norm();
+fn ends(positions: &[Vector<f64, 3>; 4]) -> Vec<u32> {
+    let apart = |[a, b]: [u32; 2]| (positions[a as usize] - positions[b as usize]).norm();
     let [a, b] = EDGES
         .into_iter()
         .fold([0, 1], |best, ends| if apart(ends) > apart(best) { ends } else { best });

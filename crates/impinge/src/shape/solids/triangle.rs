@@ -103,7 +103,7 @@ impl<N: Real, const D: usize> SupportMap<N, D> for Triangle<N, D> {
     }
 
     fn core_feature(&self, direction: &Vector<N, D>, out: &mut Feature<N, D>) {
-        self.fill_toward(direction, Tilt::usual(), out);
+        self.fill_toward(direction, Tilt::default_limit(), out);
     }
 }
 

@@ -4,7 +4,9 @@
 use crate::math::{Matrix, Point, Real, Vector, cross, max, max_component, unit, unit_or};
 use crate::shape::solids::segment::length_of;
 use crate::shape::tilt::{FACING_SINE_SQUARED, Tilt};
-use crate::shape::{ConvexPolyhedron, FaceRing, Feature, FeatureId, Shown, SupportMap, Triangle};
+use crate::shape::{
+    ConvexPolyhedron, FaceRing, Feature, FeatureId, SideOrVertex, SupportMap, Triangle,
+};
 
 /// The plane (in 2D: the whole space) that a triangle spans.
 struct TriangleSpan<N: Real, const D: usize> {
@@ -27,16 +29,16 @@ impl<N: Real, const D: usize> TriangleSpan<N, D> {
         let (along, length) = unit(&side(longest))?;
         let to_opposite = corners[(longest + 2) % 3] - corners[longest];
         // Below this height the difference of coordinates may be pure rounding error.
-        let noise = N::lit(16.0) * N::EPSILON * length;
+        let tolerance = N::lit(16.0) * N::EPSILON * length;
         let rise = unit(&without(&to_opposite, &along));
-        let rise = rise.filter(|&(_, height)| height > noise);
+        let rise = rise.filter(|&(_, height)| height > tolerance);
         // A second projection makes it perpendicular to the last digit, however flat the triangle.
         let rise = rise.map(|(rise, _)| unit_or(&without(&rise, &along), rise));
         Some(Self { longest, along, rise })
     }
 
     /// The squared component of a direction in the plane; `None` if the corners lie on a line.
-    fn lean_squared(&self, direction: &Vector<N, D>) -> Option<N> {
+    fn squared_sine(&self, direction: &Vector<N, D>) -> Option<N> {
         let (along, rise) = (self.along.dot(direction), self.rise?.dot(direction));
         Some(along * along + rise * rise)
     }
@@ -105,7 +107,7 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         let Some(span) = TriangleSpan::of(self.corners()) else {
             return out.set_point(vertex_id(0), self.corners()[0]);
         };
-        if span.lean_squared(direction).is_some_and(|lean| tilt.admits(lean)) {
+        if span.squared_sine(direction).is_some_and(|sine_squared| tilt.admits(sine_squared)) {
             return self.fill_polygon(&span, direction, out);
         }
         let (side, slope) = self.flattest_side(&span, direction);
@@ -117,26 +119,26 @@ impl<N: Real, const D: usize> Triangle<N, D> {
         }
     }
 
-    /// The corner, side or face that a point of the surface lies on, up to `noise`, seen from where
+    /// The corner, side or face that a point of the surface lies on, up to `tolerance`, seen from where
     /// the unit vector `direction` points; `None` if the corners lie on a line, and in 2D for a
     /// point inside.
     pub(crate) fn part_at(
         &self,
         point: &Point<N, D>,
         direction: &Vector<N, D>,
-        noise: N,
+        tolerance: N,
     ) -> Option<FeatureId> {
         let corners = self.corners();
         let to = |index: usize| point - corners[index];
         if let Some(corner) =
-            (0..3).find(|&at| to(at).norm_squared() <= N::lit(4.0) * noise * noise)
+            (0..3).find(|&at| to(at).norm_squared() <= N::lit(4.0) * tolerance * tolerance)
         {
             return Some(vertex_id(corner));
         }
         let is_on = |&side: &usize| {
             let (along, arm) = (corners[(side + 1) % 3] - corners[side], to(side));
             let aside = arm - along * (along.dot(&arm) / along.norm_squared());
-            aside.norm_squared() <= noise * noise
+            aside.norm_squared() <= tolerance * tolerance
         };
         let mut touched = (0..3).filter(is_on);
         match (touched.next(), touched.next()) {
@@ -250,16 +252,16 @@ impl<N: Real, const D: usize> Triangle<N, D> {
 }
 
 impl<N: Real> Triangle<N, 2> {
-    /// See [`Shown::of`]; `None` if the corners coincide.
-    pub(in crate::shape) fn shown(&self, direction: &Vector<N, 2>) -> Option<Shown<N>> {
+    /// See [`SideOrVertex::of`]; `None` if the corners coincide.
+    pub(in crate::shape) fn supporting(&self, direction: &Vector<N, 2>) -> Option<SideOrVertex<N>> {
         let span = TriangleSpan::of(self.corners())?;
         let (side, slope) = self.flattest_side(&span, direction);
-        if Tilt::usual().admits(slope * slope) {
+        if Tilt::default_limit().admits(slope * slope) {
             let ends = self.side_ends(side, direction);
-            return Some(Shown::side(side_id::<2>(side), ends));
+            return Some(SideOrVertex::side(side_id::<2>(side), ends));
         }
         let (id, point) = self.point(self.support_corner(direction));
-        Some(Shown::vertex(id, point))
+        Some(SideOrVertex::vertex(id, point))
     }
 }
 
@@ -298,15 +300,19 @@ pub(crate) const CLEAR: f64 = 1.0 / 1024.0;
 impl<N: Real> Triangle<N, 3> {
     /// The id of the [`SupportMap::core_feature`] for a unit vector, by products alone; `None` for
     /// thin triangles, and where rounding decides.
-    pub(crate) fn part_shown(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
+    pub(crate) fn supporting_part(&self, direction: &Vector<N, 3>) -> Option<FeatureId> {
         let [a, b, c] = self.corners();
         let sides = [b - a, c - b, a - c];
         let size = max(max_component(&sides[0]), max_component(&sides[1]));
         // Scaled so that fourth powers neither overflow nor underflow.
-        let ways = sides.map(|side| side / size.power_of_two_below());
-        let squared = [ways[0].norm_squared(), ways[1].norm_squared(), ways[2].norm_squared()];
+        let scaled_sides = sides.map(|side| side / size.power_of_two_below());
+        let squared = [
+            scaled_sides[0].norm_squared(),
+            scaled_sides[1].norm_squared(),
+            scaled_sides[2].norm_squared(),
+        ];
         let longest = max(max(squared[0], squared[1]), squared[2]);
-        let across = cross(&ways[0], &ways[1]);
+        let across = cross(&scaled_sides[0], &scaled_sides[1]);
         let (area, rise) = (across.norm_squared(), across.dot(direction));
         // NaN counts as thin.
         let is_wide = area > N::lit(THIN_SQUARED) * longest * longest;
@@ -322,7 +328,7 @@ impl<N: Real> Triangle<N, 3> {
         if !is_less(rise * rise, upright) {
             return None;
         }
-        let climbs = ways.map(|way| way.dot(direction));
+        let climbs = scaled_sides.map(|side| side.dot(direction));
         // The highest corner, from the climbs of the sides.
         let heights = [N::ZERO, climbs[0], climbs[0] + climbs[1]];
         let higher = |best: usize, at: usize| if heights[at] > heights[best] { at } else { best };
@@ -341,10 +347,10 @@ impl<N: Real> Triangle<N, 3> {
     /// Fills a blank ring with the face on the side of a direction. The triangle must not be thin.
     pub(crate) fn fill_ring(&self, direction: &Vector<N, 3>, face: &mut FaceRing<N>) {
         let [a, b, c] = self.corners();
-        let ways = [b - a, c - a];
+        let edges = [b - a, c - a];
         // Scaled so that products neither overflow nor underflow.
-        let size = max(max_component(&ways[0]), max_component(&ways[1])).power_of_two_below();
-        let across = cross(&(ways[0] / size), &(ways[1] / size));
+        let size = max(max_component(&edges[0]), max_component(&edges[1])).power_of_two_below();
+        let across = cross(&(edges[0] / size), &(edges[1] / size));
         let is_below = across.dot(direction) < N::ZERO;
         let normal = unit_or(&across, *direction);
         face.normal = if is_below { -normal } else { normal };
@@ -452,26 +458,26 @@ fn is_second_face(id: FeatureId) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
 
     #[test]
-    fn what_a_triangle_shows_is_known_at_every_scale() {
-        let (mut noise, mut known) = (Noise(3), 0);
+    fn the_supporting_part_is_known_at_every_scale() {
+        let (mut random, mut known) = (Xorshift(3), 0);
         for _ in 0..2000 {
-            let corners = [(); 3].map(|()| Point::from(noise.vector::<f32>(1.0)));
-            let direction = noise.vector::<f32>(1.0).normalize();
-            let shown = |scale: f32| {
+            let corners = [(); 3].map(|()| Point::from(random.vector::<f32>(1.0)));
+            let direction = random.vector::<f32>(1.0).normalize();
+            let supporting = |scale: f32| {
                 let [a, b, c] = corners.map(|corner| corner * scale);
-                Triangle::new(a, b, c).part_shown(&direction)
+                Triangle::new(a, b, c).supporting_part(&direction)
             };
-            let part = shown(1.0);
-            assert_eq!([shown(2.0_f32.powi(-60)), shown(2.0_f32.powi(60))], [part; 2]);
+            let part = supporting(1.0);
+            assert_eq!([supporting(2.0_f32.powi(-60)), supporting(2.0_f32.powi(60))], [part; 2]);
             known += usize::from(part.is_some());
         }
-        assert!(known > 1500, "{known} are plain");
+        assert!(known > 1500, "{known} are decided");
         assert_eq!(
             Triangle::new(Point::origin(), Point::origin(), Point::<f32, 3>::origin())
-                .part_shown(&Vector::<f32, 3>::y()),
+                .supporting_part(&Vector::<f32, 3>::y()),
             None,
             "it has no area"
         );

@@ -77,9 +77,9 @@ impl<N: Real> Bend<N> {
                 // the edge or across it alone exceeds the limit; in between the rule of seams
                 // decides.
                 let squared_sine = (N::ONE - along1 * along1) / N::lit(FLAT_SINE * FLAT_SINE);
-                let is_level = squared_sine < N::lit(1.0 - CLOSE);
-                let is_leaning = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
-                (is_level || is_leaning).then_some(false)
+                let is_face_normal = squared_sine < N::lit(1.0 - CLOSE);
+                let is_tilted = squared_sine > N::lit(2.0 * (1.0 + CLOSE));
+                (is_face_normal || is_tilted).then_some(false)
             }
             (BendShape::Hollow, true) | (BendShape::Ridge, false) => Some(false),
             (BendShape::Ridge, true) => self.is_between(normal, [along1, along2]),
@@ -100,8 +100,8 @@ impl<N: Real> Bend<N> {
         } else {
             min(insides[0], insides[1])
         };
-        let room = N::lit(8.0) * slack::<N>();
-        if inside < -room {
+        let margin = N::lit(8.0) * slack::<N>();
+        if inside < -margin {
             return Some(false);
         }
         let sine = (N::ONE - self.cosine * self.cosine).sqrt();
@@ -109,7 +109,7 @@ impl<N: Real> Bend<N> {
         if along_edge > N::lit(FLAT_SINE * (1.0 + CLOSE)) {
             return Some(false);
         }
-        (inside > room && along_edge < N::lit(FLAT_SINE * (1.0 - CLOSE))).then_some(true)
+        (inside > margin && along_edge < N::lit(FLAT_SINE * (1.0 - CLOSE))).then_some(true)
     }
 }
 
@@ -121,8 +121,8 @@ impl BendShape {
     ) -> Option<Self> {
         let cosine = fronts[0].dot(&fronts[1]);
         // False for NaN. Beyond 90° between the fronts the rule of seams decides.
-        let is_plain = cosine > N::ZERO && corners.iter().all(|corners| is_plain(corners));
-        if !is_plain {
+        let is_certain = cosine > N::ZERO && corners.iter().all(|corners| is_well_shaped(corners));
+        if !is_certain {
             return None;
         }
         let (squared_sine, flat) = (N::ONE - cosine * cosine, N::lit(FLAT_SINE * FLAT_SINE));
@@ -157,7 +157,7 @@ fn height_of<N: Real>(
 
 /// Whether the triangle is not thin, its sides are longer than 4096 rounding units of its
 /// coordinates, and its squared area does not underflow.
-fn is_plain<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
+fn is_well_shaped<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
     let [a, b, c] = corners;
     let (ab, ac) = (b - a, c - a);
     let squared = [ab.norm_squared(), ac.norm_squared(), (c - b).norm_squared()];
@@ -174,7 +174,7 @@ fn is_plain<N: Real>(corners: &[Point<N, 3>; 3]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::composite::tri_mesh::{inward_of, normal_of};
     use crate::shape::surface::seam::{Seam, is_across};
 
@@ -189,19 +189,19 @@ mod tests {
         let mut seam = Seam::of_faces(fronts[0], normal).along(&edge);
         for (corners, front) in corners.iter().zip(fronts) {
             let inward = inward_of(corners).expect("an area");
-            seam.add_face(|way| inward.dot(way), front);
+            seam.add_face(|direction| inward.dot(direction), front);
         }
         is_across(&edge, normal) && seam.admits(is_one_sided)
     }
 
     fn bends_follow_the_rule<N: Real>() {
-        let (mut noise, mut known, mut admitted) = (Noise(1), 0, 0);
+        let (mut random, mut known, mut admitted) = (Xorshift(1), 0, 0);
         for round in 0..20_000 {
-            let (a, b) = (noise.vector::<f64>(1.0), noise.vector::<f64>(1.0));
-            let tip1 = noise.vector::<f64>(1.0);
+            let (a, b) = (random.vector::<f64>(1.0), random.vector::<f64>(1.0));
+            let tip1 = random.vector::<f64>(1.0);
             // Every fifth is exactly flat, and others nearly.
             let flat = [1.0, 0.1, 0.01, 0.003, 0.0][round % 5];
-            let tip2 = a + b - tip1 + noise.vector::<f64>(1.0) * flat;
+            let tip2 = a + b - tip1 + random.vector::<f64>(1.0) * flat;
             let point = |v: Vector<f64, 3>| Point::from(v.map(N::lit));
             let (first, second) =
                 ([point(a), point(b), point(tip1)], [point(b), point(a), point(tip2)]);
@@ -209,8 +209,9 @@ mod tests {
             let Some(bend) = Bend::new([&first, &second], fronts) else { continue };
             // Interpolates between the fronts or beyond, and adds a tilt; a quarter are on the
             // back.
-            let share = N::lit(0.7 * noise.next() + 0.5);
-            let aside = noise.vector::<f64>(1.0).map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
+            let share = N::lit(0.7 * random.next() + 0.5);
+            let aside =
+                random.vector::<f64>(1.0).map(N::lit) * N::lit([0.0, 0.004, 0.3][round % 3]);
             let sign = if round % 4 == 0 { -N::ONE } else { N::ONE };
             let normal = (fronts[0] + (fronts[1] - fronts[0]) * share + aside) * sign;
             let normal = normal / normal.norm();
@@ -221,8 +222,8 @@ mod tests {
             }
             if let Some(answer) = bend.admits(&normal, is_one_sided) {
                 // The rule takes both triangles from the same corner of the edge.
-                let turned = [second[0], second[1], second[2]];
-                let expected = rule([&first, &turned], &fronts, &normal, is_one_sided);
+                let permuted = [second[0], second[1], second[2]];
+                let expected = rule([&first, &permuted], &fronts, &normal, is_one_sided);
                 assert_eq!(answer, expected, "round {round}: {bend:?} {normal:?}");
                 (known, admitted) = (known + 1, admitted + usize::from(answer));
             }

@@ -132,34 +132,34 @@ impl<N: Real> OwnSurface<N, 3> for KnownFace<'_, N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::{CompositeShape, Diagonals, HeightField, PartSolid, TriMesh};
 
     /// Heights of a rough sheet of triangles, some of them level.
-    fn heights(noise: &mut Noise) -> Vec<f64> {
-        (0..36).map(|at| if at % 5 < 2 { 0.0 } else { 0.5 * noise.next() }).collect()
+    fn heights(random: &mut Xorshift) -> Vec<f64> {
+        (0..36).map(|at| if at % 5 < 2 { 0.0 } else { 0.5 * random.next() }).collect()
     }
 
-    fn mesh(noise: &mut Noise) -> TriMesh<f64, 3> {
-        let place = |(at, height): (usize, &f64)| {
+    fn mesh(random: &mut Xorshift) -> TriMesh<f64, 3> {
+        let position = |(at, height): (usize, &f64)| {
             Point::<f64, 3>::new((at % 6) as f64, *height, (at / 6) as f64)
         };
-        let vertices = heights(noise).iter().enumerate().map(place).collect();
+        let vertices = heights(random).iter().enumerate().map(position).collect();
         let cells = (0..30).filter(|at| at % 6 < 5);
         let triangles = cells.flat_map(|at| [[at, at + 6, at + 7], [at, at + 7, at + 1]]);
         TriMesh::new(vertices, triangles.collect())
     }
 
-    fn field(noise: &mut Noise) -> HeightField<f64, 3> {
+    fn field(random: &mut Xorshift) -> HeightField<f64, 3> {
         let size = Vector::<f64, 3>::new(5.0, 1.0, 5.0);
-        let mut field = HeightField::<f64, 3>::new(6, 6, heights(noise), size);
+        let mut field = HeightField::<f64, 3>::new(6, 6, heights(random), size);
         field.set_hole(2, 3, true);
         field
     }
 
     /// Checks that cached seams answer as the surface does, for normals other than the triangle's
     /// own; counts the answers.
-    fn check(parts: &dyn CompositeShape<f64, 3>, noise: &mut Noise, counts: &mut [usize; 3]) {
+    fn check(parts: &dyn CompositeShape<f64, 3>, random: &mut Xorshift, counts: &mut [usize; 3]) {
         let surface = parts.surface_access().expect("a surface");
         for part in 0..parts.num_parts() {
             let Some(seams) = surface.face_seams(part) else { continue };
@@ -167,7 +167,7 @@ mod tests {
             let corner = triangle.corners()[0];
             let known = seams.in_surface(surface, &corner);
             for at in 0..180_u32 {
-                let aside: Vector<f64, 3> = noise.vector([1.0, 0.3, 0.02][at as usize % 3]);
+                let aside: Vector<f64, 3> = random.vector([1.0, 0.3, 0.02][at as usize % 3]);
                 let side = if at % 7 == 0 { -1.0 } else { 1.0 };
                 let far = (seams.front * side + aside).normalize();
                 let near = (seams.front * side + aside * 0.03).normalize();
@@ -191,9 +191,9 @@ mod tests {
 
     #[test]
     fn what_a_triangle_keeps_is_what_its_surface_says() {
-        let (mut noise, mut counts) = (Noise(3), [0; 3]);
+        let (mut random, mut counts) = (Xorshift(3), [0; 3]);
         for _ in 0..4 {
-            let (mesh, field) = (mesh(&mut noise), field(&mut noise));
+            let (mesh, field) = (mesh(&mut random), field(&mut random));
             let zigzag = field.clone().with_diagonals(Diagonals::Zigzag);
             let mirrored = field.try_scaled(&Vector::<f64, 3>::new(-1.0, 2.0, 1.0));
             let mirrored = mirrored.expect("finite");
@@ -206,16 +206,16 @@ mod tests {
                 Box::new(mirrored),
             ];
             for parts in &all {
-                check(parts.as_ref(), &mut noise, &mut counts);
+                check(parts.as_ref(), &mut random, &mut counts);
             }
         }
-        assert!(counts.iter().all(|&count| count > 1000), "all of it is met: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 1000), "all cases occur: {counts:?}");
     }
 
     #[test]
     fn seams_that_decide_nothing_are_not_kept() {
-        let mut noise = Noise(4);
-        let kept = mesh(&mut noise).with_internal_edges_kept().one_sided();
+        let mut random = Xorshift(4);
+        let kept = mesh(&mut random).with_internal_edges_kept().one_sided();
         let surface = kept.surface_access().expect("a one-sided surface");
         assert!(surface.face_seams(0).is_none(), "all edges count");
         let [a, b] = [[0.0; 3], [1.0, 0.0, 0.0]].map(Point::<f64, 3>::from);

@@ -53,7 +53,7 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
 
     /// Whether, in 3D, parts are adjacent exactly where they have corners at one position, and a
     /// seam admits no normal along which a direction into an adjacent part rises.
-    fn has_plain_seams(&self) -> bool {
+    fn has_regular_seams(&self) -> bool {
         false
     }
 }
@@ -146,8 +146,8 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
         self.own?.sidedness()
     }
 
-    /// See [`OwnSurface::has_plain_seams`].
-    pub(crate) fn has_plain_seams(&self) -> bool {
-        self.own.is_some_and(OwnSurface::has_plain_seams)
+    /// See [`OwnSurface::has_regular_seams`].
+    pub(crate) fn has_regular_seams(&self) -> bool {
+        self.own.is_some_and(OwnSurface::has_regular_seams)
     }
 }

@@ -39,7 +39,7 @@ pub(in crate::shape) fn is_flat<N: Real>(sine: N) -> bool {
 }
 
 /// Whether two lines count as parallel, by the scalar product of unit vectors along them.
-fn is_level<N: Real>(cosine: N) -> bool {
+fn are_parallel<N: Real>(cosine: N) -> bool {
     N::ONE - cosine * cosine <= N::lit(FLAT_SINE * FLAT_SINE)
 }
 
@@ -58,26 +58,26 @@ const CLEAR: f64 = 8.0;
 
 /// The sides that leave a corner, compared with a normal there. They decide most cases without the
 /// faces: the normal is rejected if a side rises along it, and admitted if all sink.
-pub(in crate::shape) struct CornerWays<'a, N: Real, const D: usize> {
+pub(in crate::shape) struct CornerEdges<'a, N: Real, const D: usize> {
     normal: &'a Vector<N, D>,
     /// A side rises clearly along the normal.
     has_rising: bool,
     /// A side is perpendicular to the normal, within rounding.
-    has_level: bool,
+    has_perpendicular: bool,
 }
 
-impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
+impl<'a, N: Real, const D: usize> CornerEdges<'a, N, D> {
     pub(in crate::shape) const fn new(normal: &'a Vector<N, D>) -> Self {
-        Self { normal, has_rising: false, has_level: false }
+        Self { normal, has_rising: false, has_perpendicular: false }
     }
 
     /// Adds a side of any length, as a vector away from the corner.
     #[inline]
-    pub(in crate::shape) fn add(&mut self, way: &Vector<N, D>) {
-        let (rise, room) = (way.dot(self.normal), N::lit(CLEAR) * slack());
-        let is_clear = rise * rise > room * room * way.norm_squared();
+    pub(in crate::shape) fn add(&mut self, edge: &Vector<N, D>) {
+        let (rise, margin) = (edge.dot(self.normal), N::lit(CLEAR) * slack());
+        let is_clear = rise * rise > margin * margin * edge.norm_squared();
         self.has_rising |= is_clear && rise > N::ZERO;
-        self.has_level |= !is_clear;
+        self.has_perpendicular |= !is_clear;
     }
 
     /// Whether a side rises, so that more sides cannot change the answer.
@@ -97,8 +97,8 @@ impl<'a, N: Real, const D: usize> CornerWays<'a, N, D> {
             return Some(false);
         }
         let cosine = own.dot(self.normal);
-        let is_leaning = N::ONE - cosine * cosine > N::lit(2.0 * FLAT_SINE * FLAT_SINE);
-        ((is_leaning || is_bent) && !self.has_level && !is_one_sided).then_some(true)
+        let is_tilted = N::ONE - cosine * cosine > N::lit(2.0 * FLAT_SINE * FLAT_SINE);
+        ((is_tilted || is_bent) && !self.has_perpendicular && !is_one_sided).then_some(true)
     }
 }
 
@@ -110,10 +110,10 @@ pub(in crate::shape) struct Seam<N: Real, const D: usize> {
     /// none.
     own: Vector<N, D>,
     /// The component of the normal along the face or segment that asks.
-    lean: Vector<N, D>,
-    /// A piece lies on the side that the normal tilts to if a direction into it rises along `lean`
-    /// by more than `room`.
-    room: N,
+    tilt: Vector<N, D>,
+    /// A piece lies on the side that the normal tilts to if a direction into it rises along `tilt`
+    /// by more than `margin`.
+    margin: N,
     /// The normal is that of the asking face or segment, and all pieces are coplanar with this,
     /// within `FLAT_SINE`.
     is_flat: bool,
@@ -133,14 +133,14 @@ impl<N: Real, const D: usize> Seam<N, D> {
     /// Starts a seam between faces, for the face with the unit normal `own`.
     pub(in crate::shape) fn of_faces(own: Vector<N, D>, normal: &Vector<N, D>) -> Self {
         let along = own.dot(normal);
-        Self::new(own, normal, normal - own * along, is_level(along))
+        Self::new(own, normal, normal - own * along, are_parallel(along))
     }
 
     /// Marks the seam as an edge. A normal that tilts more along the edge than across it is not one
     /// of a rim.
     pub(in crate::shape) fn along(mut self, edge: &Vector<N, D>) -> Self {
         if let Some((along, _)) = unit(edge) {
-            self.room -= along.dot(&self.lean).abs();
+            self.margin -= along.dot(&self.tilt).abs();
         }
         self
     }
@@ -151,12 +151,12 @@ impl<N: Real, const D: usize> Seam<N, D> {
         Self::new(own, normal, own * along, is_flat(along))
     }
 
-    fn new(own: Vector<N, D>, normal: &Vector<N, D>, lean: Vector<N, D>, is_flat: bool) -> Self {
+    fn new(own: Vector<N, D>, normal: &Vector<N, D>, tilt: Vector<N, D>, is_flat: bool) -> Self {
         Self {
             normal: *normal,
             own,
-            lean,
-            room: slack(),
+            tilt,
+            margin: slack(),
             is_flat,
             is_hemmed: false,
             is_in_cone: true,
@@ -191,8 +191,8 @@ impl<N: Real, const D: usize> Seam<N, D> {
     fn add(&mut self, rise: impl Fn(&Vector<N, D>) -> N, line: &Vector<N, D>, front: N) {
         let (own, flatness) = (rise(&self.normal), front.abs());
         self.is_in_cone &= own <= slack();
-        self.is_flat &= is_level(line.dot(&self.own));
-        self.is_hemmed |= self.is_flat && rise(&self.lean) > self.room;
+        self.is_flat &= are_parallel(line.dot(&self.own));
+        self.is_hemmed |= self.is_flat && rise(&self.tilt) > self.margin;
         let is_same = |a: N, b: N| (a - b).abs() <= slack();
         if is_same(own, self.highest) && is_same(flatness, self.flatness) {
             // A piece that was added twice has its front up if it has in either.
@@ -225,7 +225,7 @@ mod tests {
     fn admits(normal: &Vector<f64, 3>, faces: &[(Vector<f64, 3>, Vector<f64, 3>)]) -> bool {
         let mut seam = Seam::of_faces(faces[0].1, normal).along(&Vector::<f64, 3>::z());
         for (inward, front) in faces {
-            seam.add_face(|way| inward.dot(way), front);
+            seam.add_face(|direction| inward.dot(direction), front);
         }
         seam.admits(true)
     }
@@ -236,20 +236,20 @@ mod tests {
         for faces in [[left].as_slice(), &[left; 2], &[left; 3]] {
             assert!(admits(&outward, faces) && !admits(&inward, faces), "{} faces", faces.len());
         }
-        let other_way = [left, (left.0, -left.1)];
-        assert!(admits(&outward, &other_way), "one of the two has its front up");
-        let almost_level = [left, (v(-1.0, -0.004), v(-0.004, 1.0))];
-        assert!(admits(&outward, &almost_level), "on one side");
+        let other_order = [left, (left.0, -left.1)];
+        assert!(admits(&outward, &other_order), "one of the two has its front up");
+        let almost_coplanar = [left, (v(-1.0, -0.004), v(-0.004, 1.0))];
+        assert!(admits(&outward, &almost_coplanar), "on one side");
     }
 
     #[test]
-    fn between_faces_that_are_almost_level_only_their_normals_count() {
+    fn between_almost_coplanar_faces_only_their_normals_count() {
         let ridge = [(v(-1.0, -0.003), v(-0.003, 1.0)), (v(1.0, -0.003), v(0.003, 1.0))];
         assert!(!admits(&v(0.0, 1.0), &ridge), "within half a degree of both");
         let sharp = [(v(-1.0, -0.3), v(-0.3, 1.0)), (v(1.0, -0.3), v(0.3, 1.0))];
         assert!(admits(&v(0.0, 1.0), &sharp), "a ridge has it");
-        let level = [(v(-1.0, 0.0), v(0.0, 1.0)), (v(1.0, 0.0), v(0.0, 1.0))];
+        let coplanar = [(v(-1.0, 0.0), v(0.0, 1.0)), (v(1.0, 0.0), v(0.0, 1.0))];
         let along = Vector::<f64, 3>::new(0.0, 1.0, 0.004).normalize();
-        assert!(!admits(&along, &level) && !admits(&along, &level[..1]), "along the edge");
+        assert!(!admits(&along, &coplanar) && !admits(&along, &coplanar[..1]), "along the edge");
     }
 }

@@ -126,13 +126,13 @@ impl<V> Admission<V> {
     }
 
     /// Removes the candidates that are not admitted; stores points and distances of the others.
-    /// `place` maps coordinates and height to the point on the first box.
+    /// `point1` maps coordinates and height to the point on the first box.
     #[inline(always)]
     pub(super) fn admit<S: Simd, N: Real, const D: usize, const COUNT: usize, const L: usize>(
         &self,
         simd: S,
         slots: &mut Slots<N, D, COUNT, L>,
-        place: impl Fn([V; 2], V) -> [V; D],
+        point1: impl Fn([V; 2], V) -> [V; D],
     ) where
         V: Wide<S, Scalar = N>,
     {
@@ -154,7 +154,7 @@ impl<V> Admission<V> {
             if slots.valid[slot] == 0 {
                 continue;
             }
-            for (row, along) in slots.points1[slot].iter_mut().zip(place(flat, height)) {
+            for (row, along) in slots.points1[slot].iter_mut().zip(point1(flat, height)) {
                 along.store(row);
             }
             // Distances are at least the gap, and rounding puts none beyond the prediction.

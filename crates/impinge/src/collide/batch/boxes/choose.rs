@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!   code of a point   31        12            5         0
-//!                     [1 | faces | parts       | slot   ]   layout of the middle: `Naming::code`
+//!                     [1 | faces | parts       | slot   ]   layout of the middle: `SlotFeatures::code`
 //! ```
 //!
 //! Bit 31 is always set, so no code is 0, which stands for points without a slot
@@ -40,7 +40,7 @@ pub(super) struct SlotChoice<'a, N: Real, const D: usize, const COUNT: usize, co
 }
 
 /// Features and codes of the slots of one pair.
-pub(super) trait Naming {
+pub(super) trait SlotFeatures {
     /// Returns the features of a candidate: of the first and the second box.
     fn features(&self, slot: usize) -> [FeatureId; 2];
 
@@ -105,14 +105,19 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     ///
     /// 1. Old points find their slots by code, else by features ([`Self::kept`]).
     /// 2. Slots that jumped lose their ids ([`Self::drop_jumped`]).
-    /// 3. Old points that are left give their ids by position ([`Self::match_places`]).
+    /// 3. Old points that are left give their ids by position ([`Self::match_positions`]).
     /// 4. If there are too many candidates, some are chosen, with a preference for old points
     ///    ([`Self::chosen`]); ids of the others pass to chosen ones near them.
     /// 5. If nothing changed but positions, points are updated in place ([`Self::put_all`]); else
     ///    new ones get ids, and all are written in the order of ids ([`Self::replace`]).
     #[inline(always)]
-    pub(super) fn settle(&self, naming: &impl Naming, limit: usize, raw: &mut RawManifold<N, D>) {
-        let mut kept = self.kept(&raw.points, naming);
+    pub(super) fn write_manifold(
+        &self,
+        slot_features: &impl SlotFeatures,
+        limit: usize,
+        raw: &mut RawManifold<N, D>,
+    ) {
+        let mut kept = self.kept(&raw.points, slot_features);
         if !kept.is_still {
             self.drop_jumped(&raw.points, &mut kept);
         }
@@ -120,7 +125,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         // By position, only if the normal turned by at most 45°.
         let may_match = normals_agree(&raw.normal, &normal);
         if may_match && kept.left != 0 && kept.slots != self.valid {
-            self.match_places(naming, raw, self.valid, &mut kept);
+            self.match_positions(slot_features, raw, self.valid, &mut kept);
         }
         // Up to four candidates are all kept, as by `manifold::choose`.
         let is_full = self.valid.count_ones() as usize <= limit.min(ALL);
@@ -129,7 +134,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
             // Ids of candidates that are not chosen go to chosen ones near them.
             kept.retain(slots, &raw.points);
             if kept.left != 0 {
-                self.match_places(naming, raw, slots, &mut kept);
+                self.match_positions(slot_features, raw, slots, &mut kept);
             }
         }
         let deepest = self.deepest(slots, kept.slots);
@@ -139,7 +144,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
             if slots & !kept.slots != 0 {
                 self.begin(slots & !kept.slots, &mut kept, raw);
             }
-            self.replace(slots, deepest, &kept, naming, raw);
+            self.replace(slots, deepest, &kept, slot_features, raw);
         }
         raw.normal = normal;
     }
@@ -147,15 +152,15 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
     /// Finds the slots of old points by their features; features of points, and of slots, are
     /// distinct.
     #[inline(always)]
-    fn kept(&self, old: &[RawPoint<N, D>], naming: &impl Naming) -> KeptSlots<COUNT> {
+    fn kept(&self, old: &[RawPoint<N, D>], slot_features: &impl SlotFeatures) -> KeptSlots<COUNT> {
         let mut kept =
             KeptSlots { slots: 0, is_still: true, left: 0, ids: [0; COUNT], heirs: [0; COUNT] };
         for (at, point) in old.iter().enumerate() {
             let own = slot_of(point.code);
-            let is_same = point.code == naming.code(own) && self.valid >> own & 1 == 1;
+            let is_same = point.code == slot_features.code(own) && self.valid >> own & 1 == 1;
             // A slot continues one old point at most.
             let free = self.valid & !kept.slots;
-            let slot = if is_same { Some(own) } else { naming.slot(point, free) };
+            let slot = if is_same { Some(own) } else { slot_features.slot(point, free) };
             kept.is_still &= is_same;
             if let Some(slot) = slot {
                 kept.slots |= 1 << slot;
@@ -180,17 +185,17 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         }
     }
 
-    /// Returns whether a candidate at `place`, with the features of `old`, is the same point.
+    /// Returns whether a candidate at `write_position`, with the features of `old`, is the same point.
     #[inline(always)]
-    fn is_same(&self, old: &RawPoint<N, D>, place: &Point<N, D>) -> bool {
-        is_same_point([old.feature1, old.feature2], &(place - old.point1), || self.size)
+    fn is_same(&self, old: &RawPoint<N, D>, position: &Point<N, D>) -> bool {
+        is_same_point([old.feature1, old.feature2], &(position - old.point1), || self.size)
     }
 
     /// Gives the ids of the remaining old points to slots of `some` without an id, by position.
     #[inline(never)]
-    fn match_places(
+    fn match_positions(
         &self,
-        naming: &impl Naming,
+        slot_features: &impl SlotFeatures,
         raw: &RawManifold<N, D>,
         some: u32,
         kept: &mut KeptSlots<COUNT>,
@@ -198,7 +203,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         let (old, scale) = (&raw.points, near_scale(self.size));
         each_near(
             [kept.left, some & !kept.slots],
-            |at, among| naming.on_vertex(old[at].feature2, among),
+            |at, among| slot_features.on_vertex(old[at].feature2, among),
             |at, slot| ((self.point1(slot) - old[at].point1) * scale).norm_squared(),
             |at, slot| {
                 kept.slots |= 1 << slot;
@@ -222,7 +227,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         let mut has_jumped = false;
         for point in &mut raw.points {
             let old = *point;
-            self.place(slot_of(point.code), deepest, point);
+            self.write_position(slot_of(point.code), deepest, point);
             // A crossing of two edges that jumped is a new contact.
             if !self.is_same(&old, &point.point1) {
                 (point.id, has_jumped) = (raw.ids.next(), true);
@@ -240,16 +245,16 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
         slots: u32,
         deepest: usize,
         kept: &KeptSlots<COUNT>,
-        naming: &impl Naming,
+        slot_features: &impl SlotFeatures,
         raw: &mut RawManifold<N, D>,
     ) {
         let (order, count) = Self::by_ids(slots, kept);
         raw.points.resize(count, RawPoint::default());
         for (&slot, point) in order.iter().zip(&mut raw.points) {
             point.id = kept.ids[slot];
-            self.place(slot, deepest, point);
-            [point.feature1, point.feature2] = naming.features(slot);
-            point.code = naming.code(slot);
+            self.write_position(slot, deepest, point);
+            [point.feature1, point.feature2] = slot_features.features(slot);
+            point.code = slot_features.code(slot);
         }
     }
 
@@ -281,7 +286,7 @@ impl<N: Real, const D: usize, const COUNT: usize, const L: usize> SlotChoice<'_,
 
     /// Writes position and distance of the candidate of a slot.
     #[inline(always)]
-    fn place(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
+    fn write_position(&self, slot: usize, deepest: usize, point: &mut RawPoint<N, D>) {
         point.point1 = self.point1(slot);
         point.distance = if slot == deepest { self.gap } else { self.distance(slot) };
     }

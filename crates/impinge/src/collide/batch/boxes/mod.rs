@@ -19,7 +19,7 @@ pub(super) use self::space::Boxes3;
 use super::gather::Inputs;
 use super::{PairQuestion, Solid, masks};
 use crate::collide::manifold::frame::ROUNDING_ERRORS;
-use crate::math::lanes::{either, lit, norm, seen_from};
+use crate::math::lanes::{either, lit, norm, rotated_into};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
@@ -63,7 +63,7 @@ pub(super) fn other<S: Simd, V: Wide<S>, const D: usize>(
     is_second: V::Mask,
 ) -> ([[V; D]; D], [V; D]) {
     let (r, t) = (&boxes.rotation, &boxes.translation);
-    let inverse = seen_from(r, t);
+    let inverse = rotated_into(r, t);
     let rotation = filled(
         #[inline(always)]
         |j| {

@@ -16,7 +16,7 @@ use super::super::frame::ROUNDING_ERRORS;
 use super::FaceSolid;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::math::lanes::{
-    bits, cross, dot, in_lanes, lit, load, minus, norm, spread, times, turned_back,
+    bits, cross, dot, in_lanes, lit, load, minus, norm, rotated_back, spread, times,
 };
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Real, Vector, Wide};
@@ -98,17 +98,17 @@ pub(in crate::collide) struct FaceClip<N: Real> {
     pub(super) in_triangle: SideHeights<N, MAX, 3>,
     /// Bound of the rounding errors of lengths.
     pub(super) tolerance: [N; LANES],
-    pub(super) shown: ShownBits,
+    pub(super) supporting: SupportingBits,
     /// The lanes in which the shown feature is certain and all sides are longer than two
     /// tolerances.
-    pub(super) plain: u8,
+    pub(super) with_extent: u8,
     /// The lanes in which a side of the triangle, the first index, and a side of the ring cross.
     pub(super) crossed: [[u8; MAX]; 3],
 }
 
 /// The lanes in which a triangle shows its face, and the corners and sides of the shown feature.
 #[derive(Clone, Copy, Default)]
-pub(super) struct ShownBits {
+pub(super) struct SupportingBits {
     pub(super) face: u8,
     /// The lanes in which the face is the back.
     pub(super) back: u8,
@@ -127,8 +127,8 @@ impl<N: Real> FaceClip<N> {
             in_face: SideHeights::blank(),
             in_triangle: SideHeights::blank(),
             tolerance: zeros,
-            shown: ShownBits::default(),
-            plain: 0,
+            supporting: SupportingBits::default(),
+            with_extent: 0,
             crossed: [[0; MAX]; 3],
         }
     }
@@ -154,23 +154,23 @@ impl<N: Real> FaceClip<N> {
         normals: &[[N; LANES]; 3],
     ) {
         let origin: [V; 3] = spread(simd, &solid.origin);
-        let seen = |corner: usize| -> [V; 3] {
-            turned_back(simd, solid.turn, &minus(&load(simd, &triangles.corners[corner]), &origin))
+        let in_frame = |corner: usize| -> [V; 3] {
+            rotated_back(simd, solid.turn, &minus(&load(simd, &triangles.corners[corner]), &origin))
         };
-        let (normal, corners) = (load(simd, normals), [seen(0), seen(1), seen(2)]);
+        let (normal, corners) = (load(simd, normals), [in_frame(0), in_frame(1), in_frame(2)]);
         let squared = [
             dot(&corners[0], &corners[0]),
             dot(&corners[1], &corners[1]),
             dot(&corners[2], &corners[2]),
         ];
-        let reach = squared[0].larger(squared[1]).larger(squared[2]).sqrt();
+        let farthest = squared[0].larger(squared[1]).larger(squared[2]).sqrt();
         let rounding = V::all(simd, N::lit(ROUNDING_ERRORS) * N::EPSILON);
-        let tolerance = rounding * (V::all(simd, solid.reach()) + reach);
-        let seen = SeenTriangles::new(simd, &corners, &normal);
-        let (shown, is_shown) = seen.shown(simd, tolerance);
-        let is_plain = is_shown & self.measure_face(simd, &seen, tolerance);
-        self.measure_triangles(simd, &seen, tolerance);
-        (self.shown, self.plain) = (shown, bits(is_plain));
+        let tolerance = rounding * (V::all(simd, solid.reach()) + farthest);
+        let projected = ProjectedTriangles::new(simd, &corners, &normal);
+        let (supporting, is_supporting) = projected.supporting(simd, tolerance);
+        let has_extent = is_supporting & self.measure_face(simd, &projected, tolerance);
+        self.measure_triangles(simd, &projected, tolerance);
+        (self.supporting, self.with_extent) = (supporting, bits(has_extent));
         self.find_crossings();
         tolerance.store(&mut self.tolerance);
         for (rows, corner) in self.corners.iter_mut().zip(&corners) {
@@ -187,7 +187,7 @@ impl<N: Real> FaceClip<N> {
             for (other, crossed) in crossed.iter_mut().enumerate().take(sides) {
                 let own = self.in_face.parted([side, (side + 1) % 3], other);
                 let others = self.in_triangle.parted([other, (other + 1) % count], side);
-                *crossed = own & others & self.shown.sides[side];
+                *crossed = own & others & self.supporting.sides[side];
             }
         }
     }
@@ -198,21 +198,21 @@ impl<N: Real> FaceClip<N> {
     fn measure_face<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        seen: &SeenTriangles<V>,
+        projected: &ProjectedTriangles<V>,
         tolerance: V,
     ) -> V::Mask {
         let (outward, count): ([V; 3], usize) = (spread(simd, &self.ring.normal), self.ring.count);
-        let slope = lit::<S, N, V>(simd, 1.0) / dot(&outward, &seen.normal);
+        let slope = lit::<S, N, V>(simd, 1.0) / dot(&outward, &projected.normal);
         let mut is_long = slope.simd_eq(slope);
         for side in 0..self.sides() {
             let (from, to) = (self.vertex(side), self.vertex((side + 1) % count));
             let start: [V; 3] = spread(simd, &from);
-            let across = cross(&spread(simd, &(to - from)), &seen.normal);
+            let across = cross(&spread(simd, &(to - from)), &projected.normal);
             let length = norm(&across);
             is_long &= length.simd_gt(tolerance + tolerance);
             let inward = times(&across, lit::<S, N, V>(simd, 1.0) / length);
             for corner in 0..3 {
-                let arm = minus(&seen.corners[corner], &start);
+                let arm = minus(&projected.corners[corner], &start);
                 self.in_face.put([corner, side], dot(&inward, &arm), tolerance);
                 if side == 0 {
                     (-dot(&outward, &arm) * slope).store(&mut self.depths[corner]);
@@ -227,17 +227,17 @@ impl<N: Real> FaceClip<N> {
     fn measure_triangles<S: Simd, V: Wide<S, Scalar = N>>(
         &mut self,
         simd: S,
-        seen: &SeenTriangles<V>,
+        projected: &ProjectedTriangles<V>,
         tolerance: V,
     ) {
-        let slope = lit::<S, N, V>(simd, 1.0) / seen.rise;
+        let slope = lit::<S, N, V>(simd, 1.0) / projected.rise;
         for at in 0..self.ring.count {
             let vertex: [V; 3] = spread(simd, &self.vertex(at));
             for side in 0..3 {
-                let arm = minus(&vertex, &seen.corners[side]);
-                self.in_triangle.put([at, side], dot(&seen.inward[side], &arm), tolerance);
+                let arm = minus(&vertex, &projected.corners[side]);
+                self.in_triangle.put([at, side], dot(&projected.inward[side], &arm), tolerance);
                 if side == 0 {
-                    (dot(&seen.across, &arm) * slope).store(&mut self.vertex_depths[at]);
+                    (dot(&projected.across, &arm) * slope).store(&mut self.vertex_depths[at]);
                 }
             }
         }
@@ -259,7 +259,7 @@ impl<N: Real> FaceClip<N> {
 }
 
 /// Eight triangles and their normals.
-struct SeenTriangles<V> {
+struct ProjectedTriangles<V> {
     corners: [[V; 3]; 3],
     normal: [V; 3],
     /// From each corner to the next, the squared lengths, and the cross product of the first two.
@@ -274,7 +274,7 @@ struct SeenTriangles<V> {
     lengths: [V; 3],
 }
 
-impl<V> SeenTriangles<V> {
+impl<V> ProjectedTriangles<V> {
     #[inline(always)]
     fn new<S: Simd, N: Real>(simd: S, corners: &[[V; 3]; 3], normal: &[V; 3]) -> Self
     where
@@ -291,9 +291,9 @@ impl<V> SeenTriangles<V> {
         let turn = rise.simd_lt(V::all(simd, N::ZERO)).select(-one, one);
         let (mut inward, mut lengths) = (sides, squared);
         for (own, length) in inward.iter_mut().zip(&mut lengths) {
-            let way = cross(normal, own);
-            *length = norm(&way);
-            *own = times(&way, turn / *length);
+            let perpendicular = cross(normal, own);
+            *length = norm(&perpendicular);
+            *own = times(&perpendicular, turn / *length);
         }
         Self { corners: *corners, normal: *normal, sides, squared, across, rise, inward, lengths }
     }
@@ -302,7 +302,7 @@ impl<V> SeenTriangles<V> {
     /// [`core_feature`](crate::shape::SupportMap::core_feature), and the lanes in which rounding
     /// cannot change them and they are not degenerate.
     #[inline(always)]
-    fn shown<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (ShownBits, V::Mask)
+    fn supporting<S: Simd, N: Real>(&self, simd: S, tolerance: V) -> (SupportingBits, V::Mask)
     where
         V: Wide<S, Scalar = N>,
     {
@@ -339,23 +339,23 @@ impl<V> SeenTriangles<V> {
         let (least, other) = (is_back.select(back, out), is_back.select(out, back));
         let is_corner = is_steep & limit.simd_lt(least * less);
         let is_side = is_steep & least.simd_lt(limit * less) & least.simd_lt(other * less);
-        let mut bits_of = ShownBits {
+        let mut bits_of = SupportingBits {
             face: bits(is_face),
             back: bits(is_face & self.rise.simd_lt(zero)),
-            ..ShownBits::default()
+            ..SupportingBits::default()
         };
-        let mut is_plain = is_face | is_corner | is_side;
+        let mut has_extent = is_face | is_corner | is_side;
         for side in 0..3 {
             let is_own = (tops[side] & !is_back) | (tops[(side + 1) % 3] & is_back);
-            let is_shown = is_face | (is_side & is_own);
+            let is_supporting = is_face | (is_side & is_own);
             let is_long = self.lengths[side].simd_gt(tolerance + tolerance);
-            is_plain &= is_long | !is_shown;
-            bits_of.sides[side] = bits(is_shown);
-            bits_of.corners[side] |= bits(is_shown | (is_corner & tops[side]));
-            bits_of.corners[(side + 1) % 3] |= bits(is_shown);
+            has_extent &= is_long | !is_supporting;
+            bits_of.sides[side] = bits(is_supporting);
+            bits_of.corners[side] |= bits(is_supporting | (is_corner & tops[side]));
+            bits_of.corners[(side + 1) % 3] |= bits(is_supporting);
         }
         // A face seen nearly edge-on, at most two tolerances wide, is degenerate.
         let width = (tolerance + tolerance) * longest.sqrt();
-        (bits_of, is_plain & (self.rise.abs().simd_gt(width) | !is_face))
+        (bits_of, has_extent & (self.rise.abs().simd_gt(width) | !is_face))
     }
 }

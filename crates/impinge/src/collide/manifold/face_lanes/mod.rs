@@ -22,7 +22,7 @@ mod measure;
 mod points;
 
 pub(in crate::collide) use self::measure::FaceClip;
-use super::supporting::{fill_part, part_shown};
+use super::supporting::{fill_part, supporting_part};
 use crate::collide::RawPoints;
 use crate::collide::packet::{LANES, PartPacket};
 use crate::math::ones::Ones;
@@ -32,7 +32,7 @@ use crate::shape::{FaceRing, FeatureId, Geometry, Kind, SupportMap};
 
 /// The input of the clip for one triangle.
 #[derive(Clone, Copy)]
-pub(in crate::collide) struct TriangleAsked<N: Real> {
+pub(in crate::collide) struct ClipRequest<N: Real> {
     /// Unit, from the triangle to the solid, in the frame of the solid.
     pub(in crate::collide) normal: Vector<N, 3>,
     /// The feature of the solid that faces the triangle, against the normal.
@@ -44,7 +44,7 @@ pub(in crate::collide) struct TriangleAsked<N: Real> {
     pub(in crate::collide) least: N,
 }
 
-impl<N: Real> TriangleAsked<N> {
+impl<N: Real> ClipRequest<N> {
     /// `None` for solids other than boxes and hulls, and for flat boxes.
     pub(in crate::collide) fn new(
         solid: Kind<'_, N, 3>,
@@ -52,7 +52,7 @@ impl<N: Real> TriangleAsked<N> {
         nearest: Option<N>,
         least: N,
     ) -> Option<Self> {
-        Some(Self { normal, part: part_shown(solid, &-normal)?, nearest, least })
+        Some(Self { normal, part: supporting_part(solid, &-normal)?, nearest, least })
     }
 }
 
@@ -75,12 +75,12 @@ impl<N: Real> FaceSolid<'_, N> {
     pub(in crate::collide) fn each_clip(
         &self,
         triangles: &PartPacket<N, 3>,
-        asked: &[TriangleAsked<N>],
+        requests: &[ClipRequest<N>],
         clip: &mut FaceClip<N>,
         points: &mut RawPoints<N, 3>,
         visit: impl FnMut(usize, Option<N>, &RawPoints<N, 3>),
     ) {
-        self.each_clip_at(Level::new(), (triangles, asked), clip, points, visit);
+        self.each_clip_at(Level::new(), (triangles, requests), clip, points, visit);
     }
 
     /// [`Self::each_clip`] with the vectors of an instruction set; the result does not depend on
@@ -88,22 +88,22 @@ impl<N: Real> FaceSolid<'_, N> {
     pub(super) fn each_clip_at(
         &self,
         level: Level,
-        (triangles, asked): (&PartPacket<N, 3>, &[TriangleAsked<N>]),
+        (triangles, requests): (&PartPacket<N, 3>, &[ClipRequest<N>]),
         clip: &mut FaceClip<N>,
         points: &mut RawPoints<N, 3>,
         mut visit: impl FnMut(usize, Option<N>, &RawPoints<N, 3>),
     ) {
         let mut normals = [[N::ZERO; LANES]; 3];
-        for (lane, asked) in asked.iter().enumerate() {
-            for (row, value) in normals.iter_mut().zip(asked.normal.iter()) {
+        for (lane, request) in requests.iter().enumerate() {
+            for (row, value) in normals.iter_mut().zip(request.normal.iter()) {
                 row[lane] = *value;
             }
         }
-        let mut left = u8::MAX >> (LANES - asked.len());
+        let mut left = u8::MAX >> (LANES - requests.len());
         // Lanes in which the solid shows one feature share a ring.
         while left != 0 {
-            let part = asked[left.trailing_zeros() as usize].part;
-            let is_same = |lane: &usize| asked[*lane].part == part;
+            let part = requests[left.trailing_zeros() as usize].part;
+            let is_same = |lane: &usize| requests[*lane].part == part;
             let group = ones(left).filter(is_same).fold(0, |group, lane| group | 1 << lane);
             left &= !group;
             clip.ring = FaceRing::blank();
@@ -111,13 +111,13 @@ impl<N: Real> FaceSolid<'_, N> {
                 ones(group).for_each(|lane| visit(lane, None, points));
                 continue;
             }
-            for run in level.runs(asked.len()) {
+            for run in level.runs(requests.len()) {
                 let lanes = run.of_bits(group);
                 if lanes != 0 {
                     clip.measure(run, self, triangles, &normals);
                 }
                 for lane in ones(lanes) {
-                    let lowest = clip.points_of(lane, &asked[lane], self.prediction, points);
+                    let lowest = clip.points_of(lane, &requests[lane], self.prediction, points);
                     visit(lane, lowest, points);
                 }
             }

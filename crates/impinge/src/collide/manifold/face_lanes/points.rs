@@ -1,6 +1,6 @@
 //! Makes the contact points of one triangle from the measured distances.
 
-use super::TriangleAsked;
+use super::ClipRequest;
 use super::measure::FaceClip;
 use crate::collide::{RawPoint, RawPoints};
 use crate::math::{Point, Real, Vector, max, min};
@@ -12,19 +12,19 @@ impl<N: Real> FaceClip<N> {
     pub(super) fn points_of(
         &self,
         lane: usize,
-        asked: &TriangleAsked<N>,
+        request: &ClipRequest<N>,
         prediction: N,
         points: &mut RawPoints<N, 3>,
     ) -> Option<N> {
-        let is_plain = self.plain >> lane & 1 == 1;
+        let has_extent = self.with_extent >> lane & 1 == 1;
         // Without an area on either side, edges may be parallel or corners coincide.
-        let has_area = self.ring.count > 2 || self.shown.face >> lane & 1 == 1;
-        if !(is_plain && has_area) {
+        let has_area = self.ring.count > 2 || self.supporting.face >> lane & 1 == 1;
+        if !(has_extent && has_area) {
             return None;
         }
         let (tolerance, first) = (self.tolerance[lane], points.len());
-        let mut found = FoundPoints { asked, prediction, tolerance, points, first };
-        let one = LaneClip { clip: self, lane, normal: &asked.normal };
+        let mut found = FoundPoints { request, prediction, tolerance, points, first };
+        let one = LaneClip { clip: self, lane, normal: &request.normal };
         let is_clear = one.corners(&mut found).and_then(|()| one.vertices(&mut found)).is_some();
         if is_clear {
             one.crossings(&mut found);
@@ -39,7 +39,7 @@ impl<N: Real> FaceClip<N> {
 
 /// The points of one triangle found so far.
 struct FoundPoints<'a, N: Real> {
-    asked: &'a TriangleAsked<N>,
+    request: &'a ClipRequest<N>,
     /// Points farther than this by more than the tolerance are dropped.
     prediction: N,
     tolerance: N,
@@ -54,7 +54,7 @@ impl<N: Real> FoundPoints<'_, N> {
     fn lowest(&mut self) -> Option<N> {
         let new = &mut self.points[self.first..];
         let lowest = new.iter().fold(N::INFINITY, |lowest, point| min(point.distance, lowest));
-        let Some(nearest) = self.asked.nearest else { return Some(lowest) };
+        let Some(nearest) = self.request.nearest else { return Some(lowest) };
         // False for NaN.
         let is_reached = lowest <= nearest + self.tolerance;
         let deepest = new.iter_mut().find(|point| point.distance == lowest)?;
@@ -65,7 +65,7 @@ impl<N: Real> FoundPoints<'_, N> {
     /// Adds the point `point` of the triangle, at the signed `distance` from the face of the solid
     /// along the normal, unless it is beyond the prediction, below `least`, or already known.
     fn push(&mut self, point: &Vector<N, 3>, distance: N, [feature1, feature2]: [FeatureId; 2]) {
-        let TriangleAsked { normal, nearest, least, .. } = self.asked;
+        let ClipRequest { normal, nearest, least, .. } = self.request;
         let mut distance = max(distance, nearest.unwrap_or(distance));
         // False for NaN.
         let is_near = distance <= self.prediction + self.tolerance;
@@ -77,9 +77,9 @@ impl<N: Real> FoundPoints<'_, N> {
         // A corner on a corner is found from both outlines.
         let near = N::lit(4.0) * self.tolerance;
         let is_same = |old: &RawPoint<N, 3>| {
-            let way = old.point1 - point1;
+            let moved = old.point1 - point1;
             [old.feature1, old.feature2] == [feature1, feature2]
-                && (way - normal * normal.dot(&way)).norm() <= near
+                && (moved - normal * normal.dot(&moved)).norm() <= near
         };
         if self.points[self.first..].iter().any(is_same) {
             return;
@@ -110,13 +110,13 @@ impl<N: Real> LaneClip<'_, N> {
     /// Adds the corners that the triangle shows within the face. `None` if the solid shows an edge
     /// and a corner of the triangle is on its line.
     fn corners(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
-        let FaceClip { ring, in_face, shown, depths, .. } = self.clip;
+        let FaceClip { ring, in_face, supporting, depths, .. } = self.clip;
         if ring.count < 3 {
             let is_on = (0..3).any(|corner| self.has(in_face.is_on[corner]));
             return (ring.count < 2 || !is_on).then_some(());
         }
         for corner in 0..3 {
-            if !self.has(shown.corners[corner] & !in_face.is_beyond[corner]) {
+            if !self.has(supporting.corners[corner] & !in_face.is_beyond[corner]) {
                 continue;
             }
             let (at, id) = (self.corner(corner), FeatureId::Vertex([0, 1, 2][corner]));
@@ -129,11 +129,11 @@ impl<N: Real> LaneClip<'_, N> {
     /// Adds the corners of the ring within the face of the triangle. `None` if the triangle shows
     /// no face and a corner of the ring is on the line of a shown side.
     fn vertices(&self, found: &mut FoundPoints<'_, N>) -> Option<()> {
-        let FaceClip { ring, in_triangle, shown, vertex_depths, .. } = self.clip;
-        let face = FeatureId::Face(u32::from(self.has(shown.back)));
+        let FaceClip { ring, in_triangle, supporting, vertex_depths, .. } = self.clip;
+        let face = FeatureId::Face(u32::from(self.has(supporting.back)));
         for (vertex, depths) in vertex_depths.iter().enumerate().take(ring.count) {
-            if !self.has(shown.face) {
-                let is_on = |side| self.has(in_triangle.on(vertex, side) & shown.sides[side]);
+            if !self.has(supporting.face) {
+                let is_on = |side| self.has(in_triangle.on(vertex, side) & supporting.sides[side]);
                 if (0..3).any(is_on) {
                     return None;
                 }
@@ -153,12 +153,12 @@ impl<N: Real> LaneClip<'_, N> {
         if !self.has(in_triangle.is_on[vertex]) {
             return None;
         }
-        let named = |corner: usize| {
+        let with_ids = |corner: usize| {
             let number = [0, 1, 2][corner];
             (self.corner(corner), FeatureId::Vertex(number), FeatureId::Edge(number))
         };
         let sides = (0..3).filter(|side| self.has(in_triangle.on(vertex, *side)));
-        self.part_with(at, sides, |side| [named(side), named((side + 1) % 3)])
+        self.part_with(at, sides, |side| [with_ids(side), with_ids((side + 1) % 3)])
     }
 
     /// Returns the side or corner of the face that a corner of the triangle projects to; `None` if
@@ -168,9 +168,9 @@ impl<N: Real> LaneClip<'_, N> {
         if !self.has(in_face.is_on[corner]) {
             return None;
         }
-        let named = |side: usize| (self.clip.vertex(side), ring.ids[side], ring.sides[side]);
+        let with_ids = |side: usize| (self.clip.vertex(side), ring.ids[side], ring.sides[side]);
         let sides = (0..ring.count).filter(|side| self.has(in_face.on(corner, *side)));
-        self.part_with(at, sides, |side| [named(side), named((side + 1) % ring.count)])
+        self.part_with(at, sides, |side| [with_ids(side), with_ids((side + 1) % ring.count)])
     }
 
     /// Adds the crossings of a side of the triangle and one of the ring. The ends of each are off
@@ -202,19 +202,19 @@ impl<N: Real> LaneClip<'_, N> {
         sides: impl Iterator<Item = usize>,
         ends: impl Fn(usize) -> [(Vector<N, 3>, FeatureId, FeatureId); 2],
     ) -> Option<FeatureId> {
-        let room = N::TWO * self.clip.tolerance[self.lane];
+        let tolerance = N::TWO * self.clip.tolerance[self.lane];
         // Projects along the normal.
         let flat = |v: Vector<N, 3>| v - self.normal * self.normal.dot(&v);
         let mut part = None;
         for side in sides {
             let [(from, from_id, side_id), (to, to_id, _)] = ends(side);
-            let (way, arm) = (flat(to - from), flat(at - from));
-            let share = arm.dot(&way);
-            if arm.norm() <= room {
+            let (edge, arm) = (flat(to - from), flat(at - from));
+            let share = arm.dot(&edge);
+            if arm.norm() <= tolerance {
                 part = Some(from_id);
-            } else if flat(at - to).norm() <= room {
+            } else if flat(at - to).norm() <= tolerance {
                 part = Some(to_id);
-            } else if share >= N::ZERO && share <= way.norm_squared() {
+            } else if share >= N::ZERO && share <= edge.norm_squared() {
                 part = Some(side_id);
             }
         }

@@ -60,26 +60,26 @@ fn manifold<N: Real>(pair: &Pair<'_, N, 3>, points: usize) -> RawManifold<N, 3> 
 }
 
 /// Asserts that each expected corner is a contact, and each contact an expected corner.
-fn has_corners<N: Real>(found: &RawManifold<N, 3>, expected: &Outline, room: f64, what: &str) {
+fn has_corners<N: Real>(found: &RawManifold<N, 3>, expected: &Outline, tolerance: f64, what: &str) {
     let off = |point: &Point<N, 3>, [x, y]: &[f64; 2]| {
         (point.x.as_f64() - x).abs().max((point.y.as_f64() - y).abs())
     };
-    let places = found.points.iter().map(|point| point.point1).collect::<Vec<_>>();
+    let positions = found.points.iter().map(|point| point.point1).collect::<Vec<_>>();
     for corner in expected {
         assert!(
-            places.iter().any(|place| off(place, corner) <= room),
+            positions.iter().any(|position| off(position, corner) <= tolerance),
             "{what}: {corner:?} {found:?}"
         );
     }
-    for place in &places {
+    for position in &positions {
         assert!(
-            expected.iter().any(|corner| off(place, corner) <= room),
-            "{what}: {place} {found:?}"
+            expected.iter().any(|corner| off(position, corner) <= tolerance),
+            "{what}: {position} {found:?}"
         );
     }
 }
 
-fn prisms<N: Real>(room: f64) {
+fn prisms<N: Real>(tolerance: f64) {
     for (count1, count2) in
         [(3, 3), (4, 7), (5, 8), (8, 8), (6, 9), (9, 9), (12, 17), (24, 3), (40, 33)]
     {
@@ -93,9 +93,9 @@ fn prisms<N: Real>(room: f64) {
             let pair = Pair { first: below.geometry().0, second: above.geometry().0, pose12 };
             let found = manifold(&pair, 128);
             let what = format!("{count1} and {count2} corners, {shift}");
-            has_corners(&found, &common(&one, &other), room, &what);
+            has_corners(&found, &common(&one, &other), tolerance, &what);
             assert!(
-                found.points.iter().all(|p| (p.distance.as_f64() - 0.01).abs() < room),
+                found.points.iter().all(|p| (p.distance.as_f64() - 0.01).abs() < tolerance),
                 "{what}"
             );
             let ids = found.points.iter().map(|p| (p.feature1, p.feature2)).collect::<Vec<_>>();
@@ -111,7 +111,7 @@ fn faces_of_any_number_of_corners_are_clipped() {
 }
 
 /// A face without width counts as a segment, one without length as a point.
-fn degenerate<N: Real>(room: f64) {
+fn degenerate<N: Real>(tolerance: f64) {
     let p = |x: f64, y: f64| Point::<N, 3>::new(N::lit(x), N::lit(y), N::ZERO);
     let floor = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::ONE, N::ONE));
     let flat = |half: [f64; 3]| Cuboid::new(Vector::<N, 3>::from(half.map(N::lit)));
@@ -131,17 +131,17 @@ fn degenerate<N: Real>(room: f64) {
     for (at, (solid, expected)) in solids.iter().enumerate() {
         let pose12 = Pose::from_translation(Vector::<N, 3>::new(N::ZERO, N::ZERO, N::lit(1.01)));
         let pair = Pair { first: floor.geometry().0, second: solid.geometry().0, pose12 };
-        has_corners(&manifold(&pair, 16), expected, room, &format!("solid {at}"));
+        has_corners(&manifold(&pair, 16), expected, tolerance, &format!("solid {at}"));
         let (first, second, pose12) = (pair.second, pair.first, pose12.inverse());
         let swapped = manifold(&Pair { first, second, pose12 }, 16);
-        has_corners(&swapped, expected, room, &format!("solid {at} below"));
+        has_corners(&swapped, expected, tolerance, &format!("solid {at} below"));
     }
     let thin = Cylinder::new(N::HALF, N::lit(tiny));
     let turn = Isometry3::rotation(Vector::<N, 3>::x() * N::frac_pi_2());
     let mut pose12 = Pose::from_isometry(&turn);
     pose12.translation.z = N::lit(1.51);
     let pair = Pair { first: floor.geometry().0, second: thin.geometry().0, pose12 };
-    has_corners(&manifold(&pair, 16), &vec![[0.0, 0.0]], room, "a needle");
+    has_corners(&manifold(&pair, 16), &vec![[0.0, 0.0]], tolerance, "a needle");
 }
 
 #[test]

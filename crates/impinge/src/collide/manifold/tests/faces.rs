@@ -1,11 +1,11 @@
 //! Contacts of faces with triangles, eight at a time, against the exact overlap of both outlines.
 
 use super::clip::{Outline, common, prism, regular};
-use crate::collide::manifold::face_lanes::{FaceClip, FaceSolid, TriangleAsked};
+use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::{RawPoint, RawPoints};
-use crate::math::noise::Noise;
 use crate::math::simd::Level;
+use crate::math::xorshift::Xorshift;
 use crate::math::{Matrix, Point, Real, Vector, cross, min, orthonormal_basis};
 use crate::shape::{Cuboid, FeatureId, Shape};
 
@@ -14,7 +14,7 @@ type Corners<N> = [Point<N, 3>; 3];
 /// Triangles in the frame of a solid, and the input of the clip for each.
 struct Scene<N: Real> {
     triangles: Vec<Corners<N>>,
-    asked: Vec<TriangleAsked<N>>,
+    requests: Vec<ClipRequest<N>>,
 }
 
 /// The points of one triangle; `None` if the lanes leave it undecided.
@@ -29,11 +29,11 @@ fn upward<N: Real>([a, b, c]: &Corners<N>) -> Vector<N, 3> {
 impl<N: Real> Scene<N> {
     fn new(solid: &dyn Shape<N, 3>, triangles: Vec<(Corners<N>, Vector<N, 3>)>) -> Self {
         let solid = solid.geometry().0;
-        let mut scene = Self { triangles: Vec::new(), asked: Vec::new() };
+        let mut scene = Self { triangles: Vec::new(), requests: Vec::new() };
         for (triangle, normal) in triangles {
-            let asked = TriangleAsked::new(solid, normal, None, -N::INFINITY);
+            let request = ClipRequest::new(solid, normal, None, -N::INFINITY);
             scene.triangles.push(triangle);
-            scene.asked.push(asked.expect("a box or a hull"));
+            scene.requests.push(request.expect("a box or a hull"));
         }
         scene
     }
@@ -50,15 +50,15 @@ impl<N: Real> Scene<N> {
         let lanes = FaceSolid { solid: geometry.0, turn, origin, prediction: N::lit(10.0) };
         let mut all = vec![None; self.triangles.len()];
         let mut clip = FaceClip::blank();
-        for (first, (triangles, asked)) in
-            self.triangles.chunks(LANES).zip(self.asked.chunks(LANES)).enumerate()
+        for (first, (triangles, requests)) in
+            self.triangles.chunks(LANES).zip(self.requests.chunks(LANES)).enumerate()
         {
             let (mut packet, mut points) = (PartPacket::blank(), RawPoints::new());
             for (lane, corners) in triangles.iter().enumerate() {
                 packet.put(lane, &corners.map(|corner| Point::from(turn * corner.coords + origin)));
             }
             let mut start = 0;
-            let packet = (&packet, asked);
+            let packet = (&packet, requests);
             lanes.each_clip_at(level, packet, &mut clip, &mut points, |lane, lowest, points| {
                 let own = points[start..].to_vec();
                 start = points.len();
@@ -73,14 +73,14 @@ impl<N: Real> Scene<N> {
     }
 }
 
-fn as_seen<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64; 2] {
+fn projected_along<N: Real>(point: &Point<N, 3>, normal: &Vector<N, 3>) -> [f64; 2] {
     let (u, v) = orthonormal_basis(normal);
     [point.coords.dot(&u).as_f64(), point.coords.dot(&v).as_f64()]
 }
 
 /// Twice the area of the convex hull of some points.
-fn hull_area(places: &[[f64; 2]]) -> f64 {
-    let mut sorted = places.to_vec();
+fn hull_area(positions: &[[f64; 2]]) -> f64 {
+    let mut sorted = positions.to_vec();
     sorted.sort_by(|a, b| a.partial_cmp(b).expect("numbers"));
     let mut hull: Outline = Vec::new();
     for pass in 0..2 {
@@ -123,30 +123,37 @@ fn check<N: Real>(
     normal: &Vector<N, 3>,
     found: &[RawPoint<N, 3>],
 ) {
-    let room = 400.0 * N::EPSILON.as_f64();
+    let tolerance = 400.0 * N::EPSILON.as_f64();
     let ring = |points: &[Point<f64, 3>]| -> Outline {
-        let seen: Outline = points.iter().map(|p| as_seen(p, &normal.map(Real::as_f64))).collect();
-        let turn =
-            seen.iter().zip(seen.iter().cycle().skip(1)).map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
-        if turn.sum::<f64>() < 0.0 { seen.into_iter().rev().collect() } else { seen }
+        let projected: Outline =
+            points.iter().map(|p| projected_along(p, &normal.map(Real::as_f64))).collect();
+        let turn = projected
+            .iter()
+            .zip(projected.iter().cycle().skip(1))
+            .map(|(a, b)| a[0] * b[1] - a[1] * b[0]);
+        if turn.sum::<f64>() < 0.0 { projected.into_iter().rev().collect() } else { projected }
     };
     let corners = corners.map(|corner| Point::from(corner.coords.map(Real::as_f64)));
     let (own, face) = (ring(&corners), ring(&bottom(outline)));
     let shared = outline_area(&common(&own, &face));
-    let places: Vec<_> = found.iter().map(|point| as_seen(&point.point1, normal)).collect();
-    let spanned = hull_area(&places);
-    assert!((spanned - shared).abs() <= 4.0 * room, "spans {spanned} of {shared}");
+    let positions: Vec<_> =
+        found.iter().map(|point| projected_along(&point.point1, normal)).collect();
+    let spanned = hull_area(&positions);
+    assert!((spanned - shared).abs() <= 4.0 * tolerance, "spans {spanned} of {shared}");
     let (normal, up) = (normal.map(Real::as_f64), upward(&corners));
     for point in found {
-        let (place, distance) =
+        let (position, distance) =
             (Point::from(point.point1.coords.map(Real::as_f64)), point.distance.as_f64());
-        let foot = place - normal * distance;
-        assert!(place.z.abs() <= room, "on the bottom: {place}");
-        assert!(up.dot(&(foot - corners[0])).abs() <= room, "on the triangle: {foot}");
-        let is_at = |at: &Point<f64, 3>, names: &Point<f64, 3>| (at - names).norm() <= room;
+        let foot = position - normal * distance;
+        assert!(position.z.abs() <= tolerance, "on the bottom: {position}");
+        assert!(up.dot(&(foot - corners[0])).abs() <= tolerance, "on the triangle: {foot}");
+        let is_at = |at: &Point<f64, 3>, corner: &Point<f64, 3>| (at - corner).norm() <= tolerance;
         match point.feature1 {
             FeatureId::Vertex(_) => {
-                assert!(bottom(outline).iter().any(|corner| is_at(&place, corner)), "{place}");
+                assert!(
+                    bottom(outline).iter().any(|corner| is_at(&position, corner)),
+                    "{position}"
+                );
             }
             FeatureId::Edge(_) => {}
             FeatureId::Face(_) => assert!(matches!(point.feature2, FeatureId::Vertex(_))),
@@ -159,30 +166,30 @@ fn check<N: Real>(
 
 /// Two frames for the triangles: that of the solid, and one that is turned and translated at
 /// random.
-fn frames<N: Real>(noise: &mut Noise) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
-    let (normal, _) = (noise.vector::<N>(1.0).normalize(), 0);
+fn frames<N: Real>(random: &mut Xorshift) -> [(Matrix<N, 3>, Vector<N, 3>); 2] {
+    let (normal, _) = (random.vector::<N>(1.0).normalize(), 0);
     let (u, v) = orthonormal_basis(&normal);
     let turn = Matrix::<N, 3>::from_columns(&[u, v, normal]);
-    [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, noise.vector(2.0))]
+    [(Matrix::<N, 3>::identity(), Vector::<N, 3>::zeros()), (turn, random.vector(2.0))]
 }
 
 /// Random triangles close to the plane z = 0, nearly horizontal, so that a solid on the plane shows
 /// its bottom. On a grid, corners and sides of the outlines coincide.
-fn triangles<N: Real>(noise: &mut Noise, on_grid: bool) -> Vec<Corners<N>> {
+fn triangles<N: Real>(random: &mut Xorshift, on_grid: bool) -> Vec<Corners<N>> {
     let mut corner = |at: usize| {
-        let mut place = noise.vector::<N>(2.0);
-        place.z = N::lit(0.4 * noise.next());
+        let mut position = random.vector::<N>(2.0);
+        position.z = N::lit(0.4 * random.next());
         if on_grid {
-            place = place.map(|x| N::lit((2.0 * x.as_f64()).round() / 2.0));
-            place.z = N::lit(-0.25 * (at % 2) as f64);
+            position = position.map(|x| N::lit((2.0 * x.as_f64()).round() / 2.0));
+            position.z = N::lit(-0.25 * (at % 2) as f64);
         }
-        Point::from(place)
+        Point::from(position)
     };
     let all = (0..24).map(|_| [corner(0), corner(1), corner(2)]);
     let is_wide = |corners: &Corners<N>| {
         let [a, b, c] = corners;
-        let is_level = upward(corners).z > N::lit(0.9);
-        is_level && cross(&(b - a), &(c - a)).norm() > N::lit(0.3)
+        let is_upright = upward(corners).z > N::lit(0.9);
+        is_upright && cross(&(b - a), &(c - a)).norm() > N::lit(0.3)
     };
     all.filter(is_wide).collect()
 }
@@ -192,20 +199,20 @@ fn triangles<N: Real>(noise: &mut Noise, on_grid: bool) -> Vec<Corners<N>> {
 fn check_all<N: Real>(
     outline: &Outline,
     (solid, lift): (&dyn Shape<N, 3>, N),
-    noise: &mut Noise,
+    random: &mut Xorshift,
     on_grid: bool,
 ) -> [usize; 2] {
     let (mut counts, up) = ([0; 2], Vector::<N, 3>::z() * lift);
-    let placed = triangles(noise, on_grid).into_iter();
+    let placed = triangles(random, on_grid).into_iter();
     let placed = placed.map(|corners| (corners.map(|corner| corner - up), upward(&corners)));
     let scene = Scene::new(solid, placed.collect());
-    for (turn, origin) in frames(noise) {
+    for (turn, origin) in frames(random) {
         let found = scene.found(Level::new(), solid, (&turn, origin));
-        for ((moved, asked), found) in scene.triangles.iter().zip(&scene.asked).zip(found) {
+        for ((moved, request), found) in scene.triangles.iter().zip(&scene.requests).zip(found) {
             counts[usize::from(found.is_some())] += 1;
             if let Some(mut found) = found {
                 found.iter_mut().for_each(|point| point.point1 += up);
-                check(outline, &moved.map(|corner| corner + up), &asked.normal, &found);
+                check(outline, &moved.map(|corner| corner + up), &request.normal, &found);
             }
         }
     }
@@ -213,7 +220,7 @@ fn check_all<N: Real>(
 }
 
 fn all_is_shared<N: Real>() {
-    let mut noise = Noise(11);
+    let mut random = Xorshift(11);
     let square: Outline = vec![[-1.0, -1.5], [1.0, -1.5], [1.0, 1.5], [-1.0, 1.5]];
     let (triangle, octagon) = (regular(3, [0.1, 0.0], 1.5, 0.3), regular(8, [0.0, 0.2], 1.2, 0.1));
     // The centre of a box is at the origin.
@@ -227,7 +234,7 @@ fn all_is_shared<N: Real>() {
     let mut counts = [0; 2];
     for (outline, solid, lift) in solids {
         for round in 0..60 {
-            let [left, found] = check_all(outline, (solid, lift), &mut noise, round % 3 == 0);
+            let [left, found] = check_all(outline, (solid, lift), &mut random, round % 3 == 0);
             counts = [counts[0] + left, counts[1] + found];
         }
     }
@@ -241,19 +248,19 @@ fn all_that_a_face_and_a_triangle_share_is_spanned() {
 }
 
 fn lanes_do_not_matter<N: Real>() {
-    let (mut noise, mut points) = (Noise(5), 0);
+    let (mut random, mut points) = (Xorshift(5), 0);
     let solid = Cuboid::new(Vector::<N, 3>::new(N::ONE, N::lit(0.7), N::HALF));
     for _ in 0..100 {
         let mut triangle = || {
             let corners = [0, 1, 2].map(|_| {
-                let place = noise.vector::<N>(1.5);
-                Point::<N, 3>::new(place.x, place.y, place.z * N::lit(0.1) - N::HALF)
+                let position = random.vector::<N>(1.5);
+                Point::<N, 3>::new(position.x, position.y, position.z * N::lit(0.1) - N::HALF)
             });
-            let leaning = upward(&corners) + noise.vector::<N>(0.3);
-            (corners, leaning.normalize())
+            let tilted = upward(&corners) + random.vector::<N>(0.3);
+            (corners, tilted.normalize())
         };
         let scene = Scene::new(&solid, (0..13).map(|_| triangle()).collect());
-        for (turn, origin) in frames(&mut noise) {
+        for (turn, origin) in frames(&mut random) {
             let all: Vec<_> = Level::available()
                 .into_iter()
                 .map(|level| scene.found(level, &solid, (&turn, origin)))
@@ -276,30 +283,30 @@ fn what_touches_is_as_near_as_is_known() {
     let solid = Cuboid::new(Vector::<f64, 3>::repeat(1.0));
     let corners = [[-3.0, -3.0, -1.2], [3.0, -3.0, -1.2], [0.0, 4.0, -1.2]].map(Point::from);
     let up = Vector::<f64, 3>::z();
-    let ask = |nearest: Option<f64>, least: f64| {
-        let asked = TriangleAsked::new(solid.geometry().0, up, nearest, least).expect("a face");
-        let scene = Scene { triangles: vec![corners], asked: vec![asked] };
+    let clip = |nearest: Option<f64>, least: f64| {
+        let request = ClipRequest::new(solid.geometry().0, up, nearest, least).expect("a face");
+        let scene = Scene { triangles: vec![corners], requests: vec![request] };
         let identity = (&Matrix::<f64, 3>::identity(), Vector::<f64, 3>::zeros());
         scene.found(Level::new(), &solid, identity).remove(0)
     };
-    let near = ask(Some(0.2 - 1e-16), -f64::INFINITY).expect("that near");
+    let near = clip(Some(0.2 - 1e-16), -f64::INFINITY).expect("that near");
     assert_eq!((near.len(), near[0].distance), (4, 0.2 - 1e-16), "as it is known");
-    assert!(ask(Some(0.1), -f64::INFINITY).is_none(), "no point is that near");
-    assert_eq!(ask(None, 0.2).expect("all are").len(), 4, "none is nearer");
-    assert_eq!(ask(None, 0.3).expect("none is").len(), 0, "all are nearer than they can be");
+    assert!(clip(Some(0.1), -f64::INFINITY).is_none(), "no point is that near");
+    assert_eq!(clip(None, 0.2).expect("all are").len(), 4, "none is nearer");
+    assert_eq!(clip(None, 0.3).expect("none is").len(), 0, "all are nearer than they can be");
 }
 
 #[test]
-fn edges_and_corners_of_a_solid_are_shown_too() {
+fn edges_and_corners_of_a_solid_are_clipped_too() {
     let solid = Cuboid::new(Vector::<f64, 3>::repeat(1.0));
-    let found = |up: [f64; 3], reach: f64| {
+    let found = |up: [f64; 3], size: f64| {
         let normal = Vector::<f64, 3>::from(up).normalize();
         let (u, v) = orthonormal_basis(&normal);
         let low = Point::from(-normal * 2.0);
         let corners = [
-            low - u * reach - v * reach,
-            low + u * (3.0 * reach) - v * reach,
-            low + v * (3.0 * reach) - u * reach,
+            low - u * size - v * size,
+            low + u * (3.0 * size) - v * size,
+            low + v * (3.0 * size) - u * size,
         ];
         let scene = Scene::new(&solid, vec![(corners, normal)]);
         let identity = (&Matrix::<f64, 3>::identity(), Vector::<f64, 3>::zeros());
@@ -318,6 +325,6 @@ fn edges_and_corners_of_a_solid_are_shown_too() {
     assert!(short.iter().all(|point| matches!(point.feature2, FeatureId::Edge(_))), "{short:?}");
     let corner = found([1.0, 1.0, 1.0], 2.0).expect("in lanes");
     assert_eq!(corner.len(), 1, "{corner:?}");
-    let place = (corner[0].point1 - Point::from([-1.0; 3])).norm();
-    assert!(place < 1e-14 && (corner[0].distance - 2.0 + 3.0_f64.sqrt()).abs() < 1e-14);
+    let error = (corner[0].point1 - Point::from([-1.0; 3])).norm();
+    assert!(error < 1e-14 && (corner[0].distance - 2.0 + 3.0_f64.sqrt()).abs() < 1e-14);
 }

@@ -64,19 +64,19 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
         let normal = -pair.pose12.vector(plane.normal());
         let deep = N::lit(random.between(-1.0, 0.02) * scale);
         pair.pose12.translation = normal * (deep - fact(&pair).distance);
-        let mut asked = request::<N>(0.05 * scale, 0.0);
-        asked.max_points = 64;
-        let (mut raw, room) = (RawManifold::default(), N::lit(256.0 * scale) * N::EPSILON);
+        let mut wanted = request::<N>(0.05 * scale, 0.0);
+        wanted.max_points = 64;
+        let (mut raw, tolerance) = (RawManifold::default(), N::lit(256.0 * scale) * N::EPSILON);
         for _ in 0..3 {
             let found = fact(&pair);
             let before = raw.clone();
-            build3(&pair, &found, &asked, &mut raw);
+            build3(&pair, &found, &wanted, &mut raw);
             let what = format!("round {round}, {}: {raw:?}", describe(&pair));
             for point in &raw.points {
                 let old = before.points.iter().find(|old| old.feature1 == point.feature1);
                 assert!(old.is_none_or(|old| old.id == point.id), "{what}\n{before:?}");
             }
-            if found.distance > asked.prediction {
+            if found.distance > wanted.prediction {
                 assert!(raw.points.is_empty(), "{what}");
                 continue;
             }
@@ -93,16 +93,17 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
                 let distance = -height - radius;
                 // Over a capsule's raised end the surface is a little nearer than the ball around
                 // the end.
-                let reach =
-                    asked.prediction + if radius > N::ZERO { N::lit(-0.05 * scale) } else { room };
-                let is_near = |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= room;
+                let max_distance = wanted.prediction
+                    + if radius > N::ZERO { N::lit(-0.05 * scale) } else { tolerance };
+                let is_near =
+                    |at: Point<N, 3>| radius > N::ZERO || (at - corner).norm() <= tolerance;
                 let has_it = raw.points.iter().any(|point| is_near(point.point1));
                 // With more than four corners, those on the outline count, and old ones that span
                 // most of it.
                 let is_inner = before.points.len() >= 4 || is_among(corner, &raw, &normal);
-                let is_far = distance > reach - room - room;
+                let is_far = distance > max_distance - tolerance - tolerance;
                 assert!(has_it || is_far || is_inner, "{corner} at {distance}, {what}");
-                expected += usize::from(distance <= asked.prediction + room);
+                expected += usize::from(distance <= wanted.prediction + tolerance);
             }
             assert!(raw.points.len() <= expected.max(1) || radius > N::ZERO, "{what}");
             pair.pose12.translation += random.vector::<N, 3>(0.02).map(|x| x * N::lit(scale));
@@ -113,12 +114,16 @@ fn corners_count<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
 
 /// Returns whether a point, projected along the normal, is inside the outline of a manifold's
 /// points.
-fn is_among<N: Real>(place: &Point<N, 3>, raw: &RawManifold<N, 3>, normal: &Vector<N, 3>) -> bool {
+fn is_among<N: Real>(
+    position: &Point<N, 3>,
+    raw: &RawManifold<N, 3>,
+    normal: &Vector<N, 3>,
+) -> bool {
     let (u, v) = orthonormal_basis(normal);
     let mut directions = (-8..=8).flat_map(|x| (-8..=8).map(move |y| [x, y].map(f64::from)));
     directions.all(|[x, y]| {
         let along = |at: &Point<N, 3>| (u * N::lit(x) + v * N::lit(y)).dot(&at.coords).as_f64();
-        raw.points.iter().any(|point| along(&point.point1) >= along(place) - 1e-2)
+        raw.points.iter().any(|point| along(&point.point1) >= along(position) - 1e-2)
     })
 }
 
@@ -139,10 +144,10 @@ fn a_rounded_box_lies_on_four_corners() {
     let pair = Pair { first: solid.geometry().0, second: Kind::Plane(&plane), pose12 };
     let mut raw = RawManifold::default();
     build3(&pair, &fact(&pair), &request(0.1, 0.0), &mut raw);
-    let places = raw.points.iter().map(|point| point.point1).collect::<Vec<_>>();
-    assert_eq!(places.len(), 4, "{raw:?}");
+    let positions = raw.points.iter().map(|point| point.point1).collect::<Vec<_>>();
+    assert_eq!(positions.len(), 4, "{raw:?}");
     let is_corner = |p: &Point<f64, 3>| p.x.abs() == 1.0 && p.y == -0.75 && p.z.abs() == 2.0;
-    assert!(places.iter().all(is_corner), "{raw:?}");
+    assert!(positions.iter().all(is_corner), "{raw:?}");
     assert!(
         raw.points.iter().all(|point| matches!(point.feature1, FeatureId::Vertex(_))),
         "{raw:?}"

@@ -6,6 +6,6 @@ mod half_space;
 mod lasting;
 mod properties;
 mod resting;
-mod rods;
 pub(crate) mod scene;
+mod segments;
 mod side_pairs;

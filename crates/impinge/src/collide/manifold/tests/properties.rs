@@ -43,7 +43,7 @@ fn points_are_as_asked_everywhere() {
 
 fn points_lie_on_both<N: Scene<D>, const D: usize>(accuracy: f64) {
     let wish = request::<N>(0.1, 0.0);
-    let mut seen = 0;
+    let mut checked = 0;
     for_all_pairs::<N, D>(120, 1.0, |pair| {
         let (_, raw) = manifold(pair, &wish);
         for point in &raw.points {
@@ -52,10 +52,10 @@ fn points_lie_on_both<N: Scene<D>, const D: usize>(accuracy: f64) {
             let off2 = off_surface(pair.second, &pair.pose12.inverse_point(&point2)).abs();
             let worst = max(off1, off2);
             assert!(worst <= N::lit(accuracy), "{off1}, {off2} off: {}, {point:?}", describe(pair));
-            seen += 1;
+            checked += 1;
         }
     });
-    assert!(seen > 300, "{seen} points");
+    assert!(checked > 300, "{checked} points");
 }
 
 #[test]

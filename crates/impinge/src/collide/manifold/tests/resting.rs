@@ -194,8 +194,8 @@ fn crossed_boxes_touch_where_their_edges_cross() {
     assert!((separation.normal.y - 1.0).abs() < 1e-12, "{separation:?}");
     assert_eq!(raw.points.len(), 4, "{raw:?}");
     for point in &raw.points {
-        let names = (point.feature1, point.feature2);
-        assert!(matches!(names, (FeatureId::Edge(_), FeatureId::Edge(_))), "{point:?}");
+        let features = (point.feature1, point.feature2);
+        assert!(matches!(features, (FeatureId::Edge(_), FeatureId::Edge(_))), "{point:?}");
         assert!((point.point1.z.abs() - 0.5).abs() < 1e-12, "on a long edge of the lower");
         let other = pair.pose12.inverse_point(&point.point1);
         assert!((other.z.abs() - 0.5).abs() < 1e-12, "on a long edge of the upper");
@@ -279,8 +279,8 @@ fn half_spaces_back_to_back_touch_in_one_point() {
 
 /// A prism with regular polygons of twenty sides as ends, of radius 1, from y = 0 to y = 1.
 fn prism() -> ConvexHull<f32> {
-    let places = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
-    let points: Vec<Point<f32, 3>> = places
+    let angles = (0_u8..20).map(|i| f64::from(i) * std::f64::consts::TAU / 20.0);
+    let points: Vec<Point<f32, 3>> = angles
         .flat_map(|angle| {
             let (sine, cosine) = angle.sine_cosine();
             [0.0, 1.0].map(|y| Point::from(Vector::<f64, 3>::new(cosine, y, sine).map(f32::lit)))
@@ -296,7 +296,7 @@ fn a_prism_of_many_sides_stands_on_four_points() {
     assert_eq!(standing.counts(&request(1e-5, 0.0)), [4; 2], "few of twenty");
     let mut wish = request(1e-5, 0.0);
     wish.max_points = 32;
-    assert_eq!(standing.counts(&wish), [20; 2], "all of them, if asked for");
+    assert_eq!(standing.counts(&wish), [20; 2], "all of them, if requested");
 }
 
 /// A flat tent: its ridge is nearest to the half-space, and the near vertices belong to two faces.

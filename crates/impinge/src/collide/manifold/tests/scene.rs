@@ -71,8 +71,8 @@ impl<N: Real> Scene<3> for N {
 
 /// Returns twelve points around the origin.
 fn cloud<N: Real, const D: usize>(scale: f64, random: &mut Random) -> Vec<Point<N, D>> {
-    let mut place = || random.vector::<f64, D>(1.0).map(|x| N::lit(x * scale));
-    (0..12).map(|_| Point::from(place())).collect()
+    let mut position = || random.vector::<f64, D>(1.0).map(|x| N::lit(x * scale));
+    (0..12).map(|_| Point::from(position())).collect()
 }
 
 /// A small linear congruential generator (Knuth's MMIX constants).
@@ -86,8 +86,8 @@ impl Random {
         low + (high - low) * f64::from(bits) / f64::from(1 << 24)
     }
 
-    pub(crate) fn vector<N: Real, const D: usize>(&mut self, reach: f64) -> Vector<N, D> {
-        Vector::<N, D>::from_fn(|_, _| N::lit(self.between(-reach, reach)))
+    pub(crate) fn vector<N: Real, const D: usize>(&mut self, size: f64) -> Vector<N, D> {
+        Vector::<N, D>::from_fn(|_, _| N::lit(self.between(-size, size)))
     }
 
     pub(crate) fn turn(&mut self) -> [f64; 3] {

@@ -1,7 +1,7 @@
 //! Flat-sided 2D solids: contacts span the overlap interval of the sides that face each other.
 
 use super::scene::{Random, Scene, describe, near_pose, off_surface, solids};
-use crate::collide::separation::separation_in_plane;
+use crate::collide::separation::separation_2d;
 use crate::collide::{ManifoldRequest, Pair, RawManifold};
 use crate::math::{Isometry2, Point, Pose, Real, Space, Vector, max, min};
 use crate::shape::{
@@ -47,8 +47,8 @@ fn benches<N: Real>([low, high]: [f64; 2]) -> Vec<Bench<N>> {
 /// moved.
 fn placed<N: Real>([x, y]: [f64; 2], angle: f64, by: [f64; 2]) -> Pose<N, 2> {
     let own = Isometry2::new(Vector::<f64, 2>::new(x, y), 0.0);
-    let turned = Isometry2::new(Vector::<f64, 2>::new(by[0], by[1]), angle) * own;
-    let exact = Pose::from_isometry(&turned);
+    let rotated = Isometry2::new(Vector::<f64, 2>::new(by[0], by[1]), angle) * own;
+    let exact = Pose::from_isometry(&rotated);
     Pose { rotation: exact.rotation.map(N::lit), translation: exact.translation.map(N::lit) }
 }
 
@@ -203,7 +203,7 @@ fn points_are_on_both<N: Scene<2> + Space<2>>(seed: u64, close: f64) {
             let (wish, what) = (request::<N>(0.1, 0.0), describe(&pair));
             let raw = contacts(&pair, &wish);
             counts[raw.points.len()] += 1;
-            let found = separation_in_plane(&pair, wish.prediction).map(|found| found.distance);
+            let found = separation_2d(&pair, wish.prediction).map(|found| found.distance);
             let least = raw.points.get(raw.deepest()).map(|point| point.distance);
             assert_eq!(least, found, "the deepest point is the separation: {what}");
             for point in &raw.points {

@@ -71,8 +71,8 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                 for axis in 0..3 {
                     let rise = direction[axis].abs() * half[axis] * two;
                     // A box without extent along an axis has each corner twice there.
-                    let is_level = rise.simd_le(tolerance) & (half[axis] * two).simd_gt(tolerance);
-                    count = is_level.select(count + count, count);
+                    let is_tied = rise.simd_le(tolerance) & (half[axis] * two).simd_gt(tolerance);
+                    count = is_tied.select(count + count, count);
                     let unit = Vector::<N, 3>::ith(axis, N::ONE);
                     along = either(rise.simd_lt(least), &spread(simd, &unit), &along);
                     least = rise.smaller(least);
@@ -85,9 +85,9 @@ impl<N: Real, V> LaneCore<'_, N, V> {
                 let (mut count, mut other) = (V::all(simd, N::ZERO), best);
                 for vertex in points.vertices {
                     let vertex = times(&spread(simd, &vertex.coords), *shrink);
-                    let is_level = (highest - dot(&vertex, direction)).simd_le(tolerance);
-                    count = is_level.select(count + one, count);
-                    other = either(is_level, &vertex, &other);
+                    let is_tied = (highest - dot(&vertex, direction)).simd_le(tolerance);
+                    count = is_tied.select(count + one, count);
+                    other = either(is_tied, &vertex, &other);
                 }
                 // `other` is the last tied vertex: the support point is the first, or `along` is
                 // zero.

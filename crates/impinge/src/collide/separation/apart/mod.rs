@@ -92,23 +92,23 @@ pub(crate) fn distances<'p, 'a: 'p, N: Real>(
     each(pairs, limit, true, |result, pair| result.distance(pair, limit))
 }
 
-/// Searches up to [`LANES`] pairs and applies `settle` to the result of each. All `None` without
+/// Searches up to [`LANES`] pairs and applies `convert` to the result of each. All `None` without
 /// vectors, or if the pairs do not share the vertices of their hulls.
 #[inline]
 fn each<'p, 'a: 'p, N: Real, T: Copy>(
     pairs: impl Iterator<Item = &'p Pair<'a, N, 3>> + Clone,
     limit: N,
     with_overlap: bool,
-    settle: impl Fn(&GapResult<N>, &Pair<'a, N, 3>) -> Option<T>,
+    convert: impl Fn(&GapResult<N>, &Pair<'a, N, 3>) -> Option<T>,
 ) -> [Option<Option<T>>; LANES] {
-    let mut settled = [None; LANES];
-    let Some(vectors) = Level::new().vectors() else { return settled };
+    let mut converted = [None; LANES];
+    let Some(vectors) = Level::new().vectors() else { return converted };
     if let Some(results) = packet::results(vectors, pairs.clone(), limit, with_overlap) {
-        for ((settled, result), pair) in settled.iter_mut().zip(&results).zip(pairs) {
-            *settled = Some(settle(result, pair));
+        for ((converted, result), pair) in converted.iter_mut().zip(&results).zip(pairs) {
+            *converted = Some(convert(result, pair));
         }
     }
-    settled
+    converted
 }
 
 /// Returns whether a solid is a triangle, a box or a hull.
@@ -205,8 +205,8 @@ impl<'a, N: Real> FlatPair<'a, N> {
         let is_small = solids.iter().all(|solid| {
             vertices(solid).is_none_or(|points| points.vertices.len() <= MAX_VERTICES)
         });
-        let is_usual = units.scale.is_finite_number() && units.shrink.is_finite_number();
-        (is_small && is_usual).then(|| Self {
+        let is_scalable = units.scale.is_finite_number() && units.shrink.is_finite_number();
+        (is_small && is_scalable).then(|| Self {
             middles: [
                 solids[0].center().coords * units.shrink,
                 solids[1].center().coords * units.shrink,

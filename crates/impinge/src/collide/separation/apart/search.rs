@@ -11,7 +11,7 @@
 use super::core::LaneCore;
 use super::simplex::{LaneCorner, LaneSimplex};
 use crate::math::lanes::{
-    LanePose, cross, dot, either, lit, minus, negated, over, plus, seen_from, times,
+    LanePose, cross, dot, either, lit, minus, negated, over, plus, rotated_into, times,
 };
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, max};
@@ -112,7 +112,7 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
         V: Wide<S, Scalar = N>,
     {
         let on1 = self.cores[0].support(simd, along);
-        let toward1 = seen_from(&self.pose12.rotation, &negated(along));
+        let toward1 = rotated_into(&self.pose12.rotation, &negated(along));
         let on2 = self.pose12.point(&self.cores[1].support(simd, &toward1));
         LaneCorner { point: minus(&on2, &on1), on1 }
     }
@@ -132,7 +132,7 @@ impl<N: Real, V: Copy> LaneCores<'_, N, V> {
         if is_corner1.all_true() {
             return is_corner1;
         }
-        let toward1 = seen_from(&self.pose12.rotation, &negated(normal));
+        let toward1 = rotated_into(&self.pose12.rotation, &negated(normal));
         let ties2 = self.cores[1].ties(simd, &toward1, level);
         let along2 = self.pose12.vector(&ties2.along);
         let turn = cross(&ties1.along, &along2);

@@ -60,7 +60,7 @@ struct BestFeature<V> {
     squared: V,
     /// Weights of up to two old corners, and their indices 0, 1 or 2.
     weights: [V; 2],
-    places: [V; 2],
+    corner_indices: [V; 2],
 }
 
 impl<V> BestFeature<V> {
@@ -75,7 +75,7 @@ impl<V> BestFeature<V> {
             nearest: either(is_nearer, &other.nearest, &self.nearest),
             squared: is_nearer.select(other.squared, self.squared),
             weights: either(is_nearer, &other.weights, &self.weights),
-            places: either(is_nearer, &other.places, &self.places),
+            corner_indices: either(is_nearer, &other.corner_indices, &self.corner_indices),
         }
     }
 }
@@ -164,12 +164,12 @@ impl<'a, V: Copy> Fan<'a, V> {
         let share = (-dot(newest, edge) / self.squares[old]).smaller(one).larger(zero);
         let share = has_length.select(share, zero);
         let nearest = plus(newest, &times(edge, share));
-        let place = index(simd, old);
+        let corner_index = index(simd, old);
         let feature = BestFeature {
             squared: dot(&nearest, &nearest),
             nearest,
             weights: [share, zero],
-            places: [place, place],
+            corner_indices: [corner_index, corner_index],
         };
         (feature, has_length)
     }
@@ -198,7 +198,7 @@ impl<'a, V: Copy> Fan<'a, V> {
             nearest: times(&normal, height / squared),
             squared: height * height / squared,
             weights: [weight1, weight2],
-            places: [index(simd, one), index(simd, two)],
+            corner_indices: [index(simd, one), index(simd, two)],
         };
         (feature, is_within)
     }
@@ -230,7 +230,11 @@ impl<'a, V: Copy> Fan<'a, V> {
     {
         let [weight1, weight2] = best.weights;
         LaneSimplex {
-            corners: [*self.newest, self.at(simd, best.places[0]), self.at(simd, best.places[1])],
+            corners: [
+                *self.newest,
+                self.at(simd, best.corner_indices[0]),
+                self.at(simd, best.corner_indices[1]),
+            ],
             weights: [V::all(simd, N::ONE) - weight1 - weight2, weight1, weight2],
             nearest: best.nearest,
             squared: best.squared,
@@ -239,12 +243,14 @@ impl<'a, V: Copy> Fan<'a, V> {
 
     /// Returns the old corner of an index.
     #[inline(always)]
-    fn at<S: Simd, N: Real>(&self, simd: S, place: V) -> LaneCorner<V>
+    fn at<S: Simd, N: Real>(&self, simd: S, corner_index: V) -> LaneCorner<V>
     where
         V: Wide<S, Scalar = N>,
     {
         let [first, second, third] = &self.old.corners;
-        first.or(second, place.simd_eq(index(simd, 1))).or(third, place.simd_eq(index(simd, 2)))
+        first
+            .or(second, corner_index.simd_eq(index(simd, 1)))
+            .or(third, corner_index.simd_eq(index(simd, 2)))
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::ball_cylinder::HalfPlane;
 use crate::collide::Pair;
-use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::projection::{Projection, center_in_second, rounding_error};
 use crate::collide::separation::segments::nearest::nearest_on_segment;
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
@@ -96,8 +96,8 @@ pub(in crate::collide::separation) fn project<N: Real>(
         let (offset, distance) = unit(&(p - point)).unwrap_or((outward, flat));
         // Close to the surface the offset is mostly rounding, and the normal of a flat side may be
         // better.
-        let noise = noise(section.rim.norm() + p.norm());
-        let certain = offset.x >= N::ZERO && section.height(&offset, &p) + noise >= flat;
+        let rounding_error = rounding_error(section.rim.norm() + p.norm());
+        let certain = offset.x >= N::ZERO && section.height(&offset, &p) + rounding_error >= flat;
         let outward = if certain { offset } else { outward };
         return plane.projection(distance, &outward, &point);
     }

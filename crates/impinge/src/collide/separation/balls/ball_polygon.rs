@@ -2,7 +2,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::balls::ball_segment;
-use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::projection::{Projection, center_in_second, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real};
@@ -45,22 +45,23 @@ fn project_from_outside<N: Real>(
     center: &Point<N, 2>,
     highest: &PolytopeFace<N, 2>,
 ) -> Projection<N, 2> {
-    let noise = noise(polygon.reach() + center.coords.norm());
-    let certain =
-        |seen: &Projection<N, 2>| seen.outward.dot(&(center - polygon.core_support(&seen.outward)));
+    let rounding_error = rounding_error(polygon.reach() + center.coords.norm());
+    let certain = |projected: &Projection<N, 2>| {
+        projected.outward.dot(&(center - polygon.core_support(&projected.outward)))
+    };
     let mut best = project_on_side(polygon, highest, center);
     let is_over_side = best.outward == highest.normal;
-    if is_over_side || certain(&best) + noise / N::lit(4.0) >= best.distance {
+    if is_over_side || certain(&best) + rounding_error / N::lit(4.0) >= best.distance {
         return best;
     }
     for side in polygon.faces().iter().filter(|side| side.height_of(center) > N::ZERO) {
-        let seen = project_on_side(polygon, side, center);
-        if seen.distance < best.distance {
-            best = seen;
+        let projected = project_on_side(polygon, side, center);
+        if projected.distance < best.distance {
+            best = projected;
         }
     }
     // Close to a corner the offset is mostly rounding, and the normal of a side may be better.
-    if certain(&best) + noise < highest.height_of(center) {
+    if certain(&best) + rounding_error < highest.height_of(center) {
         best.outward = highest.normal;
     }
     best
@@ -113,7 +114,7 @@ mod tests {
                 let found = project(&polygon, &center);
                 let by_hand = (0..4)
                     .map(|at| ball_segment::project(&[corners[at], corners[(at + 1) % 4]], &center))
-                    .fold(f64::INFINITY, |least, seen| least.min(seen.distance));
+                    .fold(f64::INFINITY, |least, projected| least.min(projected.distance));
                 assert!((found.distance.abs() - by_hand).abs() < 1e-14, "from {center}");
             }
         }

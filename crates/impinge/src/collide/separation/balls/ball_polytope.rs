@@ -2,7 +2,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::balls::ball_segment;
-use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::projection::{Projection, center_in_second, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real, cross};
@@ -47,24 +47,25 @@ fn project_from_outside<N: Real>(
     highest: &PolytopeFace<N, 3>,
     flat: &Projection<N, 3>,
 ) -> Projection<N, 3> {
-    let noise = noise(hull.reach() + center.coords.norm());
-    let certain =
-        |seen: &Projection<N, 3>| seen.outward.dot(&(center - hull.core_support(&seen.outward)));
-    let seen = project_on_face(hull, highest, center);
-    let is_over_face = seen.outward == highest.normal;
-    if is_over_face || certain(&seen) + noise / N::lit(4.0) >= seen.distance {
-        return seen;
+    let rounding_error = rounding_error(hull.reach() + center.coords.norm());
+    let certain = |projected: &Projection<N, 3>| {
+        projected.outward.dot(&(center - hull.core_support(&projected.outward)))
+    };
+    let projected = project_on_face(hull, highest, center);
+    let is_over_face = projected.outward == highest.normal;
+    if is_over_face || certain(&projected) + rounding_error / N::lit(4.0) >= projected.distance {
+        return projected;
     }
     let mut best: Option<Projection<N, 3>> = None;
     for face in hull.faces().iter().filter(|face| face.height_of(center) > N::ZERO) {
-        let seen = project_on_face(hull, face, center);
-        if best.is_none_or(|best| seen.distance < best.distance) {
-            best = Some(seen);
+        let projected = project_on_face(hull, face, center);
+        if best.is_none_or(|best| projected.distance < best.distance) {
+            best = Some(projected);
         }
     }
     let mut best = best.unwrap_or(*flat);
     // Close to a side the offset is mostly rounding, and the normal of a face may be better.
-    if certain(&best) + noise < flat.distance {
+    if certain(&best) + rounding_error < flat.distance {
         best.outward = flat.outward;
     }
     best
@@ -83,9 +84,9 @@ fn project_on_face<N: Real>(
         let ends = [corner(from), corner(to)];
         let beyond = cross(&(ends[1] - ends[0]), &face.normal).dot(&(center - ends[0]));
         if beyond > N::ZERO {
-            let seen = ball_segment::project(&ends, center);
-            if best.is_none_or(|best| seen.distance < best.distance) {
-                best = Some(seen);
+            let projected = ball_segment::project(&ends, center);
+            if best.is_none_or(|best| projected.distance < best.distance) {
+                best = Some(projected);
             }
         }
     }

@@ -21,10 +21,10 @@ pub(in crate::collide::separation) fn separation<N: Real, const D: usize>(
     let (ends, rounding) = core(pair, &pair.second);
     let foot = Foot::new(ends, &center_in_second(&pair.pose12));
     let is_within = foot.distance - rounding - ball.radius() <= limit;
-    let mut seen = is_within.then(|| foot.projection())?;
-    seen.distance -= rounding;
-    seen.point += seen.outward * rounding;
-    seen.of_ball(ball.radius(), &pair.pose12, limit)
+    let mut projected = is_within.then(|| foot.projection())?;
+    projected.distance -= rounding;
+    projected.point += projected.outward * rounding;
+    projected.of_ball(ball.radius(), &pair.pose12, limit)
 }
 
 /// Returns the distance of a point from a segment, without computing a direction.

@@ -2,7 +2,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::projection::{
-    Projection, center_in_second, first_axis, made_perpendicular, noise, perpendicular_to,
+    Projection, center_in_second, first_axis, made_perpendicular, perpendicular_to, rounding_error,
 };
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
@@ -63,11 +63,11 @@ fn around_end<N: Real, const D: usize>(
 ) -> (Projection<N, D>, FeatureId) {
     let (center, radius) = (capsule.end(end), capsule.radii()[end]);
     let (outward, away) = unit(&(point - center)).unwrap_or((*fallback, N::ZERO));
-    let is_certain = away > noise(center.coords.norm());
+    let is_certain = away > rounding_error(center.coords.norm());
     let outward = if is_certain { outward } else { *fallback };
-    let name = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
+    let feature = FeatureId::Vertex(if end == 0 { 0 } else { 1 });
     let nearest = center + outward * radius;
-    (Projection { distance: away - radius, outward, point: nearest }, name)
+    (Projection { distance: away - radius, outward, point: nearest }, feature)
 }
 
 #[cfg(test)]
@@ -84,18 +84,25 @@ mod tests {
 
     #[test]
     fn ends_side_and_inside() {
-        let seen = |x: f64, y: f64| project(&club(), &P::new(0.0, y, x));
-        let (below, name) = seen(0.0, -3.0);
-        assert_eq!((below.distance, name), (2.0, FeatureId::Vertex(0)), "below the small end");
-        let (above, name) = seen(6.0, 13.0);
-        assert_eq!((above.distance, name), (6.0, FeatureId::Vertex(1)), "(6, 8) from its centre");
+        let projected = |x: f64, y: f64| project(&club(), &P::new(0.0, y, x));
+        let (below, feature) = projected(0.0, -3.0);
+        assert_eq!((below.distance, feature), (2.0, FeatureId::Vertex(0)), "below the small end");
+        let (above, feature) = projected(6.0, 13.0);
+        assert_eq!(
+            (above.distance, feature),
+            (6.0, FeatureId::Vertex(1)),
+            "(6, 8) from its centre"
+        );
         let outward = Vector::<f64, 3>::new(0.0, -0.6, 0.8);
-        let place = P::new(0.0, 2.5, 0.0) + outward * 12.5;
-        let (side, name) = project(&club(), &place);
-        assert!((side.distance - 10.0).abs() < 1e-14 && name == FeatureId::Edge(0), "{side:?}");
+        let position = P::new(0.0, 2.5, 0.0) + outward * 12.5;
+        let (side, feature) = project(&club(), &position);
+        assert!((side.distance - 10.0).abs() < 1e-14 && feature == FeatureId::Edge(0), "{side:?}");
         assert!((side.outward - outward).norm() < 1e-15, "the normal of the side: {side:?}");
-        let (inside, name) = seen(0.0, 2.5);
-        assert!((inside.distance + 2.5).abs() < 1e-14 && name == FeatureId::Edge(0), "{inside:?}");
+        let (inside, feature) = projected(0.0, 2.5);
+        assert!(
+            (inside.distance + 2.5).abs() < 1e-14 && feature == FeatureId::Edge(0),
+            "{inside:?}"
+        );
     }
 
     #[test]
@@ -105,9 +112,9 @@ mod tests {
         for radii in [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2], [0.1, 0.3]] {
             let one = TaperedCapsule::try_from_ends(a, b, radii).expect("finite");
             for (point, other, radius) in [(a, b, radii[0]), (b, a, radii[1])] {
-                let (seen, _) = project(&one, &point);
-                let other = (other - point).dot(&seen.outward) + radii[0] + radii[1] - radius;
-                assert!(other <= radius + 1e-15, "{other} beyond {radius}: {seen:?}");
+                let (projected, _) = project(&one, &point);
+                let other = (other - point).dot(&projected.outward) + radii[0] + radii[1] - radius;
+                assert!(other <= radius + 1e-15, "{other} beyond {radius}: {projected:?}");
             }
         }
     }
@@ -115,8 +122,8 @@ mod tests {
     #[test]
     fn a_ball_in_a_ball() {
         let one = TaperedCapsule::<f64, 2>::new(1.0, 5.0, 0.5);
-        let (seen, name) = project(&one, &Point::<f64, 2>::new(0.0, 7.0));
-        assert_eq!((seen.distance, name), (3.0, FeatureId::Vertex(0)), "around (0, -1)");
+        let (projected, feature) = project(&one, &Point::<f64, 2>::new(0.0, 7.0));
+        assert_eq!((projected.distance, feature), (3.0, FeatureId::Vertex(0)), "around (0, -1)");
         let (middle, _) = project(&one, &Point::<f64, 2>::new(0.0, -1.0));
         assert_eq!((middle.distance, middle.outward.x), (-5.0, 1.0), "the first axis");
     }

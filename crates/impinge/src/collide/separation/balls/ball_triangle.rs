@@ -3,7 +3,7 @@
 use super::ball_segment::Foot;
 use crate::collide::Pair;
 use crate::collide::separation::projection::{
-    Projection, center_in_second, made_perpendicular, noise,
+    Projection, center_in_second, made_perpendicular, rounding_error,
 };
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
@@ -33,15 +33,15 @@ pub(in crate::collide::separation) fn project<N: Real>(
     if let Some((distance, outward)) = height_over(corners, &front, center) {
         return Projection { distance, outward, point: center - outward * distance };
     }
-    let mut seen = on_nearest_side(corners, center).projection();
+    let mut projected = on_nearest_side(corners, center).projection();
     // Close to a side the offset is mostly rounding, and the normal of the triangle may be better.
     let normal = toward(&front, &(center - corners[0]));
     if height(&normal, corners, center)
-        > height(&seen.outward, corners, center) + noise(reach(corners, center))
+        > height(&projected.outward, corners, center) + rounding_error(reach(corners, center))
     {
-        seen.outward = normal;
+        projected.outward = normal;
     }
-    seen
+    projected
 }
 
 /// Returns the distance of [`project`].
@@ -157,8 +157,8 @@ mod tests {
     #[test]
     fn without_area_it_is_a_segment() {
         let line = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [2.0, 0.0, 0.0]].map(Point::from);
-        let seen = project(&line, &Point::<f64, 3>::new(1.0, 3.0, 0.0));
-        assert_eq!((seen.distance, seen.outward.y), (3.0, 1.0), "above the segment");
+        let projected = project(&line, &Point::<f64, 3>::new(1.0, 3.0, 0.0));
+        assert_eq!((projected.distance, projected.outward.y), (3.0, 1.0), "above the segment");
         let on = project(&line, &Point::<f64, 3>::new(1.0, 0.0, 0.0));
         assert_eq!((on.distance, on.outward.x), (0.0, 0.0), "leaves sideways");
         let doubled = [[2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]].map(Point::from);

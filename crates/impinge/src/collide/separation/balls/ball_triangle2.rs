@@ -2,7 +2,7 @@
 
 use crate::collide::Pair;
 use crate::collide::separation::polygons::polygon_polygon;
-use crate::collide::separation::projection::{Projection, center_in_second, noise};
+use crate::collide::separation::projection::{Projection, center_in_second, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::Separation;
 use crate::math::{Point, Real, Vector, cross2, max, max_component, perp, unit};
@@ -18,7 +18,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
         wrong_kinds(pair)
     };
     match project(triangle.corners(), &center_in_second(&pair.pose12)) {
-        Some(seen) => seen.of_ball(ball.radius(), &pair.pose12, limit),
+        Some(projected) => projected.of_ball(ball.radius(), &pair.pose12, limit),
         None => polygon_polygon::separation(pair, limit),
     }
 }
@@ -47,8 +47,8 @@ impl<N: Real> DirectedEdge<N> {
 
     /// Returns whether the point lies above the side itself, not only above its line.
     fn is_below(&self, center: &Point<N, 2>) -> bool {
-        let way = self.along.dot(&(center - self.from));
-        self.height > N::ZERO && way > N::ZERO && way < self.length
+        let coordinate = self.along.dot(&(center - self.from));
+        self.height > N::ZERO && coordinate > N::ZERO && coordinate < self.length
     }
 
     /// Projects the point onto the line of the side.
@@ -118,7 +118,7 @@ fn from_corner<N: Real>(
     let offset = center - point;
     let reach = max(max_component(&center.coords), max_component(&point.coords));
     match unit(&offset) {
-        Some((outward, distance)) if distance > noise(reach) => {
+        Some((outward, distance)) if distance > rounding_error(reach) => {
             Projection { distance, outward, point }
         }
         _ => Projection { distance: offset.norm(), outward: highest.outward(), point },
@@ -140,10 +140,16 @@ mod tests {
         for corners in
             [[p(0.0, 0.0), p(4.0, 0.0), p(0.0, 3.0)], [p(0.0, 0.0), p(0.0, 3.0), p(4.0, 0.0)]]
         {
-            let seen = |x, y| project(&corners, &p(x, y)).expect("it has an area");
-            assert_eq!((seen(1.0, -2.0).distance, seen(1.0, -2.0).point), (2.0, p(1.0, 0.0)));
-            assert_eq!((seen(7.0, -4.0).distance, seen(7.0, -4.0).point), (5.0, p(4.0, 0.0)));
-            let inside = seen(0.5, 1.0);
+            let projected = |x, y| project(&corners, &p(x, y)).expect("it has an area");
+            assert_eq!(
+                (projected(1.0, -2.0).distance, projected(1.0, -2.0).point),
+                (2.0, p(1.0, 0.0))
+            );
+            assert_eq!(
+                (projected(7.0, -4.0).distance, projected(7.0, -4.0).point),
+                (5.0, p(4.0, 0.0))
+            );
+            let inside = projected(0.5, 1.0);
             assert_eq!((inside.distance, inside.outward.x), (-0.5, -1.0), "out to the left");
         }
     }
@@ -163,12 +169,12 @@ mod tests {
         let (mut inside, mut tried) = (0, 0);
         for n in 0..4000_u32 {
             let number = |k: u32| {
-                let noise = (f64::from(n * 8 + k) * 12.9898).sin() * 43758.5453;
-                4.0 * (noise - noise.floor()) - 2.0
+                let rounding_error = (f64::from(n * 8 + k) * 12.9898).sin() * 43758.5453;
+                4.0 * (rounding_error - rounding_error.floor()) - 2.0
             };
             let corners = [0, 2, 4].map(|k| p(number(k), number(k + 1)));
             let center = Vector::<f64, 2>::new(number(6), number(7));
-            let Some(seen) = project(&corners, &Point::from(center)) else { continue };
+            let Some(projected) = project(&corners, &Point::from(center)) else { continue };
             let (ball, triangle) =
                 (Ball::new(0.0), Triangle::new(corners[0], corners[1], corners[2]));
             let pose12 = Pose::from_translation(-center);
@@ -176,11 +182,11 @@ mod tests {
             let pair = Pair { first, second: triangle.geometry().0, pose12 };
             let expected = polygon_polygon::separation(&pair, f64::INFINITY);
             let expected = expected.expect("nothing is beyond infinity");
-            assert!((seen.distance - expected.distance).abs() < 1e-13, "{corners:?} {center}");
-            assert!((seen.outward + expected.normal).norm() < 1e-9, "{corners:?} {center}");
-            let point = seen.point - center - expected.point2;
+            assert!((projected.distance - expected.distance).abs() < 1e-13, "{corners:?} {center}");
+            assert!((projected.outward + expected.normal).norm() < 1e-9, "{corners:?} {center}");
+            let point = projected.point - center - expected.point2;
             assert!(point.norm() < 1e-9, "{corners:?} {center}");
-            inside += u32::from(seen.distance < 0.0);
+            inside += u32::from(projected.distance < 0.0);
             tried += 1;
         }
         assert!(tried > 3900 && inside * 20 > tried, "{inside} of {tried} are inside");

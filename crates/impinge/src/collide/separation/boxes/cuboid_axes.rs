@@ -44,7 +44,7 @@ pub(crate) struct BoxAxis<N: Real> {
 
 impl<N: Real> BoxPair<N> {
     /// Returns the rounding error of lengths of this pair.
-    pub(crate) fn noise(&self) -> N {
+    pub(crate) fn rounding_error(&self) -> N {
         let size = self.half1.sum() + self.half2.sum() + self.pose12.translation.amax();
         N::lit(4.0) * N::EPSILON * size
     }
@@ -58,28 +58,28 @@ impl<N: Real> BoxPair<N> {
     /// second. A pair of edges must exceed the best face by more than rounding, as faces give
     /// better points.
     pub(crate) fn best_axis(&self) -> BoxAxis<N> {
-        let leans = self.pose12.rotation.abs();
-        let (face, gap) = self.best_face(&leans);
-        match self.best_edges(&leans, max(gap + self.noise(), gap)) {
+        let abs_rotation = self.pose12.rotation.abs();
+        let (face, gap) = self.best_face(&abs_rotation);
+        match self.best_edges(&abs_rotation, max(gap + self.rounding_error(), gap)) {
             Some((edges, gap)) => self.axis(edges, gap),
             None => self.axis(face, gap),
         }
     }
 
-    /// Returns the face normal with the largest gap; `leans` holds the rotation's absolute values.
-    fn best_face(&self, leans: &Matrix<N, 3>) -> (AxisKind, N) {
+    /// Returns the face normal with the largest gap; `abs_rotation` holds the rotation's absolute values.
+    fn best_face(&self, abs_rotation: &Matrix<N, 3>) -> (AxisKind, N) {
         let (t, mut best, mut gap) = (&self.pose12.translation, AxisKind::Face1(0), N::ZERO);
         for i in 0..3 {
-            let reach2 = (0..3).fold(N::ZERO, |sum, j| sum + leans[(i, j)] * self.half2[j]);
-            let found = t[i].abs() - self.half1[i] - reach2;
+            let extent2 = (0..3).fold(N::ZERO, |sum, j| sum + abs_rotation[(i, j)] * self.half2[j]);
+            let found = t[i].abs() - self.half1[i] - extent2;
             if i == 0 || found > gap {
                 (best, gap) = (AxisKind::Face1(i), found);
             }
         }
         for j in 0..3 {
-            let reach1 = (0..3).fold(N::ZERO, |sum, i| sum + leans[(i, j)] * self.half1[i]);
+            let extent1 = (0..3).fold(N::ZERO, |sum, i| sum + abs_rotation[(i, j)] * self.half1[i]);
             let along = (0..3).fold(N::ZERO, |sum, i| sum + self.pose12.rotation[(i, j)] * t[i]);
-            let found = along.abs() - reach1 - self.half2[j];
+            let found = along.abs() - extent1 - self.half2[j];
             if found > gap {
                 (best, gap) = (AxisKind::Face2(j), found);
             }
@@ -94,7 +94,7 @@ impl<N: Real> BoxPair<N> {
     /// axes of the second box are differences of two products, small where the sine is. They equal
     /// entries of the rotation only up to rounding, and that error would be divided by the sine
     /// too; so the differences are used.
-    fn best_edges(&self, leans: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
+    fn best_edges(&self, abs_rotation: &Matrix<N, 3>, least: N) -> Option<(AxisKind, N)> {
         let (r, t) = (&self.pose12.rotation, &self.pose12.translation);
         let (mut best, mut bound) = (None, least);
         for i in 0..3 {
@@ -102,11 +102,12 @@ impl<N: Real> BoxPair<N> {
             for j in 0..3 {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[(i1, j)] - t[i1] * r[(i2, j)];
-                let reach1 = self.half1[i1] * leans[(i2, j)] + self.half1[i2] * leans[(i1, j)];
-                let lean1 = (r[(i1, j)] * r[(i2, j1)] - r[(i2, j)] * r[(i1, j1)]).abs();
-                let lean2 = (r[(i1, j)] * r[(i2, j2)] - r[(i2, j)] * r[(i1, j2)]).abs();
-                let reach2 = self.half2[j1] * lean1 + self.half2[j2] * lean2;
-                let slack = along.abs() - reach1 - reach2;
+                let extent1 =
+                    self.half1[i1] * abs_rotation[(i2, j)] + self.half1[i2] * abs_rotation[(i1, j)];
+                let product1 = (r[(i1, j)] * r[(i2, j1)] - r[(i2, j)] * r[(i1, j1)]).abs();
+                let product2 = (r[(i1, j)] * r[(i2, j2)] - r[(i2, j)] * r[(i1, j2)]).abs();
+                let extent2 = self.half2[j1] * product1 + self.half2[j2] * product2;
+                let slack = along.abs() - extent1 - extent2;
                 if slack <= min(bound, N::ZERO) {
                     continue;
                 }

@@ -67,7 +67,7 @@ fn along_best<N: Real>(
     }
     let found = along(boxes, best);
     let beside = found.point2 - found.point1 - best.normal * best.gap;
-    let attained = best.gap <= N::ZERO || beside.norm() <= boxes.noise();
+    let attained = best.gap <= N::ZERO || beside.norm() <= boxes.rounding_error();
     if attained {
         return (found.distance <= limit).then_some(found);
     }
@@ -76,7 +76,7 @@ fn along_best<N: Real>(
 
 /// Returns whether the gap along an axis exceeds `limit` by more than rounding.
 fn is_beyond<N: Real>(boxes: &BoxPair<N>, axis: &BoxAxis<N>, limit: N) -> bool {
-    axis.gap > limit + N::lit(16.0) * boxes.noise()
+    axis.gap > limit + N::lit(16.0) * boxes.rounding_error()
 }
 
 /// Returns the points of both boxes along an axis, with the gap as distance.
@@ -180,8 +180,8 @@ impl<N: Real> BoxReferenceFace<N> {
         let facing = face_toward(other, &pose.inverse_vector(&direction));
         let facing: Polygon<N> = facing.iter().map(|corner| pose.point(corner)).collect();
         let size = self.half.sum() + other.sum() + distance.abs();
-        let noise = N::lit(16.0) * N::EPSILON * size;
-        if let Some(corner) = self.alone(&facing, noise) {
+        let rounding_error = N::lit(16.0) * N::EPSILON * size;
+        if let Some(corner) = self.alone(&facing, rounding_error) {
             // If the boxes are apart and the lowest corner lies beside the face, no point lies
             // across.
             if distance > N::ZERO || self.is_below(&corner) {
@@ -192,11 +192,11 @@ impl<N: Real> BoxReferenceFace<N> {
         // be none.
         let mut above = self.above(&facing, N::ZERO);
         if above.is_empty() {
-            above = self.above(&facing, noise);
+            above = self.above(&facing, rounding_error);
         }
         let polygon = if above.is_empty() { facing } else { above };
         let lowest = polygon.iter().fold(N::INFINITY, |low, p| min(self.height(p), low));
-        let flat = lowest + noise;
+        let flat = lowest + rounding_error;
         let low: Polygon<N> = polygon.into_iter().filter(|p| self.height(p) <= flat).collect();
         crate::math::centroid(&low)
     }

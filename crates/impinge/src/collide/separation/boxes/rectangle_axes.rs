@@ -17,24 +17,24 @@ impl<N: Real> Rectangles<N> {
     /// Ties: sides of the first box come before sides of the second, each in the order of its
     /// outline, which starts below and is counter-clockwise.
     pub(in crate::collide::separation) fn best_axis(&self) -> Axis<N> {
-        let leans = self.pose12.rotation.abs();
+        let abs_rotation = self.pose12.rotation.abs();
         let offset = self.pose12.translation;
-        let reaches2 = leans * self.half2;
+        let extents2 = abs_rotation * self.half2;
         let first = [0, 1].map(|axis| {
             let along = offset[axis];
             let is_positive = if axis == 0 { along >= N::ZERO } else { along > N::ZERO };
-            let gap = along.abs() - self.half1[axis] - reaches2[axis];
+            let gap = along.abs() - self.half1[axis] - extents2[axis];
             (gap, rank(axis, is_positive), axis, is_positive)
         });
         let (gap, _, axis, is_positive) = better(first[0], first[1]);
         let normal = signed(Vector::<N, 2>::ith(axis, N::ONE), is_positive);
         let best = Axis { gap, normal };
-        let seen = self.pose12.inverse_vector(&offset);
-        let reaches1 = leans.tr_mul(&self.half1);
+        let offset2 = self.pose12.inverse_vector(&offset);
+        let extents1 = abs_rotation.tr_mul(&self.half1);
         let second = [0, 1].map(|axis| {
-            let along = seen[axis];
+            let along = offset2[axis];
             let is_positive = if axis == 0 { along > N::ZERO } else { along >= N::ZERO };
-            let gap = along.abs() - self.half2[axis] - reaches1[axis];
+            let gap = along.abs() - self.half2[axis] - extents1[axis];
             // The side of the second box that faces the first is opposite to the normal.
             (gap, rank(axis, !is_positive), axis, is_positive)
         });

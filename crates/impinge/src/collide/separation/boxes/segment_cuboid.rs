@@ -37,12 +37,12 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     };
     let most = (limit + radius) * segment.shrink;
     let half = cuboid.half_extents() * segment.shrink;
-    let most = most + N::lit(16.0) * noise() * (N::ONE + most.abs());
+    let most = most + N::lit(16.0) * rounding_error() * (N::ONE + most.abs());
     match (LocalBox { segment: &segment, half }).solve(most) {
         SegmentResult::Beyond => None,
         SegmentResult::Found(parting) => {
             let found = segment.restored(&parting).rounded(radius, N::ZERO);
-            let found = shared_corner::settled(pair, found);
+            let found = shared_corner::with_shared_corner(pair, found);
             (found.distance <= limit).then_some(found)
         }
         SegmentResult::Unproved => general::of_flat_cores(pair, limit),
@@ -85,7 +85,7 @@ enum SegmentResult<N: Real> {
 }
 
 /// Returns the rounding error of arithmetic on numbers of size 2.
-fn noise<N: Real>() -> N {
+fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
@@ -96,16 +96,16 @@ impl<'a, N: Real> LocalSegment<'a, N> {
         let size = max(max(reach, max_component(&pose12.translation)), of_ends);
         let scale = size.power_of_two_below();
         let shrink = N::ONE / scale;
-        let is_plain = size > N::ZERO && size.is_finite_number() && shrink.is_finite_number();
-        if !(is_plain && pose12.is_finite()) {
+        let is_scalable = size > N::ZERO && size.is_finite_number() && shrink.is_finite_number();
+        if !(is_scalable && pose12.is_finite()) {
             return None;
         }
-        let place = |end: &Point<N, 3>| {
+        let local = |end: &Point<N, 3>| {
             pose12.rotation.tr_mul(&((end.coords - pose12.translation) * shrink))
         };
         // From the ends as given: the distance between the origins costs no digits then.
         let along = pose12.rotation.tr_mul(&((ends[1] - ends[0]) * shrink));
-        Some(Self { ends: [place(ends[0]), place(ends[1])], along, pose12, scale, shrink })
+        Some(Self { ends: [local(ends[0]), local(ends[1])], along, pose12, scale, shrink })
     }
 
     /// Returns the point at parameter `share` from 0 to 1, computed from the nearer end.
@@ -123,16 +123,16 @@ impl<'a, N: Real> LocalSegment<'a, N> {
     }
 
     /// Returns the separation along the unit vector `outward`, if both points are as far apart
-    /// along it as the supporting planes. `level` is the extent of the solid along it.
+    /// along it as the supporting planes. `extent` is the extent of the solid along it.
     fn proved(
         &self,
         outward: Vector<N, 3>,
-        level: N,
+        extent: N,
         [on_segment, on_solid]: [Vector<N, 3>; 2],
     ) -> Option<Parting<N>> {
-        let distance = self.low(&outward) - level;
+        let distance = self.low(&outward) - extent;
         let aside = on_segment - on_solid - outward * distance;
-        let is_proved = aside.norm_squared() <= noise::<N>() * noise();
+        let is_proved = aside.norm_squared() <= rounding_error::<N>() * rounding_error();
         is_proved.then_some(Parting { outward, on_segment, on_solid, distance })
     }
 
@@ -165,7 +165,7 @@ impl<N: Real> LocalBox<'_, N> {
         let found = if gap > N::ZERO {
             self.nearest()
         } else {
-            match self.best_edge(gap + N::TWO * noise()) {
+            match self.best_edge(gap + N::TWO * rounding_error()) {
                 None => self.at_face(axis, sign, gap),
                 Some((_, _, gap)) if gap > N::ZERO => self.nearest(),
                 Some((axis, outward, gap)) => self.at_edge(axis, &outward, gap),
@@ -198,15 +198,15 @@ impl<N: Real> LocalBox<'_, N> {
         for (axis, one, other) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let (x, y) = (-along[other], along[one]);
             let height = x * from[one] + y * from[other];
-            let reach = x.abs() * self.half[one] + y.abs() * self.half[other];
+            let extent = x.abs() * self.half[one] + y.abs() * self.half[other];
             let sine = (x * x + y * y).sqrt();
             // Written so that NaN and segments parallel to the axis are skipped.
-            let is_plain = sine > noise() && (height.abs() - reach) > bound * sine;
-            if is_plain {
-                let turned = if height < N::ZERO { -sine } else { sine };
+            let is_certain = sine > rounding_error() && (height.abs() - extent) > bound * sine;
+            if is_certain {
+                let signed_sine = if height < N::ZERO { -sine } else { sine };
                 let mut outward = Vector::<N, 3>::zeros();
-                (outward[one], outward[other]) = (x / turned, y / turned);
-                bound = (height.abs() - reach) / sine;
+                (outward[one], outward[other]) = (x / signed_sine, y / signed_sine);
+                bound = (height.abs() - extent) / sine;
                 best = Some((axis, outward, bound));
             }
         }
@@ -214,7 +214,7 @@ impl<N: Real> LocalBox<'_, N> {
     }
 
     /// Returns the extent of the box along a vector.
-    fn level(&self, along: &Vector<N, 3>) -> N {
+    fn extent(&self, along: &Vector<N, 3>) -> N {
         along[0].abs() * self.half[0]
             + along[1].abs() * self.half[1]
             + along[2].abs() * self.half[2]
@@ -224,15 +224,16 @@ impl<N: Real> LocalBox<'_, N> {
     fn at_face(&self, axis: usize, sign: N, gap: N) -> Option<Parting<N>> {
         let [a, b] = &self.segment.ends;
         let climb = (b[axis] - a[axis]) * sign;
-        let on_segment = if climb.abs() <= noise() {
+        let on_segment = if climb.abs() <= rounding_error() {
             self.middle_over(axis)?
         } else if climb < N::ZERO {
             *b
         } else {
             *a
         };
-        let room = noise::<N>();
-        let is_over = (0..3).all(|at| at == axis || on_segment[at].abs() <= self.half[at] + room);
+        let tolerance = rounding_error::<N>();
+        let is_over =
+            (0..3).all(|at| at == axis || on_segment[at].abs() <= self.half[at] + tolerance);
         let mut on_solid = on_segment;
         on_solid[axis] = self.half[axis] * sign;
         let outward = Vector::<N, 3>::ith(axis, sign);
@@ -244,7 +245,7 @@ impl<N: Real> LocalBox<'_, N> {
         let (from, along) = (&self.segment.ends[0], &self.segment.along);
         let (mut first, mut last) = (N::ZERO, N::ONE);
         for axis in (0..3).filter(|&axis| axis != face) {
-            if along[axis].abs() <= noise() {
+            if along[axis].abs() <= rounding_error() {
                 continue;
             }
             let [one, other] = [-self.half[axis], self.half[axis]]
@@ -265,7 +266,8 @@ impl<N: Real> LocalBox<'_, N> {
         let (on_segment, on_solid) = nearest_of_segments(&core, &ends);
         let [on_segment, on_solid] = [on_segment.coords, on_solid.coords];
         let aside = on_segment - on_solid - outward * gap;
-        let is_across = aside.norm_squared() <= N::lit(16.0) * noise::<N>() * noise();
+        let is_across =
+            aside.norm_squared() <= N::lit(16.0) * rounding_error::<N>() * rounding_error();
         is_across.then_some(Parting { outward: *outward, on_segment, on_solid, distance: gap })
     }
 
@@ -276,7 +278,7 @@ impl<N: Real> LocalBox<'_, N> {
         let on_solid = on_segment.zip_map(&self.half, |x, half| min(max(x, -half), half));
         let away = on_segment - on_solid;
         let points = [on_segment, on_solid];
-        let is_off = |axis: &usize| away[*axis].abs() > noise();
+        let is_off = |axis: &usize| away[*axis].abs() > rounding_error();
         let (count, axis) =
             (0..3).filter(is_off).fold((0, 0), |(count, _), axis| (count + 1, axis));
         if count == 1 {
@@ -291,9 +293,9 @@ impl<N: Real> LocalBox<'_, N> {
         let across = if is_between { self.perpendicular(&away) } else { None };
         let outward = across.or_else(|| {
             let length = away.norm();
-            (length > noise()).then(|| away / length)
+            (length > rounding_error()).then(|| away / length)
         })?;
-        self.segment.proved(outward, self.level(&outward), points)
+        self.segment.proved(outward, self.extent(&outward), points)
     }
 
     /// Returns the separating direction when the nearest feature of the box is an edge:
@@ -310,12 +312,12 @@ impl<N: Real> LocalBox<'_, N> {
         let along = &self.segment.along;
         let (x, y) = (-along[other], along[one]);
         let sine = (x * x + y * y).sqrt();
-        if sine <= N::lit(1.0 / 64.0) * along[axis].abs() || sine <= noise() {
+        if sine <= N::lit(1.0 / 64.0) * along[axis].abs() || sine <= rounding_error() {
             return None;
         }
-        let turned = if x * away[one] + y * away[other] < N::ZERO { -sine } else { sine };
+        let signed_sine = if x * away[one] + y * away[other] < N::ZERO { -sine } else { sine };
         let mut outward = Vector::<N, 3>::zeros();
-        (outward[one], outward[other]) = (x / turned, y / turned);
+        (outward[one], outward[other]) = (x / signed_sine, y / signed_sine);
         Some(outward)
     }
 

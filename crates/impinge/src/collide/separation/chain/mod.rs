@@ -123,9 +123,9 @@ impl<V> EightSegments<V> {
         let b: [V; 2] = minus(&load(simd, &tiles.corners[1]), &origin);
         let side = minus(&b, &a);
         let squared = dot(&side, &side);
-        let is_usual = squared.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()))
+        let is_in_range = squared.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()))
             & squared.simd_lt(V::all(simd, N::MAX.sqrt()));
-        if !is_usual.all_true() {
+        if !is_in_range.all_true() {
             return None;
         }
         let center: [V; 2] = spread(simd, &(question.center.coords - question.origin));

@@ -41,7 +41,8 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             let segment = Segment::of_finite(a - question.origin, b - question.origin);
             let own = PolygonOutline::of_segment::<S, V>(simd, &segment, N::ZERO)?;
             let outlines = [&own, &solid.outline];
-            let found = of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.noise[lane])?;
+            let found =
+                of_axis::<S, N, V>(simd, outlines, &axes.axis(lane), axes.rounding_error[lane])?;
             if found.distance <= question.limit {
                 links.found.push((block * LANES + lane, found));
             }
@@ -56,10 +57,10 @@ struct PolygonExtents<N: Real> {
     /// Bound of the distance of its vertices from the origin.
     size: N,
     /// Extent along the normal of each side.
-    reaches: Row<N>,
+    extents: Row<N>,
     /// Direction of the tip at each vertex, and the extent along it.
     tips: [Row<N>; 2],
-    tip_reaches: Row<N>,
+    tip_extents: Row<N>,
     /// Bit of each vertex with a tip.
     are_tips: u64,
 }
@@ -68,21 +69,21 @@ impl<N: Real> PolygonExtents<N> {
     /// Computes the extents of a polygon along its own directions.
     #[inline(always)]
     fn new<S: Simd, V: Wide<S, Scalar = N>>(simd: S, outline: PolygonOutline<N>) -> Self {
-        let (mut tips, mut tip_reaches) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
-        let (ways, is_tip) = outline.tips::<S, V>(simd, 0);
+        let (mut tips, mut tip_extents) = ([[N::ZERO; LANES]; 2], [N::ZERO; LANES]);
+        let (directions, is_tip) = outline.tips::<S, V>(simd, 0);
         for axis in 0..2 {
-            ways[axis].store(&mut tips[axis]);
+            directions[axis].store(&mut tips[axis]);
         }
-        let mut reaches = [N::ZERO; LANES];
-        for (vertex, reach) in reaches.iter_mut().enumerate().take(outline.count) {
-            *reach = outline.normal(vertex).dot(&outline.at(vertex).coords);
+        let mut extents = [N::ZERO; LANES];
+        for (vertex, extent) in extents.iter_mut().enumerate().take(outline.count) {
+            *extent = outline.normal(vertex).dot(&outline.at(vertex).coords);
         }
         let are_tips = is_tip.to_bitmask();
         if are_tips != 0 {
-            outline.reach(simd, &ways).store(&mut tip_reaches);
+            outline.extent(simd, &directions).store(&mut tip_extents);
         }
         let size = outline.size::<S, V>(simd);
-        Self { outline, size, reaches, tips, tip_reaches, are_tips }
+        Self { outline, size, extents, tips, tip_extents, are_tips }
     }
 }
 
@@ -93,7 +94,7 @@ struct SegmentAxes<N> {
     /// Unit, from the segment to the polygon.
     normals: [Row<N>; 2],
     /// Rounding error of lengths of each pair.
-    noise: Row<N>,
+    rounding_error: Row<N>,
     /// Bit of each segment that is beyond the limit.
     beyond: u8,
 }
@@ -132,18 +133,18 @@ impl<N: Real> SegmentAxes<N> {
         let rounding = solid.outline.rounding;
         let sizes = [a[0].abs() + a[1].abs(), b[0].abs() + b[1].abs()];
         let size = sizes[0].larger(sizes[1]).larger(V::all(simd, solid.size));
-        let noise = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
-        let room = noise + V::all(simd, N::EPSILON * rounding);
-        let reach = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * room;
+        let rounding_error = V::all(simd, N::lit(4.0) * N::EPSILON) * size;
+        let slack = rounding_error + V::all(simd, N::EPSILON * rounding);
+        let max_gap = V::all(simd, limit) + V::all(simd, N::lit(16.0)) * slack;
         // The gap is a lower bound: a gap beyond the limit by more than rounding rejects the
         // segment.
-        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(reach);
+        let beyond = (best.gap - V::all(simd, rounding)).simd_gt(max_gap);
         let (beyond, zeros) = (bits(beyond), [N::ZERO; LANES]);
-        let mut axes = Self { gaps: zeros, normals: [zeros; 2], noise: zeros, beyond };
+        let mut axes = Self { gaps: zeros, normals: [zeros; 2], rounding_error: zeros, beyond };
         best.gap.store(&mut axes.gaps);
         best.normal[0].store(&mut axes.normals[0]);
         best.normal[1].store(&mut axes.normals[1]);
-        noise.store(&mut axes.noise);
+        rounding_error.store(&mut axes.rounding_error);
         axes
     }
 
@@ -205,10 +206,10 @@ fn add_polygon<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
 ) {
     for vertex in 0..solid.outline.count.min(LANES) {
         let normal = solid.outline.normal(vertex);
-        add(simd, [a, b], [normal.x, normal.y], solid.reaches[vertex], best);
+        add(simd, [a, b], [normal.x, normal.y], solid.extents[vertex], best);
         if solid.are_tips >> vertex & 1 == 1 {
             let direction = [solid.tips[0][vertex], solid.tips[1][vertex]];
-            add(simd, [a, b], direction, solid.tip_reaches[vertex], best);
+            add(simd, [a, b], direction, solid.tip_extents[vertex], best);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::*;
 use crate::collide::Pair;
 use crate::collide::separation::hulls::tests::Random;
 use crate::collide::separation::polygons::polygon_polygon::tests::solid_of;
-use crate::collide::separation::separation_in_plane;
+use crate::collide::separation::separation_2d;
 use crate::shape::{Ball, Segment};
 
 /// One to sixteen segments around an origin, and their tiles.
@@ -57,7 +57,7 @@ fn compare<N: Real>(seed: u64) {
         for (index, segment) in segments.iter().enumerate() {
             let segment = Kind::Segment(segment);
             let (first, second) = if comes_first { (kind, segment) } else { (segment, kind) };
-            let answer = separation_in_plane(&Pair { first, second, pose12 }, limit);
+            let answer = separation_2d(&Pair { first, second, pose12 }, limit);
             expected.extend(answer.map(|answer| (index, answer)));
         }
         for level in Level::available() {
@@ -70,7 +70,7 @@ fn compare<N: Real>(seed: u64) {
             }
         }
     }
-    assert!(decided * 10 > count * 9, "{decided} of {count} are usual");
+    assert!(decided * 10 > count * 9, "{decided} of {count} are decided");
     assert!(found > decided, "{found} segments are found by {decided}");
 }
 
@@ -103,5 +103,5 @@ fn segments_without_length_are_left_to_others() {
     assert_eq!((near.from_middle, near.found.len()), (2.0, 7), "seven lie two above");
     let mut none = Links::new(9.0);
     question.pose12.translation.x = f32::NAN;
-    assert!(links(&question, &mut none).is_none(), "no place");
+    assert!(links(&question, &mut none).is_none(), "no finite position");
 }

@@ -14,7 +14,7 @@
 use super::face::ReferenceFace;
 use super::polyhedral::Polyhedral;
 use super::vertices::Vertices;
-use super::{LANES, noise};
+use super::{LANES, rounding_error};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::convex::Separation;
 use crate::math::lanes::{self, LanePose, dot, highest_lane, load, spread};
@@ -113,16 +113,17 @@ pub(super) struct EdgeQuery<N> {
 
 impl<N: Real> ReferenceFace<'_, '_, N> {
     /// Returns the edges of each solid that can hold the points of an answer whose points are no
-    /// farther apart than `reach`: those with an end close enough to the other solid along the
+    /// farther apart than `max_distance`: those with an end close enough to the other solid along the
     /// normal.
     #[inline(always)]
     fn candidates<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        reach: N,
+        max_distance: N,
     ) -> [CandidateEdges; 2] {
-        let slack = N::lit(4.0) * noise();
-        let (least, most) = (self.other.heights.low - reach - slack, self.offset() + reach + slack);
+        let slack = N::lit(4.0) * rounding_error();
+        let (least, most) =
+            (self.other.heights.low - max_distance - slack, self.offset() + max_distance + slack);
         let own = self.own.heights.up_to::<S, V>(simd, -least);
         let other = self.other.heights.up_to::<S, V>(simd, most);
         [
@@ -175,11 +176,11 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     pub(super) fn query_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        reach: N,
+        max_distance: N,
     ) -> Option<EdgeQuery<N>> {
-        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, max_distance);
         let (mut best, mut largest): (Option<EdgeQuery<N>>, N) =
-            (None, self.separation() + N::TWO * noise());
+            (None, self.separation() + N::TWO * rounding_error());
         for eight in candidates2.indices().chunks(LANES) {
             let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
             let normals2 = self.normals_beside_block::<S, V>(simd, &edges2);
@@ -225,9 +226,9 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     pub(super) fn nearest_edges<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        reach: N,
+        max_distance: N,
     ) -> Option<Separation<N, 3>> {
-        let [candidates1, candidates2] = self.candidates::<S, V>(simd, reach);
+        let [candidates1, candidates2] = self.candidates::<S, V>(simd, max_distance);
         let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
         for eight in candidates2.indices().chunks(LANES) {
             let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
@@ -290,7 +291,8 @@ pub(super) fn normal_between<N: Real>(
 ) -> Option<Vector<N, 3>> {
     let away = to - from;
     let is_across = |across: &Vector<N, 3>| {
-        (away - across * across.dot(&away)).norm_squared() <= noise::<N>() * noise()
+        (away - across * across.dot(&away)).norm_squared()
+            <= rounding_error::<N>() * rounding_error()
     };
     match unit(across).map(|(across, _)| across).filter(is_across) {
         Some(across) if across.dot(&away) < N::ZERO => Some(-across),
@@ -307,7 +309,7 @@ pub(super) fn proved<N: Real>(
     [on_own, on_other]: [Vector<N, 3>; 2],
 ) -> Option<Separation<N, 3>> {
     let off = on_other - on_own - normal * distance;
-    let is_proved = off.norm_squared() <= N::lit(4.0) * noise::<N>() * noise();
+    let is_proved = off.norm_squared() <= N::lit(4.0) * rounding_error::<N>() * rounding_error();
     let (point1, point2) = (Point::from(on_own), Point::from(on_other));
     is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
 }

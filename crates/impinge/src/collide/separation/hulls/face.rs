@@ -2,8 +2,8 @@
 
 use core::ops::ControlFlow;
 
-use super::noise;
 use super::polyhedral::Polyhedral;
+use super::rounding_error;
 use super::vertices::{Heights, Vertices, height_above};
 use crate::collide::separation::segments::nearest::nearest_on_segment;
 use crate::convex::Separation;
@@ -75,36 +75,40 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         simd: S,
     ) -> Option<Separation<N, 3>> {
         let separation = self.separation();
-        let (over, reaches) = match self.lowest_point(self.lowest_vertices::<S, V>(simd)) {
+        let (over, max_distances) = match self.lowest_point(self.lowest_vertices::<S, V>(simd)) {
             LowestPoint::Over(point) if separation > N::ZERO => return Some(self.at(&point)),
             LowestPoint::Over(point) => (Some(self.at(&point)), [-separation; 2]),
-            LowestPoint::Beside(reach) if separation > N::ZERO => {
-                (None, [min(separation * N::TWO + N::lit(1.0 / 16.0), reach), reach])
+            LowestPoint::Beside(max_distance) if separation > N::ZERO => {
+                (None, [min(separation * N::TWO + N::lit(1.0 / 16.0), max_distance), max_distance])
             }
-            LowestPoint::Beside(reach) => (None, [-separation, max(reach, -separation)]),
+            LowestPoint::Beside(max_distance) => {
+                (None, [-separation, max(max_distance, -separation)])
+            }
         };
-        for reach in reaches {
-            let is_last = reach >= reaches[1];
-            if let ControlFlow::Break(found) = self.within::<S, V>(simd, reach, is_last, over) {
+        for max_distance in max_distances {
+            let is_last = max_distance >= max_distances[1];
+            if let ControlFlow::Break(found) =
+                self.within::<S, V>(simd, max_distance, is_last, over)
+            {
                 return found;
             }
         }
         None
     }
 
-    /// Returns the answer by edges within `reach`; continues if farther edges may have a better
+    /// Returns the answer by edges within `max_distance`; continues if farther edges may have a better
     /// one.
     #[inline(always)]
     fn within<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
-        reach: N,
+        max_distance: N,
         is_last: bool,
         over: Option<Separation<N, 3>>,
     ) -> ControlFlow<Option<Separation<N, 3>>> {
         let mut are_apart = self.separation() > N::ZERO;
         if !are_apart {
-            let Some(query) = self.query_edges::<S, V>(simd, reach) else {
+            let Some(query) = self.query_edges::<S, V>(simd, max_distance) else {
                 return if over.is_some() {
                     ControlFlow::Break(over)
                 } else if is_last {
@@ -121,7 +125,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
             }
             are_apart = found.is_none() && query.separation > N::ZERO;
         }
-        let found = if are_apart { self.nearest_edges::<S, V>(simd, reach) } else { None };
+        let found = if are_apart { self.nearest_edges::<S, V>(simd, max_distance) } else { None };
         let is_decided = found.is_some() || is_last;
         if is_decided { ControlFlow::Break(found) } else { ControlFlow::Continue(()) }
     }
@@ -144,8 +148,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     fn is_common<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, point: &Vector<N, 3>) -> bool {
         let in_other = self.pose.rotation.tr_mul(&(point - self.pose.translation));
         let (own, other) = (self.own.solid.planes, self.other.solid.planes);
-        height_above::<S, N, V>(simd, own, self.shrink, point) <= noise()
-            && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= noise()
+        height_above::<S, N, V>(simd, own, self.shrink, point) <= rounding_error()
+            && height_above::<S, N, V>(simd, other, self.shrink, &in_other) <= rounding_error()
     }
 
     /// Signed height of the other solid above the plane of the face.
@@ -168,23 +172,23 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     /// Returns the first of the lowest vertices (bits) that lies over the face. If an edge or a
     /// face is lowest, it may be another of its points.
     fn lowest_point(&self, lowest: u32) -> LowestPoint<N> {
-        let (mut reach, mut rest) = (N::INFINITY, lowest);
+        let (mut max_distance, mut rest) = (N::INFINITY, lowest);
         while rest != 0 {
             let point = self.other.vertices.at(rest.trailing_zeros() as usize);
             match self.distance_beside(&point) {
                 None => return LowestPoint::Over(point),
-                Some(beside) => reach = min(beside, reach),
+                Some(beside) => max_distance = min(beside, max_distance),
             }
             rest &= rest - 1;
         }
         let among = if lowest.count_ones() > 1 { self.point_among(lowest) } else { None };
-        among.map_or(LowestPoint::Beside(reach), LowestPoint::Over)
+        among.map_or(LowestPoint::Beside(max_distance), LowestPoint::Over)
     }
 
     /// Returns the lowest vertices of the other solid, up to rounding, as bits.
     #[inline(always)]
     fn lowest_vertices<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> u32 {
-        self.other.heights.up_to::<S, V>(simd, self.other.heights.low + noise())
+        self.other.heights.up_to::<S, V>(simd, self.other.heights.low + rounding_error())
     }
 
     /// Returns the answer where the lowest vertex lies beside the face, but no edge is better than
@@ -192,7 +196,7 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     /// rounding has a part over the face.
     #[inline(always)]
     fn nearly_over<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 3>> {
-        let most = self.other.heights.low + N::lit(3.0) * noise();
+        let most = self.other.heights.low + N::lit(3.0) * rounding_error();
         let low = self.other.heights.up_to::<S, V>(simd, most);
         let is_low = |vertex: u32| low >> vertex & 1 == 1;
         for edge in self.other.solid.edges {
@@ -238,7 +242,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         for (ends, inward) in self.sides() {
             let inside = inward.dot(&(point - ends[0]));
             let is_beside = inside < N::ZERO
-                && inside * inside > noise::<N>() * noise() * inward.norm_squared();
+                && inside * inside
+                    > rounding_error::<N>() * rounding_error() * inward.norm_squared();
             if is_beside {
                 let nearest = nearest_on_segment(&ends.mapped(Point::from), &Point::from(*point)).0;
                 let squared = (point - nearest.coords).norm_squared();

@@ -71,9 +71,8 @@ pub(super) const PLANE_BLOCKS: usize = 8;
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     match result(Level::new(), pair, limit) {
         SatResult::Beyond => None,
-        SatResult::Found(found) => {
-            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
-        }
+        SatResult::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
+            .filter(|found| found.distance <= limit),
         SatResult::Unproved => general::of_flat_cores(pair, limit),
     }
 }
@@ -105,15 +104,15 @@ enum SatResult<N: Real> {
 }
 
 /// Returns the rounding error of lengths, in units of the pair: 8 epsilon.
-pub(super) fn noise<N: Real>() -> N {
+pub(super) fn rounding_error<N: Real>() -> N {
     N::lit(8.0) * N::EPSILON
 }
 
 /// Returns what a lower bound has to exceed to be beyond the caller's `limit`: the limit plus
 /// rounding, in units of the pair.
-pub(super) fn out_of_reach<N: Real>(units: &Units<N>, limit: N) -> N {
+pub(super) fn beyond_limit<N: Real>(units: &Units<N>, limit: N) -> N {
     let limit = limit * units.shrink;
-    limit + N::lit(16.0) * noise::<N>() * (N::ONE + limit.abs())
+    limit + N::lit(16.0) * rounding_error::<N>() * (N::ONE + limit.abs())
 }
 
 /// Runs the test with the vectors of an instruction set; the result does not depend on it.
@@ -138,7 +137,7 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     limit: N,
 ) -> SatResult<N> {
     let units = Units::of(first.reach, second.reach, &pose12.translation);
-    let (shrink, beyond) = (units.shrink, out_of_reach(&units, limit));
+    let (shrink, beyond) = (units.shrink, beyond_limit(&units, limit));
     let in_first = Pose { rotation: pose12.rotation, translation: pose12.translation * shrink };
     let in_second = in_first.inverse();
     let own1 = Vertices::in_own_frame::<S, V>(simd, first, shrink);
@@ -154,7 +153,7 @@ fn sat_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         return SatResult::Beyond;
     }
     // The other solid is placed in the frame of the solid with the reference face.
-    let is_second = face2.separation > face1.separation + noise();
+    let is_second = face2.separation > face1.separation + rounding_error();
     let (index, solids, pose) = if is_second {
         (face2.index, [(second, &own2), (first, &placed1)], in_second)
     } else {

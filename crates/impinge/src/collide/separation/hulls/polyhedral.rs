@@ -11,7 +11,7 @@
 
 use super::edges::MAX_EDGES;
 use super::vertices::Vertices;
-use super::{BLOCKS, LANES, PLANE_BLOCKS, noise};
+use super::{BLOCKS, LANES, PLANE_BLOCKS, rounding_error};
 use crate::math::{Mapped, Real, Vector, cross, filled, max, max_component, min};
 use crate::shape::{Cuboid, Kind, Planes, Polytope, PolytopeEdge, SupportMap, Triangle};
 
@@ -69,7 +69,7 @@ impl<'a, N: Real> Polyhedral<'a, N> {
     /// Returns whether the width exceeds rounding beside another solid of this `reach`. Faces
     /// without width have sides without direction.
     pub(super) fn has_width(&self, reach: N) -> bool {
-        self.thickness > noise::<N>() * (self.reach + reach)
+        self.thickness > rounding_error::<N>() * (self.reach + reach)
     }
 
     /// Number of faces.

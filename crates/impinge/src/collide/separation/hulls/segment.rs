@@ -23,7 +23,9 @@ use super::edges::{
     squared_distances,
 };
 use super::vertices::Vertices;
-use super::{LANES, LocalFeatures, Polyhedral, SatResult, in_first_frame, noise, out_of_reach};
+use super::{
+    LANES, LocalFeatures, Polyhedral, SatResult, beyond_limit, in_first_frame, rounding_error,
+};
 use crate::collide::Pair;
 use crate::convex::{Separation, Units};
 use crate::math::lanes::{self, dot, highest_lane, load, spread, with_lanes};
@@ -44,7 +46,7 @@ pub(in crate::collide::separation) fn separation<N: Real>(
     match result(Level::new(), pair, limit + radius) {
         SatResult::Beyond => None,
         SatResult::Found(found) => {
-            let found = shared_corner::settled(pair, found.rounded(radius, N::ZERO));
+            let found = shared_corner::with_shared_corner(pair, found.rounded(radius, N::ZERO));
             Some(found).filter(|found| found.distance <= limit)
         }
         SatResult::Unproved => general::of_flat_cores(pair, limit),
@@ -73,17 +75,17 @@ fn sat<N: Real>(
     if !(pose12.is_finite() && units.scale.is_finite_number()) {
         return SatResult::Unproved;
     }
-    let place = |end: &Point<N, 3>| {
+    let local = |end: &Point<N, 3>| {
         pose12.rotation.tr_mul(&((end.coords - pose12.translation) * units.shrink))
     };
     let query = SegmentQuery {
         solid,
-        ends: [place(&ends[0]), place(&ends[1])],
+        ends: [local(&ends[0]), local(&ends[1])],
         // From the ends as given: the distance between the origins costs no digits then.
         along: pose12.rotation.tr_mul(&((ends[1] - ends[0]) * units.shrink)),
         shrink: units.shrink,
     };
-    let beyond = out_of_reach(&units, limit);
+    let beyond = beyond_limit(&units, limit);
     let result = with_lanes!(level, simd => query.sat_in_lanes::<_, N::Lanes<_>>(simd, beyond));
     match result {
         SatResult::Found(found) => {
@@ -185,7 +187,7 @@ impl<N: Real> SegmentQuery<'_, N> {
         let normal = self.solid.normal(faces.index);
         let (first, last) = self.span(vertices, faces.index, &normal)?;
         let climb = self.along.dot(&normal);
-        let point = if climb.abs() <= noise() {
+        let point = if climb.abs() <= rounding_error() {
             self.at((first + last) * N::HALF)
         } else if climb > N::ZERO && first <= N::ZERO {
             self.ends[0]
@@ -208,7 +210,7 @@ impl<N: Real> SegmentQuery<'_, N> {
         for &vertex in ring {
             let to = vertices.at(vertex as usize);
             let side = to - from;
-            if ring.len() < 3 || side.norm_squared() <= noise::<N>() * noise() {
+            if ring.len() < 3 || side.norm_squared() <= rounding_error::<N>() * rounding_error() {
                 return None;
             }
             let inward = cross(normal, &side);
@@ -244,8 +246,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         );
         let (along, end): ([V; 3], [V; 3]) =
             (spread(simd, &self.along), spread(simd, &self.ends[0]));
-        let tiny = V::all(simd, noise::<N>() * noise());
-        let (mut best, mut largest) = (None, faces.separation + N::TWO * noise());
+        let tiny = V::all(simd, rounding_error::<N>() * rounding_error());
+        let (mut best, mut largest) = (None, faces.separation + N::TWO * rounding_error());
         for eight in candidates.indices().chunks(LANES) {
             let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
             let outward = block.indices.mapped(|index| self.outward(usize::from(index), climbed));

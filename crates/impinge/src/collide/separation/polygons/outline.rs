@@ -10,7 +10,7 @@
 
 use smallvec::{SmallVec, smallvec};
 
-use crate::collide::separation::segments::segment_lanes::is_usual;
+use crate::collide::separation::segments::segment_lanes::is_square_in_range;
 use crate::math::lanes::{LanePose, dot, either, highest_lane, load, spread};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Point, Pose, Real, Vector, Wide, cross2, max};
@@ -151,7 +151,7 @@ impl<N: Real> PolygonOutline<N> {
     ) -> Option<Self> {
         let side = [ends[0] - vertices[0], ends[1] - vertices[1]];
         let squared = dot(&side, &side);
-        if !is_usual(simd, squared).all_true() {
+        if !is_square_in_range(simd, squared).all_true() {
             return None;
         }
         let length = squared.sqrt();
@@ -236,7 +236,7 @@ impl<N: Real> PolygonOutline<N> {
 
     /// Returns the largest coordinate of the vertices along each of eight directions.
     #[inline(always)]
-    pub(in crate::collide::separation) fn reach<S: Simd, V: Wide<S, Scalar = N>>(
+    pub(in crate::collide::separation) fn extent<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
         simd: S,
         directions: &[V; 2],

@@ -11,28 +11,28 @@ use crate::math::simd::Simd;
 use crate::math::{Point, Real, Vector, Wide, perp, unit};
 
 /// Two outlines and the direction from the first to the second with its gap, which may be negative.
-pub(in crate::collide::separation) struct Facing<'a, N: Real> {
+pub(in crate::collide::separation) struct OutlinePair<'a, N: Real> {
     outlines: [&'a PolygonOutline<N>; 2],
     /// Unit direction from the first outline to the second, with its gap.
     axis: Axis<N>,
     /// The vertex of each outline that is farthest toward the other.
     tops: [usize; 2],
     /// Lengths up to this are rounding errors.
-    noise: N,
+    rounding_error: N,
 }
 
-impl<'a, N: Real> Facing<'a, N> {
+impl<'a, N: Real> OutlinePair<'a, N> {
     /// Finds the tops of both outlines along an axis.
     #[inline(always)]
     pub(in crate::collide::separation) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
         outlines: [&'a PolygonOutline<N>; 2],
         axis: &Axis<N>,
-        noise: N,
+        rounding_error: N,
     ) -> Self {
         let (_, top1) = outlines[0].top::<S, V>(simd, &axis.normal);
         let (_, top2) = outlines[1].top::<S, V>(simd, &-axis.normal);
-        Self { outlines, axis: *axis, tops: [top1, top2], noise }
+        Self { outlines, axis: *axis, tops: [top1, top2], rounding_error }
     }
 
     /// Returns the separation of the outlines; `None` if the axis is not that of their nearest
@@ -43,10 +43,10 @@ impl<'a, N: Real> Facing<'a, N> {
         simd: S,
     ) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
-        match self.settled() {
+        match self.clear_case() {
             None if gap <= N::ZERO => Some(self.overlapping()),
             None if gap.is_finite_number() => self.apart::<S, V>(simd),
-            settled => settled,
+            found => found,
         }
     }
 
@@ -54,14 +54,14 @@ impl<'a, N: Real> Facing<'a, N> {
     /// above it, the outlines certainly overlap, or corners next to the axis are the nearest
     /// points. In these cases the best normal of a side is enough as axis.
     #[inline(always)]
-    pub(in crate::collide::separation) fn settled(&self) -> Option<Separation<N, 2>> {
+    pub(in crate::collide::separation) fn clear_case(&self) -> Option<Separation<N, 2>> {
         let gap = self.axis.gap;
         if !gap.is_finite_number() {
             return None;
         }
         let (is_above1, end1) = self.beside(0);
         let (is_above2, end2) = self.beside(1);
-        if gap < -self.noise || gap <= N::ZERO && (is_above1 || is_above2) {
+        if gap < -self.rounding_error || gap <= N::ZERO && (is_above1 || is_above2) {
             return Some(self.overlapping());
         }
         let [top1, top2] = [self.top(0), self.top(1)];
@@ -98,7 +98,7 @@ impl<'a, N: Real> Facing<'a, N> {
     fn beside(&self, which: usize) -> (bool, usize) {
         let (outline, top) = (self.outlines[which], self.tops[which]);
         let (next, previous) = (outline.next(top), outline.previous(top));
-        let slack = N::lit(4.0) * self.noise;
+        let slack = N::lit(4.0) * self.rounding_error;
         let other = if self.below(which, next) <= slack {
             next
         } else if self.below(which, previous) <= slack {
@@ -128,7 +128,8 @@ impl<'a, N: Real> Facing<'a, N> {
         if !(is_behind(0, &between) && is_behind(1, &-between)) {
             return None;
         }
-        let (normal, distance) = unit(&between).filter(|(_, length)| *length > self.noise)?;
+        let (normal, distance) =
+            unit(&between).filter(|(_, length)| *length > self.rounding_error)?;
         Some(Separation { distance, normal, point1, point2 })
     }
 
@@ -151,7 +152,7 @@ impl<'a, N: Real> Facing<'a, N> {
         for vertex in [outline.previous(top), outline.next(top)] {
             let at = outline.at(vertex);
             let along = tangent.dot(&at.coords);
-            if self.below(which, vertex) <= self.noise {
+            if self.below(which, vertex) <= self.rounding_error {
                 low = if along < low.0 { (along, at) } else { low };
                 high = if along > high.0 { (along, at) } else { high };
             }
@@ -163,13 +164,13 @@ impl<'a, N: Real> Facing<'a, N> {
     /// nearest points.
     #[inline(always)]
     fn apart<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S) -> Option<Separation<N, 2>> {
-        let ([own, other], noise) = (self.outlines, self.noise);
+        let ([own, other], rounding_error) = (self.outlines, self.rounding_error);
         let (around1, around2) = (around(own, self.tops[0]), around(other, self.tops[1]));
         let points = nearest_points::<S, N, V>(simd, &around1, &around2)?;
         let between = points.1 - points.0;
-        let slack = N::lit(8.0) * noise;
+        let slack = N::lit(8.0) * rounding_error;
         let beside = (between - self.axis.normal * self.axis.gap).norm();
-        let direct = unit(&between).filter(|_| beside > noise);
+        let direct = unit(&between).filter(|_| beside > rounding_error);
         let mut axis = self.axis;
         if let Some((normal, length)) = direct {
             let high1 = own.top::<S, V>(simd, &normal).0;
@@ -178,7 +179,7 @@ impl<'a, N: Real> Facing<'a, N> {
                 axis = Axis { gap: length, normal };
             }
         }
-        let is_met = between.norm() - axis.gap <= N::lit(4.0) * noise;
+        let is_met = between.norm() - axis.gap <= N::lit(4.0) * rounding_error;
         let (point1, point2) = points;
         is_met.then_some(Separation { distance: axis.gap, normal: axis.normal, point1, point2 })
     }
@@ -226,12 +227,12 @@ pub(in crate::collide::separation) fn nearest_points<S: Simd, N: Real, V: Wide<S
     let end2 = either(is_end, &to2, &from2);
     let on2 = nearest_on_segment(simd, &[from2, to2], &end1).point;
     let on1 = nearest_on_segment(simd, &[from1, to1], &end2).point;
-    let (way1, way2) = (minus(&on2, &end1), minus(&on1, &end2));
-    let (low1, lane1) = highest(simd, -dot(&way1, &way1));
-    let (low2, lane2) = highest(simd, -dot(&way2, &way2));
+    let (offset1, offset2) = (minus(&on2, &end1), minus(&on1, &end2));
+    let (low1, lane1) = highest(simd, -dot(&offset1, &offset1));
+    let (low2, lane2) = highest(simd, -dot(&offset2, &offset2));
     let (low1, low2) = (-low1, -low2);
-    let is_usual = low1 < N::INFINITY && low2 < N::INFINITY;
-    if !is_usual {
+    let is_finite = low1 < N::INFINITY && low2 < N::INFINITY;
+    if !is_finite {
         return None;
     }
     let (rank1, rank2) = ((lane1 >> 1) * 4 + (lane1 & 1), (lane2 >> 1) * 4 + (lane2 & 1) + 2);

@@ -6,14 +6,14 @@
 //! positive, so the nearest points lie on the sides next to the best normal, ends included.
 //!
 //! Eight sides are tried at a time, each against all vertices of the other solid. If the best
-//! normal leads to the nearest points, as it mostly does ([`Facing::settled`]), the tips of sharp
+//! normal leads to the nearest points, as it mostly does ([`OutlinePair::clear_case`]), the tips of sharp
 //! corners are skipped. The rest goes to the [general
 //! algorithm](crate::collide::separation::general): outlines with too many vertices, sides whose
 //! squared length is close to underflow or overflow, and nearest points that do not lie along the
 //! best axis.
 
 use super::outline::{LANES, PolygonOutline, highest, lane};
-use super::polygon_nearest::Facing;
+use super::polygon_nearest::OutlinePair;
 use crate::collide::Pair;
 use crate::collide::separation::boxes::rectangle_axes::Rectangles;
 use crate::collide::separation::general;
@@ -64,9 +64,8 @@ pub(in crate::collide::separation) fn separation_of_outlines<N: Real>(
 ) -> Option<Separation<N, 2>> {
     match between(Level::new(), pair, limit) {
         OutlineResult::Beyond => None,
-        OutlineResult::Found(found) => {
-            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
-        }
+        OutlineResult::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
+            .filter(|found| found.distance <= limit),
         OutlineResult::Undecided => general::separation(pair, limit),
     }
 }
@@ -103,27 +102,28 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let other = other.placed::<S, V>(simd, &pair.pose12);
     let outlines = [&own, &other];
     let rounding = own.rounding + other.rounding;
-    let noise = N::lit(4.0) * N::EPSILON * max(own.size::<S, V>(simd), other.size::<S, V>(simd));
+    let rounding_error =
+        N::lit(4.0) * N::EPSILON * max(own.size::<S, V>(simd), other.size::<S, V>(simd));
     // Closures are not inlined into vector code.
     let sides = match known {
         Some(known) => known,
         None => best_side::<S, N, V>(simd, &own, &other),
     };
     // The gap is a lower bound: beyond the limit by more than rounding it rejects the pair.
-    let reach = limit + N::lit(16.0) * (noise + N::EPSILON * rounding);
-    if sides.gap - rounding > reach {
+    let max_gap = limit + N::lit(16.0) * (rounding_error + N::EPSILON * rounding);
+    if sides.gap - rounding > max_gap {
         return OutlineResult::Beyond;
     }
-    let facing = Facing::of::<S, V>(simd, outlines, &sides, noise);
-    let found = match facing.settled() {
+    let outlines_along = OutlinePair::of::<S, V>(simd, outlines, &sides, rounding_error);
+    let found = match outlines_along.clear_case() {
         Some(cores) => Some(cores.rounded(own.rounding, other.rounding)),
         None => {
             let is_known = known.is_some();
             let best = if is_known { sides } else { best_axis::<S, N, V>(simd, outlines, sides) };
-            if best.gap - rounding > reach {
+            if best.gap - rounding > max_gap {
                 return OutlineResult::Beyond;
             }
-            of_axis::<S, N, V>(simd, outlines, &best, noise)
+            of_axis::<S, N, V>(simd, outlines, &best, rounding_error)
         }
     };
     found.map_or(OutlineResult::Undecided, OutlineResult::Found)
@@ -136,10 +136,10 @@ pub(in crate::collide::separation) fn of_axis<S: Simd, N: Real, V: Wide<S, Scala
     simd: S,
     outlines: [&PolygonOutline<N>; 2],
     best: &Axis<N>,
-    noise: N,
+    rounding_error: N,
 ) -> Option<Separation<N, 2>> {
-    let facing = Facing::of::<S, V>(simd, outlines, best, noise);
-    let cores = facing.separation::<S, V>(simd)?;
+    let outlines_along = OutlinePair::of::<S, V>(simd, outlines, best, rounding_error);
+    let cores = outlines_along.separation::<S, V>(simd)?;
     Some(cores.rounded(outlines[0].rounding, outlines[1].rounding))
 }
 
@@ -177,7 +177,7 @@ fn best_side_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         let [x, y]: [V; 2] = load(simd, &block.normals);
         let [at_x, at_y]: [V; 2] = load(simd, &block.vertices);
         let offsets = x * at_x + y * at_y;
-        let (gap, side) = highest(simd, -other.reach(simd, &[-x, -y]) - offsets);
+        let (gap, side) = highest(simd, -other.extent(simd, &[-x, -y]) - offsets);
         if gap > best.gap {
             best = Axis { gap, normal: own.normal(number * LANES + side) };
         }
@@ -221,7 +221,7 @@ fn best_tip_of_one<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         if !is_tip.any_true() {
             continue;
         }
-        let gaps = -other.reach(simd, &[-tips[0], -tips[1]]) - own.reach(simd, &tips);
+        let gaps = -other.extent(simd, &[-tips[0], -tips[1]]) - own.extent(simd, &tips);
         let (gap, tip) = highest(simd, is_tip.select(gaps, none));
         if best.is_none_or(|best| gap > best.gap) {
             best = Some(Axis { gap, normal: lane(&tips, tip).coords });
@@ -354,14 +354,14 @@ pub(in crate::collide::separation) mod tests {
                     let what = || format!("{found:?} not {expected:?}: {kinds:?} {pose12:?}");
                     let close = N::lit(64.0) * N::EPSILON;
                     assert!((found.distance - expected.distance).abs() <= close, "{}", what());
-                    let way = found.point2 - found.point1 - found.normal * found.distance;
-                    assert!(way.norm() <= close, "the normal leads there: {}", what());
+                    let offset = found.point2 - found.point1 - found.normal * found.distance;
+                    assert!(offset.norm() <= close, "the normal leads there: {}", what());
                     decided += 1;
                     overlapping += usize::from(found.distance < N::ZERO);
                 }
             }
         }
-        assert!(decided * 10 > count * 9, "{decided} of {count} are usual");
+        assert!(decided * 10 > count * 9, "{decided} of {count} are decided");
         assert!(overlapping * 4 > decided, "{overlapping} of {decided} overlap");
     }
 
@@ -420,6 +420,6 @@ pub(in crate::collide::separation) mod tests {
         assert_eq!((found.distance, found.normal.x), (3.0, 1.0), "in a row");
         let point = Triangle::new(p(0.0, 0.0), p(0.0, 0.0), p(0.0, 0.0));
         assert_eq!(of(&point, &point, 3.0, 4.0).distance, 5.0, "points");
-        assert_eq!(of(&point, &point, 0.0, 0.0).normal, Vector::<f64, 2>::x(), "at one place");
+        assert_eq!(of(&point, &point, 0.0, 0.0).normal, Vector::<f64, 2>::x(), "at one position");
     }
 }

@@ -1,7 +1,7 @@
 //! Nearest point of a chord to a cylinder or a cone, or the deepest inside.
 
 use super::profile::Profile;
-use super::{NearestHull, RevolvedPlace, still};
+use super::{DirectedPoint, NearestHull, still};
 use crate::math::{Real, Vector, max, min};
 
 /// Cap on the points tried; about four are needed.
@@ -81,34 +81,38 @@ impl<N: Real> Profile<N> {
         &self,
         ends: [Vector<N, 3>; 2],
         falls: bool,
-    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
+    ) -> Option<(NearestHull<N>, DirectedPoint<N>)> {
         let mut search = ChordSearch::new(ends, falls)?;
         let mut share = search.start();
         for _ in 0..STEPS {
-            let seen = self.seen_from(search.at(share));
-            let (slope, way) = (seen.slope(&search.along), seen.way_down(&search.along));
+            let projected = self.project(search.at(share));
+            let (slope, descent) =
+                (projected.slope(&search.along), projected.descent(&search.along));
             let is_end =
                 share <= N::ZERO && slope >= N::ZERO || share >= N::ONE && slope <= N::ZERO;
             if is_end {
-                return Some((NearestHull::Point(seen.point), RevolvedPlace::of(self, &seen)));
+                return Some((
+                    NearestHull::Point(projected.point),
+                    DirectedPoint::of(self, &projected),
+                ));
             }
-            let is_level = slope.abs() <= still::<N>() * search.length;
-            if is_level || way.is_some_and(|way| way.abs() * search.length <= still()) {
+            let is_flat = slope.abs() <= still::<N>() * search.length;
+            if is_flat || descent.is_some_and(|descent| descent.abs() * search.length <= still()) {
                 return Some((
                     NearestHull::Chord(ends),
-                    RevolvedPlace::across(self, &seen, &(search.along / search.length))?,
+                    DirectedPoint::across(self, &projected, &(search.along / search.length))?,
                 ));
             }
             search.note(share, slope);
-            let ahead = if slope > N::ZERO { -N::ONE } else { N::ONE };
-            let next = search.admitted(share + way.unwrap_or(ahead));
+            let sign = if slope > N::ZERO { -N::ONE } else { N::ONE };
+            let next = search.admitted(share + descent.unwrap_or(sign));
             share = match next {
                 Some(next) => next,
                 // Inside, the distance has a kink here.
-                None if seen.distance < N::ZERO => return None,
+                None if projected.distance < N::ZERO => return None,
                 None => {
-                    let to_rim = seen.way_to_rim(self, &search.along);
-                    let next = to_rim.and_then(|way| search.admitted(share + way));
+                    let to_rim = projected.step_to_rim(self, &search.along);
+                    let next = to_rim.and_then(|step| search.admitted(share + step));
                     next.or_else(|| search.halved())?
                 }
             };

@@ -18,7 +18,7 @@ use smallvec::SmallVec;
 use crate::collide::Pair;
 use crate::collide::separation::flat_core::FlatCore;
 use crate::collide::separation::general;
-use crate::collide::separation::hulls::noise;
+use crate::collide::separation::hulls::rounding_error;
 use crate::collide::separation::ridges::Round;
 use crate::collide::separation::wrong_kinds;
 use crate::convex::{self, Peak, Peaks, Separation};
@@ -83,11 +83,11 @@ struct AxialOutline<N: Real> {
 impl<N: Real> AxialOutline<N> {
     /// `None` for other kinds, and for solids of size zero.
     fn of(kind: Kind<'_, N, 3>, pose: &Pose<N, 3>, shrink: N) -> Option<Self> {
-        let place = pose.translation * shrink;
+        let position = pose.translation * shrink;
         if let Some(round) = Round::new(&kind, shrink) {
             let top = if round.is_cone { N::ZERO } else { round.radius };
             return Some(Self {
-                middle: place,
+                middle: position,
                 axis: pose.rotation.column(1).into_owned(),
                 corners: [
                     Vector::<N, 2>::new(top, round.half),
@@ -101,9 +101,9 @@ impl<N: Real> AxialOutline<N> {
             _ => return None,
         };
         let [a, b] = [segment.a(), segment.b()].mapped(|end| end.coords * (shrink * N::HALF));
-        let (along, half) = unit(&(b - a)).filter(|(_, half)| *half > noise())?;
+        let (along, half) = unit(&(b - a)).filter(|(_, half)| *half > rounding_error())?;
         let corners = [half, -half].mapped(|at| Vector::<N, 2>::new(N::ZERO, at));
-        let middle = pose.rotation * (a + b) + place;
+        let middle = pose.rotation * (a + b) + position;
         Some(Self { middle, axis: pose.rotation * along, corners })
     }
 
@@ -111,7 +111,7 @@ impl<N: Real> AxialOutline<N> {
         max(self.corners[0].norm(), self.corners[1].norm())
     }
 
-    fn level(&self, normal: &Vector<N, 2>) -> N {
+    fn extent_in_half_plane(&self, normal: &Vector<N, 2>) -> N {
         max(normal.dot(&self.corners[0]), normal.dot(&self.corners[1]))
     }
 
@@ -119,7 +119,7 @@ impl<N: Real> AxialOutline<N> {
     fn extent(&self, along: &Vector<N, 3>) -> N {
         let up = along.dot(&self.axis);
         let aside = (along - self.axis * up).norm();
-        along.dot(&self.middle) + self.level(&Vector::<N, 2>::new(aside, up))
+        along.dot(&self.middle) + self.extent_in_half_plane(&Vector::<N, 2>::new(aside, up))
     }
 
     /// Normals of the caps, then of the side.
@@ -138,7 +138,7 @@ impl<N: Real> AxialOutline<N> {
 
     /// Returns the corners farthest along a normal; for caps also their mirror images.
     fn touched(&self, normal: &Vector<N, 2>, aside: &Vector<N, 3>) -> SmallVec<[Vector<N, 3>; 8]> {
-        let low = self.level(normal) - N::EPSILON.sqrt();
+        let low = self.extent_in_half_plane(normal) - N::EPSILON.sqrt();
         let sides: &[N] = if normal.x > N::ZERO { &[N::ONE] } else { &[N::ONE, -N::ONE] };
         let far = self.corners.iter().filter(|corner| normal.dot(corner) >= low);
         far.flat_map(|corner| {
@@ -180,7 +180,7 @@ impl<N: Real> Coaxial<N> {
     /// Returns the unit vector from the first axis towards the second middle; any perpendicular if
     /// they coincide.
     fn aside(&self) -> Vector<N, 3> {
-        let beside = unit(&self.offset).filter(|(_, offset)| *offset > noise());
+        let beside = unit(&self.offset).filter(|(_, offset)| *offset > rounding_error());
         beside.map_or_else(|| perpendicular_to(&self.first.axis), |(aside, _)| aside)
     }
 
@@ -204,16 +204,16 @@ impl<N: Real> Coaxial<N> {
         let across = |n: Vector<N, 2>| Vector::<N, 2>::new(n.x, -n.y);
         let others = self.second.normals();
         let others = others.map(|n| self.direction(across(n), &self.second, &aside));
-        let ways: SmallVec<[AxialExit<N>; 6]> = own.chain(others).collect();
+        let exits: SmallVec<[AxialExit<N>; 6]> = own.chain(others).collect();
         let shorter = |a: AxialExit<N>, b: AxialExit<N>| if b.depth < a.depth { b } else { a };
-        let best = ways.iter().copied().reduce(shorter)?;
-        let is_exact = self.apart <= noise();
+        let best = exits.iter().copied().reduce(shorter)?;
+        let is_exact = self.apart <= rounding_error();
         let slack = self.apart * N::lit(4.0);
         let is_rival = |other: &AxialExit<N>| {
             let is_other_ring = (other.normal - best.normal).norm() > N::lit(SAME_RING);
             other.normal.x > N::ZERO && is_other_ring && other.depth < best.depth + slack
         };
-        if !is_exact && ways.iter().any(is_rival) {
+        if !is_exact && exits.iter().any(is_rival) {
             return None;
         }
         let is_ring = best.normal.x > N::ZERO && !is_exact;
@@ -267,10 +267,10 @@ mod tests {
             if one.geometry().kind() > other.geometry().kind() {
                 continue;
             }
-            let [about, lean, offset] = [(); 3].mapped(|()| random.vector::<N>());
+            let [about, tilt, offset] = [(); 3].mapped(|()| random.vector::<N>());
             let up = if round % 2 == 0 { N::ZERO } else { N::lit(core::f64::consts::PI) };
             let turns =
-                [lean * N::lit(slight), Vector::<N, 3>::x() * up, Vector::<N, 3>::y() * about.y];
+                [tilt * N::lit(slight), Vector::<N, 3>::x() * up, Vector::<N, 3>::y() * about.y];
             let turn = turns.mapped(UnitQuaternion::from_scaled_axis);
             let rotation = (turn[0] * turn[1] * turn[2]).to_rotation_matrix().into_inner();
             let at = Vector::<N, 3>::y() * (about.x * N::HALF) + offset * N::lit(slight);

@@ -10,7 +10,7 @@
 
 use super::coaxial;
 use crate::collide::Pair;
-use crate::collide::separation::hulls::{in_first_frame, noise, out_of_reach};
+use crate::collide::separation::hulls::{beyond_limit, in_first_frame, rounding_error};
 use crate::collide::separation::wrong_kinds;
 use crate::convex::{Separation, Units};
 use crate::math::{Mapped, Point, Pose, Real, Vector, cross, max, min, orthonormal_basis, unit};
@@ -34,8 +34,8 @@ pub(in crate::collide::separation) fn separation<N: Real>(
         return None;
     }
     let units = Units::of(first.reach(), second.reach(), &pair.pose12.translation);
-    let meeting = CylinderPair::new(first, second, &pair.pose12, units.shrink);
-    let result = meeting.resolve(out_of_reach(&units, limit));
+    let cylinders = CylinderPair::new(first, second, &pair.pose12, units.shrink);
+    let result = cylinders.resolve(beyond_limit(&units, limit));
     match result.answer(&units, &pair.pose12) {
         Some(found) => found.filter(|found| found.distance <= limit),
         None => coaxial::separation(pair, limit),
@@ -180,36 +180,36 @@ impl<N: Real> CylinderView<N> {
     fn cap(&self) -> Tried<N> {
         let up = if self.center.y < N::ZERO { -N::ONE } else { N::ONE };
         let normal = Vector::<N, 3>::new(N::ZERO, up, N::ZERO);
-        let (lean, sine) = (self.axis.y, radial(&self.axis).norm());
+        let (cosine, sine) = (self.axis.y, radial(&self.axis).norm());
         let height = self.center.y * up
-            - lean.abs() * self.other.half
+            - cosine.abs() * self.other.half
             - sine * self.other.radius
             - self.own.half;
         let point = self.lowest_above_cap(&normal, sine);
-        let room = self.own.radius - radial(&point).norm();
+        let margin = self.own.radius - radial(&point).norm();
         let is_above = if height > N::ZERO {
-            room >= -noise::<N>()
+            margin >= -rounding_error::<N>()
         } else {
-            min(room, self.own.half) >= -height - noise()
+            min(margin, self.own.half) >= -height - rounding_error()
         };
         let found = RevolvedFound { distance: height, normal, on_other: point };
         Tried { height, found: is_above.then_some(found) }
     }
 
-    /// Returns the lowest point of the other solid along the normal of a cap. Up to `noise` several
+    /// Returns the lowest point of the other solid along the normal of a cap. Up to `rounding_error` several
     /// are lowest: then the middle of those above the cap. `sine` is that of the angle between the
     /// axes.
     fn lowest_above_cap(&self, normal: &Vector<N, 3>, sine: N) -> Vector<N, 3> {
-        let lean = normal.dot(&self.axis);
-        let end = if lean < N::ZERO { self.axis } else { -self.axis } * self.other.half;
-        if sine * self.other.radius <= noise() {
+        let cosine = normal.dot(&self.axis);
+        let end = if cosine < N::ZERO { self.axis } else { -self.axis } * self.other.half;
+        if sine * self.other.radius <= rounding_error() {
             return self.over_disk(&(self.center + end));
         }
         // Direction down along the other cap: the normal minus its axial part, without a
         // difference.
-        let aside = radial(&self.axis) * (lean / sine * self.other.radius);
+        let aside = radial(&self.axis) * (cosine / sine * self.other.radius);
         let down = lifted(&aside) - normal * (sine * self.other.radius);
-        if lean.abs() * self.other.half <= noise() {
+        if cosine.abs() * self.other.half <= rounding_error() {
             let middle = self.center + down;
             let along = radial(&self.axis);
             let nearest = -radial(&middle).dot(&along) / along.norm_squared();
@@ -240,23 +240,23 @@ impl<N: Real> CylinderView<N> {
         if !is_resolved {
             return None;
         }
-        let turned = cross(&Vector::<N, 3>::y(), &self.axis) / squared.sqrt();
-        let away = self.center.dot(&turned);
-        let normal = if away < N::ZERO { -turned } else { turned };
+        let across = cross(&Vector::<N, 3>::y(), &self.axis) / squared.sqrt();
+        let away = self.center.dot(&across);
+        let normal = if away < N::ZERO { -across } else { across };
         let (away, sizes) = (away.abs(), self.own.radius + self.other.radius);
         let height = away - sizes;
         // Points where the common perpendicular meets the axes.
-        let (lean, along) = (self.axis.y, self.center.dot(&self.axis));
-        let at_own = (self.center.y - lean * along) / squared;
-        let at_other = (lean * self.center.y - along) / squared;
-        let (room1, room2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
-        let is_between = room1 >= -noise::<N>() && room2 >= -noise::<N>();
+        let (cosine, along) = (self.axis.y, self.center.dot(&self.axis));
+        let at_own = (self.center.y - cosine * along) / squared;
+        let at_other = (cosine * self.center.y - along) / squared;
+        let (margin1, margin2) = (self.own.half - at_own.abs(), self.other.half - at_other.abs());
+        let is_between = margin1 >= -rounding_error::<N>() && margin2 >= -rounding_error::<N>();
         // The proof: a ball around a point between the axes, or one in each solid with radii that
         // add up.
         let entry = away - self.other.radius;
-        let least = max(self.own.radius - room1, max(entry, N::ZERO));
-        let most = min(entry + room2, min(away, self.own.radius));
-        let is_proved = height > N::ZERO || least <= most + noise();
+        let least = max(self.own.radius - margin1, max(entry, N::ZERO));
+        let most = min(entry + margin2, min(away, self.own.radius));
+        let is_proved = height > N::ZERO || least <= most + rounding_error();
         let on_other = self.center + self.axis * at_other - normal * self.other.radius;
         let found = RevolvedFound { distance: height, normal, on_other };
         Some(Tried { height, found: (is_between && is_proved).then_some(found) })
@@ -267,12 +267,12 @@ impl<N: Real> CylinderView<N> {
     fn side(&self) -> Option<Tried<N>> {
         let start = unit(&radial(&self.center))?.0;
         let (normal, point) = self.toward_rim(start)?;
-        let room = self.own.half - point.y.abs();
+        let margin = self.own.half - point.y.abs();
         let height = radial(&point).dot(&normal) - self.own.radius;
         let is_beside = if height > N::ZERO {
-            room >= -noise::<N>()
+            margin >= -rounding_error::<N>()
         } else {
-            min(room, self.own.radius) >= -height - noise()
+            min(margin, self.own.radius) >= -height - rounding_error()
         };
         let found = RevolvedFound { distance: height, normal: lifted(&normal), on_other: point };
         Some(Tried { height, found: is_beside.then_some(found) })
@@ -286,11 +286,11 @@ impl<N: Real> CylinderView<N> {
             let (point, bend) = self.lowest_beside(&normal)?;
             let across = Vector::<N, 2>::new(-normal.y, normal.x);
             let (slope, height) = (radial(&point).dot(&across), radial(&point).dot(&normal));
-            let is_peak = height > noise();
+            let is_peak = height > rounding_error();
             if !is_peak {
                 return None;
             }
-            if slope.abs() <= N::HALF * noise() {
+            if slope.abs() <= N::HALF * rounding_error() {
                 return Some((normal, point));
             }
             normal = unit(&(normal + across * (slope / (bend + height))))?.0;
@@ -302,7 +302,7 @@ impl<N: Real> CylinderView<N> {
     /// rate of motion as that turns; `None` for a tilted side, whose lowest point is not unique.
     fn lowest_beside(&self, normal: &Vector<N, 2>) -> Option<(Vector<N, 3>, N)> {
         let (out, across) = (lifted(normal), lifted(&Vector::<N, 2>::new(-normal.y, normal.x)));
-        let (lean, turn) = (self.axis.dot(&out), self.axis.dot(&across));
+        let (axial, turn) = (self.axis.dot(&out), self.axis.dot(&across));
         let squared = turn * turn + self.axis.y * self.axis.y;
         let is_resolved = squared > N::lit(16.0) * N::EPSILON;
         if !is_resolved {
@@ -310,23 +310,25 @@ impl<N: Real> CylinderView<N> {
         }
         let (cosine, radius) = (squared.sqrt(), self.other.radius);
         let aside = across * turn + Vector::<N, 3>::y() * self.axis.y;
-        let down = aside * (lean * radius / cosine) - out * (cosine * radius);
-        let ratio = lean * turn / cosine;
+        let down = aside * (axial * radius / cosine) - out * (cosine * radius);
+        let ratio = axial * turn / cosine;
         let bend = radius * (N::ONE - turn * turn - ratio * ratio) / cosine;
-        if lean.abs() * self.other.half <= noise() {
+        if axial.abs() * self.other.half <= rounding_error() {
             return self.beside_parallel(&down).map(|point| (point, bend));
         }
-        let end = if lean < N::ZERO { self.axis } else { -self.axis } * self.other.half;
+        let end = if axial < N::ZERO { self.axis } else { -self.axis } * self.other.half;
         Some((self.center + end + down, bend))
     }
 
     /// Returns the middle of the part of the other solid's lowest line beside this solid, for
     /// parallel axes.
     fn beside_parallel(&self, down: &Vector<N, 3>) -> Option<Vector<N, 3>> {
-        let reach = self.other.half * self.axis.y.abs();
-        let is_parallel = radial(&self.axis).norm() * self.other.half <= noise();
-        let (low, high) =
-            (max(self.center.y - reach, -self.own.half), min(self.center.y + reach, self.own.half));
+        let extent = self.other.half * self.axis.y.abs();
+        let is_parallel = radial(&self.axis).norm() * self.other.half <= rounding_error();
+        let (low, high) = (
+            max(self.center.y - extent, -self.own.half),
+            min(self.center.y + extent, self.own.half),
+        );
         let at = ((low + high) * N::HALF - self.center.y) / self.axis.y;
         // Never beyond the ends: a disk, whose axis may point anywhere, has no line.
         let half = self.other.half;
@@ -341,11 +343,11 @@ impl<N: Real> CylinderView<N> {
             let away = other.point - own.point;
             let height = away.dot(&normal);
             let slope = away - normal * height;
-            let is_apart = height > noise();
+            let is_apart = height > rounding_error();
             if !is_apart {
                 return None;
             }
-            if slope.norm_squared() <= noise::<N>() * noise() {
+            if slope.norm_squared() <= rounding_error::<N>() * rounding_error() {
                 let found = RevolvedFound { distance: height, normal, on_other: other.point };
                 return Some(Tried { height, found: Some(found) });
             }
@@ -362,10 +364,10 @@ impl<N: Real> CylinderView<N> {
         } else {
             (self.other, self.center, self.axis)
         };
-        let lean = axis.dot(direction);
-        let (out, cosine) = unit(&(direction - axis * lean))?;
+        let axial = axis.dot(direction);
+        let (out, cosine) = unit(&(direction - axis * axial))?;
         let (out, _) = unit(&(out - axis * axis.dot(&out)))?;
-        let end = if lean < N::ZERO { -axis } else { axis } * size.half;
+        let end = if axial < N::ZERO { -axis } else { axis } * size.half;
         let along = cross(&axis, &out);
         Some(Rim { point: center + end + out * size.radius, along, bend: size.radius / cosine })
     }
@@ -474,9 +476,9 @@ pub(in crate::collide::separation) mod tests {
             let mut pose12 = random.turn();
             pose12.translation = random.vector() * 1.5;
             let units = Units::of(first.reach(), second.reach(), &pose12.translation);
-            let meeting = CylinderPair::new(&first, &second, &pose12, units.shrink);
+            let cylinders = CylinderPair::new(&first, &second, &pose12, units.shrink);
             undecided +=
-                usize::from(matches!(meeting.resolve(f64::INFINITY), RevolvedResult::Undecided));
+                usize::from(matches!(cylinders.resolve(f64::INFINITY), RevolvedResult::Undecided));
         }
         assert!(undecided < 400, "{undecided} of 1000 are left to the general algorithm");
     }

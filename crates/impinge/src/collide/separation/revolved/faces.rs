@@ -1,9 +1,9 @@
 //! Overlaps whose shortest way out is along a face of the flat solid or a cap of the round one.
 
-use super::{FlatCore, NearestHull, RevolvedFound, RevolvedMeeting, RevolvedPlace, still};
+use super::{DirectedPoint, FlatCore, NearestHull, RevolvedFound, RevolvedPair, still};
 use crate::math::{Real, Vector};
 
-impl<N: Real> RevolvedMeeting<'_, N> {
+impl<N: Real> RevolvedPair<'_, N> {
     /// Returns the answer along the face or cap with the least depth, if balls prove it.
     pub(super) fn by_face(&self) -> Option<RevolvedFound<N>> {
         self.by_own_face().or_else(|| self.by_cap())
@@ -11,15 +11,15 @@ impl<N: Real> RevolvedMeeting<'_, N> {
 
     /// Tries the faces of the flat solid, which has to contain the ball around the deepest point.
     fn by_own_face(&self) -> Option<RevolvedFound<N>> {
-        let mut best: Option<(N, RevolvedPlace<N>)> = None;
+        let mut best: Option<(N, DirectedPoint<N>)> = None;
         let mut try_face = |normal: &Vector<N, 3>, offset: N| {
             let outward = -self.pose12.rotation.tr_mul(normal);
             let nearest = self.profile.round.support(&outward);
-            let level = outward.dot(&nearest);
-            let height = normal.dot(&self.shift) - offset * self.shrink - level;
+            let extent = outward.dot(&nearest);
+            let height = normal.dot(&self.shift) - offset * self.shrink - extent;
             if best.as_ref().is_none_or(|(most, _)| height > *most) {
                 let point = nearest + outward * height;
-                best = Some((height, RevolvedPlace { point, nearest, outward, level }));
+                best = Some((height, DirectedPoint { point, nearest, outward, extent }));
             }
         };
         match self.flat {
@@ -35,20 +35,20 @@ impl<N: Real> RevolvedMeeting<'_, N> {
             }
             _ => {}
         }
-        let (height, place) = best?;
-        let is_proved = height <= N::ZERO && self.holds(&place.nearest, -height);
-        is_proved.then(|| place.proved(height)).flatten()
+        let (height, directed) = best?;
+        let is_proved = height <= N::ZERO && self.holds(&directed.nearest, -height);
+        is_proved.then(|| directed.proved(height)).flatten()
     }
 
     /// Tries the caps of the round solid, which has to contain the ball around the lowest vertex.
     fn by_cap(&self) -> Option<RevolvedFound<N>> {
         self.profile.round.caps().iter().find_map(|&up| {
             let vertex = self.lowest(&(Vector::<N, 3>::y() * N::lit(up)));
-            let (_, place): (NearestHull<N>, _) = self.at_point(vertex);
-            let low = self.lowest(&place.outward);
-            let is_lowest = place.outward.dot(&(place.point - low)) <= still();
-            let height = place.outward.dot(&low) - place.level;
-            is_lowest.then(|| place.proved(height)).flatten()
+            let (_, directed): (NearestHull<N>, _) = self.at_point(vertex);
+            let low = self.lowest(&directed.outward);
+            let is_lowest = directed.outward.dot(&(directed.point - low)) <= still();
+            let height = directed.outward.dot(&low) - directed.extent;
+            is_lowest.then(|| directed.proved(height)).flatten()
         })
     }
 }

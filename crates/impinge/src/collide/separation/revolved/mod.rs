@@ -34,7 +34,7 @@ use self::cylinder_cylinder::{RevolvedFound, RevolvedResult};
 use self::profile::{Profile, ProfilePart, ProfileView};
 use super::flat_core::FlatCore;
 use super::general;
-use super::hulls::{noise, out_of_reach};
+use super::hulls::{beyond_limit, rounding_error};
 use super::ridges::{self, Round};
 use super::wrong_kinds;
 use crate::collide::Pair;
@@ -51,7 +51,7 @@ const RESOLVED: f64 = 1.0 / 64.0;
 /// Returns the tolerance of the search, in units of the pair: moves and differences in height up to
 /// this count as none.
 fn still<N: Real>() -> N {
-    noise::<N>() * N::HALF
+    rounding_error::<N>() * N::HALF
 }
 
 /// Returns the separation of a flat-sided solid, segment, capsule, cylinder or cone from a cylinder
@@ -87,10 +87,10 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
     let units = Units::of(map1.reach(), map2.reach(), &pose12.translation);
     let profile = Profile::new(Round::new(&pair.second, units.shrink)?);
     let shift = pose12.translation * units.shrink;
-    let beyond = out_of_reach(&units, limit + map1.rounding());
+    let beyond = beyond_limit(&units, limit + map1.rounding());
     let result = match FlatCore::of(pair.first) {
         Some(flat) => {
-            RevolvedMeeting { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
+            RevolvedPair { flat, pose12, shift, shrink: units.shrink, profile }.resolve(beyond)
         }
         None => {
             let first = Profile::new(Round::new(&pair.first, units.shrink)?);
@@ -103,13 +103,13 @@ fn attempt<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Option<Separation
 }
 
 /// Wraps an answer in the frame of the second solid.
-fn seen_from_second<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
+fn in_second_frame<N: Real>(found: Option<RevolvedFound<N>>) -> RevolvedResult<N> {
     found.map_or(RevolvedResult::Undecided, |found| RevolvedResult::Found(found, true))
 }
 
 /// Core of the flat solid and the round one, in the frame of the round one and in units of the
 /// pair.
-struct RevolvedMeeting<'a, N: Real> {
+struct RevolvedPair<'a, N: Real> {
     flat: FlatCore<'a, N, 3>,
     /// Pose of the round solid in the frame of the flat one.
     pose12: &'a Pose<N, 3>,
@@ -122,14 +122,14 @@ struct RevolvedMeeting<'a, N: Real> {
 
 /// A point of the flat solid with the direction along which it is nearest to the round one.
 #[derive(Clone, Copy)]
-struct RevolvedPlace<N: Real> {
+struct DirectedPoint<N: Real> {
     /// In the frame of the round solid, in units of the pair.
     point: Vector<N, 3>,
     /// The point of the round solid across from `point`.
     nearest: Vector<N, 3>,
-    /// Unit vector out of the round solid; `level` is the extent of the round solid along it.
+    /// Unit vector out of the round solid; `extent` is the extent of the round solid along it.
     outward: Vector<N, 3>,
-    level: N,
+    extent: N,
 }
 
 /// The points whose hull contains the nearest point; no more than needed.
@@ -140,24 +140,24 @@ enum NearestHull<N: Real> {
     Triangle,
 }
 
-impl<N: Real> RevolvedMeeting<'_, N> {
+impl<N: Real> RevolvedPair<'_, N> {
     /// Runs the search from the vertex nearest along the first direction; then tries faces and
     /// caps.
     fn resolve(&self, beyond: N) -> RevolvedResult<N> {
         let middle = self.placed(&self.flat.center().coords);
-        let first = self.lowest(&self.profile.seen_from(middle).outward);
-        let (mut hull, mut place) = self.at_point(first);
+        let first = self.lowest(&self.profile.project(middle).outward);
+        let (mut hull, mut directed) = self.at_point(first);
         for _ in 0..ROUNDS {
-            let low = self.lowest(&place.outward);
-            if let Some(result) = place.result(&low, beyond) {
+            let low = self.lowest(&directed.outward);
+            if let Some(result) = directed.result(&low, beyond) {
                 return result;
             }
-            match self.nearer(&hull, &place, low) {
-                Some(next) => (hull, place) = next,
+            match self.nearer(&hull, &directed, low) {
+                Some(next) => (hull, directed) = next,
                 None => break,
             }
         }
-        seen_from_second(self.by_face())
+        in_second_frame(self.by_face())
     }
 
     /// Transforms a point of the flat solid from its own frame and units.
@@ -172,11 +172,8 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     }
 
     /// Returns the place of a single point.
-    fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, RevolvedPlace<N>) {
-        (
-            NearestHull::Point(point),
-            RevolvedPlace::of(&self.profile, &self.profile.seen_from(point)),
-        )
+    fn at_point(&self, point: Vector<N, 3>) -> (NearestHull<N>, DirectedPoint<N>) {
+        (NearestHull::Point(point), DirectedPoint::of(&self.profile, &self.profile.project(point)))
     }
 
     /// Returns the nearest place over a hull and one more vertex, which is lower than all of the
@@ -184,48 +181,49 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     fn nearer(
         &self,
         hull: &NearestHull<N>,
-        place: &RevolvedPlace<N>,
+        directed: &DirectedPoint<N>,
         low: Vector<N, 3>,
-    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
+    ) -> Option<(NearestHull<N>, DirectedPoint<N>)> {
         match hull {
             NearestHull::Point(point) => self.profile.along([*point, low], true),
-            NearestHull::Chord([a, b]) => self.over([*a, *b, low], place),
+            NearestHull::Chord([a, b]) => self.over([*a, *b, low], directed),
             // Only chords and triangles are searched: the place stands for its triangle.
-            NearestHull::Triangle => self.profile.along([place.point, low], true),
+            NearestHull::Triangle => self.profile.along([directed.point, low], true),
         }
     }
 
-    /// Returns the nearest place over the triangle `a b c`, whose corner `c` is lower than `place`,
+    /// Returns the nearest place over the triangle `a b c`, whose corner `c` is lower than `directed`,
     /// the nearest place of the side `a b`.
     fn over(
         &self,
         [a, b, c]: [Vector<N, 3>; 3],
-        place: &RevolvedPlace<N>,
-    ) -> Option<(NearestHull<N>, RevolvedPlace<N>)> {
+        directed: &DirectedPoint<N>,
+    ) -> Option<(NearestHull<N>, DirectedPoint<N>)> {
         let across = cross(&(b - a), &(c - a));
-        let (turned, area) = unit(&across).filter(|(_, area)| *area > noise())?;
-        let outward = if turned.dot(&place.outward) < N::ZERO { -turned } else { turned };
+        let (unit_across, area) = unit(&across).filter(|(_, area)| *area > rounding_error())?;
+        let outward =
+            if unit_across.dot(&directed.outward) < N::ZERO { -unit_across } else { unit_across };
         let mut nearest = self.profile.round.support(&outward);
-        let level = outward.dot(&nearest);
+        let extent = outward.dot(&nearest);
         // On a cap or a line the support point is not unique; take the one known to be near.
-        if outward.dot(&place.nearest) >= level - noise() {
-            nearest = place.nearest;
+        if outward.dot(&directed.nearest) >= extent - rounding_error() {
+            nearest = directed.nearest;
         }
-        let height = outward.dot(&a) - level;
+        let height = outward.dot(&a) - extent;
         let point = nearest + outward * height;
-        let room = -noise::<N>() * area;
+        let slack = -rounding_error::<N>() * area;
         let over = |from: &Vector<N, 3>, to: &Vector<N, 3>| {
-            cross(&(to - from), &(point - from)).dot(&turned)
+            cross(&(to - from), &(point - from)).dot(&unit_across)
         };
         let sides = [over(&b, &c), over(&c, &a), over(&a, &b)];
-        if sides.iter().all(|&side| side >= room) {
+        if sides.iter().all(|&side| side >= slack) {
             let is_proved = height > N::ZERO || self.holds(&nearest, -height);
             return is_proved.then_some((
                 NearestHull::Triangle,
-                RevolvedPlace { point, nearest, outward, level },
+                DirectedPoint { point, nearest, outward, extent },
             ));
         }
-        let mut best: Option<(NearestHull<N>, RevolvedPlace<N>)> = None;
+        let mut best: Option<(NearestHull<N>, DirectedPoint<N>)> = None;
         for (chord, other) in [([b, c], a), ([a, c], b)] {
             let Some((hull, found)) = self.profile.along(chord, false) else { continue };
             let is_least = found.outward.dot(&(found.point - other)) <= still();
@@ -242,66 +240,75 @@ impl<N: Real> RevolvedMeeting<'_, N> {
     /// Returns whether the flat solid contains the ball around a point, up to rounding.
     fn holds(&self, center: &Vector<N, 3>, radius: N) -> bool {
         let center = self.pose12.rotation * center + self.shift;
-        let room = noise::<N>() - radius;
+        let slack = rounding_error::<N>() - radius;
         match self.flat {
             FlatCore::Cuboid(cuboid) => {
                 let half = cuboid.half_extents() * self.shrink;
-                (0..3).all(|axis| center[axis].abs() <= half[axis] + room)
+                (0..3).all(|axis| center[axis].abs() <= half[axis] + slack)
             }
             FlatCore::Polytope(hull) => hull
                 .faces()
                 .iter()
-                .all(|face| face.normal.dot(&center) <= face.offset * self.shrink + room),
+                .all(|face| face.normal.dot(&center) <= face.offset * self.shrink + slack),
             _ => false,
         }
     }
 }
 
-impl<N: Real> RevolvedPlace<N> {
+impl<N: Real> DirectedPoint<N> {
     /// Takes the direction of a view. At a point on a corner, up to rounding, that direction may
-    /// not be one along which the corner is farthest; `level` shows it.
-    fn of(profile: &Profile<N>, seen: &ProfileView<N>) -> Self {
-        let level = profile.level(&seen.outward);
-        Self { point: seen.point, nearest: seen.nearest(), outward: seen.outward, level }
+    /// not be one along which the corner is farthest; `extent` shows it.
+    fn of(profile: &Profile<N>, projected: &ProfileView<N>) -> Self {
+        let extent = profile.extent(&projected.outward);
+        Self {
+            point: projected.point,
+            nearest: projected.nearest(),
+            outward: projected.outward,
+            extent,
+        }
     }
 
     /// Takes a view at which the distance is stationary along the unit vector `along`, with a
     /// direction perpendicular to `along` to rounding.
-    fn across(profile: &Profile<N>, seen: &ProfileView<N>, along: &Vector<N, 3>) -> Option<Self> {
-        let by_rim = match seen.part {
-            ProfilePart::Rim => unit(&cross(along, &seen.around())),
+    fn across(
+        profile: &Profile<N>,
+        projected: &ProfileView<N>,
+        along: &Vector<N, 3>,
+    ) -> Option<Self> {
+        let by_rim = match projected.part {
+            ProfilePart::Rim => unit(&cross(along, &projected.around())),
             _ => None,
         };
         let outward = match by_rim {
             Some((across, sine)) if sine > N::lit(RESOLVED) => {
-                if across.dot(&seen.outward) < N::ZERO { -across } else { across }
+                if across.dot(&projected.outward) < N::ZERO { -across } else { across }
             }
-            _ => unit(&(seen.outward - along * along.dot(&seen.outward)))?.0,
+            _ => unit(&(projected.outward - along * along.dot(&projected.outward)))?.0,
         };
-        let level = profile.level(&outward);
-        Some(Self { point: seen.point, nearest: seen.nearest(), outward, level })
+        let extent = profile.extent(&outward);
+        Some(Self { point: projected.point, nearest: projected.nearest(), outward, extent })
     }
 
     fn distance(&self) -> N {
-        self.outward.dot(&self.point) - self.level
+        self.outward.dot(&self.point) - self.extent
     }
 
     /// Returns the result given the lowest vertex along the direction: beyond, or if nothing is
     /// lower than the place, whether it is proved. `None` if a vertex is lower.
     fn result(&self, low: &Vector<N, 3>, beyond: N) -> Option<RevolvedResult<N>> {
-        let height = self.outward.dot(low) - self.level;
+        let height = self.outward.dot(low) - self.extent;
         if height > beyond {
             return Some(RevolvedResult::Beyond);
         }
         let is_lowest = self.outward.dot(&(self.point - low)) <= still();
-        is_lowest.then(|| seen_from_second(self.proved(height)))
+        is_lowest.then(|| in_second_frame(self.proved(height)))
     }
 
     /// Returns the answer, if both points lie across from each other as far apart as supporting
     /// planes.
     fn proved(&self, height: N) -> Option<RevolvedFound<N>> {
         let aside = self.point - self.nearest - self.outward * height;
-        let is_across = aside.norm_squared() <= noise::<N>() * noise();
+        let is_across = aside.norm_squared() <= rounding_error::<N>() * rounding_error();
         let found = RevolvedFound { distance: height, normal: self.outward, on_other: self.point };
         is_across.then_some(found)
     }

@@ -61,12 +61,12 @@ impl<N: Real> Profile<N> {
     }
 
     /// Returns the extent of the solid along a direction.
-    pub(super) fn level(&self, outward: &Vector<N, 3>) -> N {
+    pub(super) fn extent(&self, outward: &Vector<N, 3>) -> N {
         outward.dot(&self.round.support(outward))
     }
 
     /// Returns the signed distance of a point, with the nearest part.
-    pub(super) fn seen_from(&self, point: Vector<N, 3>) -> ProfileView<N> {
+    pub(super) fn project(&self, point: Vector<N, 3>) -> ProfileView<N> {
         let fallback = (Vector::<N, 2>::x(), N::ZERO);
         let (away, aside) = unit(&radial(&point)).unwrap_or(fallback);
         let (part, distance, offset) = if self.round.is_cone {
@@ -144,7 +144,7 @@ impl<N: Real> ProfileView<N> {
 
     /// Returns the Newton step along `along` to the point nearest to the rim, whatever part is
     /// nearest: for points between the two lines of the outline that meet at the rim.
-    pub(super) fn way_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
+    pub(super) fn step_to_rim(&self, profile: &Profile<N>, along: &Vector<N, 3>) -> Option<N> {
         let Round { half, radius, is_cone } = profile.round;
         let end = if is_cone || self.point.y < N::ZERO { -half } else { half };
         let offset = Vector::<N, 2>::new(self.aside - radius, self.point.y - end);
@@ -156,7 +156,7 @@ impl<N: Real> ProfileView<N> {
     /// Returns how far the point has to move until the slope is zero, if its nearest part stays the
     /// same; `None` on a line where the slope does not change. Exact except at a rim, where it is a
     /// step of Newton's method for the squared distance.
-    pub(super) fn way_down(&self, along: &Vector<N, 3>) -> Option<N> {
+    pub(super) fn descent(&self, along: &Vector<N, 3>) -> Option<N> {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
         let (across, up) = (out * out + turn * turn, along.y);
         match self.part {
@@ -185,14 +185,14 @@ impl<N: Real> ProfileView<N> {
     /// Second derivative for [`pull`](Self::pull) along `along`.
     pub(super) fn bend(&self, along: &Vector<N, 3>) -> N {
         let (out, turn) = (self.away.dot(&radial(along)), cross2(&self.away, &radial(along)));
-        let turned = turn * turn;
+        let turn_squared = turn * turn;
         match self.part {
             ProfilePart::Cap => N::ZERO,
-            ProfilePart::Side => turned * self.offset.x / self.aside,
+            ProfilePart::Side => turn_squared * self.offset.x / self.aside,
             ProfilePart::Rim => {
-                out * out + along.y * along.y + turned * (self.offset.x / self.aside)
+                out * out + along.y * along.y + turn_squared * (self.offset.x / self.aside)
             }
-            ProfilePart::Apex => out * out + along.y * along.y + turned,
+            ProfilePart::Apex => out * out + along.y * along.y + turn_squared,
         }
     }
 }

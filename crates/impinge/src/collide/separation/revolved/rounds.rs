@@ -6,7 +6,7 @@
 //! balls around one point, one in each solid, are the proof: their radii add up to the depth.
 
 use super::profile::Profile;
-use super::{RevolvedFound, RevolvedPlace, RevolvedResult, noise, seen_from_second, still};
+use super::{DirectedPoint, RevolvedFound, RevolvedResult, in_second_frame, rounding_error, still};
 use crate::collide::separation::segments::nearest::nearest_of_segments;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, max, min, unit};
 
@@ -36,7 +36,7 @@ pub(super) fn resolve<N: Real>(
             RevolvedResult::Beyond => return RevolvedResult::Beyond,
         }
     }
-    seen_from_second(views[0].sides())
+    in_second_frame(views[0].sides())
 }
 
 /// A solid in the frame of another.
@@ -65,11 +65,11 @@ impl<N: Real> RoundView<N> {
 
     /// Tries the apex or a rim of the other solid.
     fn corners(&self, beyond: N) -> RevolvedResult<N> {
-        let mut low = self.lowest(&self.own.seen_from(self.center).outward);
+        let mut low = self.lowest(&self.own.project(self.center).outward);
         for _ in 0..TURNS {
-            let Some(place) = self.at_corner(&low) else { break };
-            low = self.lowest(&place.outward);
-            if let Some(result) = place.result(&low, beyond) {
+            let Some(directed) = self.at_corner(&low) else { break };
+            low = self.lowest(&directed.outward);
+            if let Some(result) = directed.result(&low, beyond) {
                 return result;
             }
         }
@@ -77,11 +77,11 @@ impl<N: Real> RoundView<N> {
     }
 
     /// Returns the place of the apex, or the nearest place of the rim, at which `low` lies.
-    fn at_corner(&self, low: &Vector<N, 3>) -> Option<RevolvedPlace<N>> {
+    fn at_corner(&self, low: &Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let round = &self.other.round;
         let is_up = self.axis.dot(&(low - self.center)) > N::ZERO;
         if is_up && round.is_cone {
-            return Some(RevolvedPlace::of(&self.own, &self.own.seen_from(*low)));
+            return Some(DirectedPoint::of(&self.own, &self.own.project(*low)));
         }
         let end = if is_up { round.half } else { -round.half };
         let middle = self.center + self.axis * end;
@@ -94,26 +94,26 @@ impl<N: Real> RoundView<N> {
     /// noise.
     fn beside(&self, v: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let beside = v - self.axis * self.axis.dot(v);
-        unit(&beside).filter(|(_, length)| *length > noise()).map(|(beside, _)| beside)
+        unit(&beside).filter(|(_, length)| *length > rounding_error()).map(|(beside, _)| beside)
     }
 
     /// Returns the nearest place of the rim around `middle`, starting from the direction `out`.
-    fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
+    fn along_rim(&self, middle: &Vector<N, 3>, mut out: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let radius = self.other.round.radius;
         for _ in 0..STEPS {
-            let seen = self.own.seen_from(middle + out * radius);
-            let (around, pull) = (cross(&self.axis, &out), seen.pull());
+            let projected = self.own.project(middle + out * radius);
+            let (around, pull) = (cross(&self.axis, &out), projected.pull());
             let slope = pull.dot(&around);
-            let bend = seen.bend(&around) * radius - pull.dot(&out);
-            let is_level = slope.abs() <= still() || slope.abs() * radius <= still::<N>() * bend;
-            if is_level {
-                return RevolvedPlace::across(&self.own, &seen, &around);
+            let bend = projected.bend(&around) * radius - pull.dot(&out);
+            let is_flat = slope.abs() <= still() || slope.abs() * radius <= still::<N>() * bend;
+            if is_flat {
+                return DirectedPoint::across(&self.own, &projected, &around);
             }
             out = if bend > N::ZERO {
                 let turn = max(min(-slope / bend, N::HALF), -N::HALF);
                 self.beside(&(out + around * turn))?
             } else {
-                self.beside(&-seen.outward)?
+                self.beside(&-projected.outward)?
             };
         }
         None
@@ -121,22 +121,23 @@ impl<N: Real> RoundView<N> {
 
     /// Tries side against side.
     fn sides(&self) -> Option<RevolvedFound<N>> {
-        let (lean, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
+        let (cosine, rise1, rise2) = (self.axis.y, self.own.slant.y, self.other.slant.y);
         let squared = self.axis.x * self.axis.x + self.axis.z * self.axis.z;
         if squared <= N::lit(16.0) * N::EPSILON {
             return None;
         }
         // The part in the plane of the axes follows from the angles of the normal with both axes.
         let up = Vector::<N, 3>::y();
-        let level = (up * (rise1 + rise2 * lean) - self.axis * (rise2 + rise1 * lean)) / squared;
-        let left = N::ONE - level.norm_squared();
+        let in_plane =
+            (up * (rise1 + rise2 * cosine) - self.axis * (rise2 + rise1 * cosine)) / squared;
+        let left = N::ONE - in_plane.norm_squared();
         if left <= N::ZERO {
             return None;
         }
         let aside = cross(&up, &self.axis) * (left / squared).sqrt();
         let gap =
-            |outward: &Vector<N, 3>| outward.dot(&self.lowest(outward)) - self.own.level(outward);
-        let [one, other] = [level + aside, level - aside];
+            |outward: &Vector<N, 3>| outward.dot(&self.lowest(outward)) - self.own.extent(outward);
+        let [one, other] = [in_plane + aside, in_plane - aside];
         let (outward, height) = match (gap(&one), gap(&other)) {
             (height, other) if height >= other => (one, height),
             (_, height) => (other, height),
@@ -147,7 +148,7 @@ impl<N: Real> RoundView<N> {
 
     /// Returns the nearest points of the lines of both sides that face each other along a
     /// direction.
-    fn between_sides(&self, outward: Vector<N, 3>) -> Option<RevolvedPlace<N>> {
+    fn between_sides(&self, outward: Vector<N, 3>) -> Option<DirectedPoint<N>> {
         let line = |profile: &Profile<N>, along: &Vector<N, 3>| {
             let ends = profile.round.touched(along, core::iter::empty());
             Some([Point::from(*ends.first()?), Point::from(*ends.get(1)?)])
@@ -156,16 +157,16 @@ impl<N: Real> RoundView<N> {
         let other = line(&self.other, &-self.rotation.tr_mul(&outward))?;
         let other = other.mapped(|end| Point::from(self.center + self.rotation * end.coords));
         let (nearest, point) = nearest_of_segments(&own, &other);
-        let level = self.own.level(&outward);
-        Some(RevolvedPlace { point: point.coords, nearest: nearest.coords, outward, level })
+        let extent = self.own.extent(&outward);
+        Some(DirectedPoint { point: point.coords, nearest: nearest.coords, outward, extent })
     }
 
     /// Returns whether balls around the midpoint of both points, one in each solid, add up to the
     /// depth.
     fn is_deepest(&self, found: &RevolvedFound<N>) -> bool {
         let center = found.on_other - found.normal * (found.distance * N::HALF);
-        let own = self.own.seen_from(center).distance;
-        let other = self.other.seen_from(self.rotation.tr_mul(&(center - self.center))).distance;
-        own + other <= found.distance + noise()
+        let own = self.own.project(center).distance;
+        let other = self.other.project(self.rotation.tr_mul(&(center - self.center))).distance;
+        own + other <= found.distance + rounding_error()
     }
 }

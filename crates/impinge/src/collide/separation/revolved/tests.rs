@@ -120,7 +120,7 @@ fn no_direction_is_better() {
 
 /// Compares the distance of a point with a ball of radius zero, and its slope with differences.
 #[test]
-fn what_a_point_sees() {
+fn projections_of_points() {
     let random = &mut Random(11);
     for round in 0..4000 {
         let size = random.vector::<f64>().abs().map(|x| x + 0.1);
@@ -131,12 +131,18 @@ fn what_a_point_sees() {
         let pair = Pair { first, second, pose12: Pose::from_translation(-point) };
         let truth = whole::separation(&pair, f64::INFINITY).expect("no limit").distance;
         let profile = Profile::new(Round::new(&second, 1.0).expect("it has a size"));
-        let seen = profile.seen_from(point);
-        assert!((seen.distance - truth).abs() < 1e-14, "round {round}: {seen:?}, not {truth}");
-        let ahead = profile.seen_from(point + along * 1e-6);
-        if ahead.part == seen.part && seen.distance.abs() > 0.01 {
-            let slope = (ahead.distance - seen.distance) / 1e-6;
-            assert!((slope - seen.slope(&along)).abs() < 1e-3, "round {round}: {slope}, {seen:?}");
+        let projected = profile.project(point);
+        assert!(
+            (projected.distance - truth).abs() < 1e-14,
+            "round {round}: {projected:?}, not {truth}"
+        );
+        let moved = profile.project(point + along * 1e-6);
+        if moved.part == projected.part && projected.distance.abs() > 0.01 {
+            let slope = (moved.distance - projected.distance) / 1e-6;
+            assert!(
+                (slope - projected.slope(&along)).abs() < 1e-3,
+                "round {round}: {slope}, {projected:?}"
+            );
         }
     }
 }

@@ -12,7 +12,7 @@
 
 use smallvec::SmallVec;
 
-use crate::collide::separation::hulls::noise;
+use crate::collide::separation::hulls::rounding_error;
 use crate::math::{Mapped, Matrix, Point, Pose, Real, Vector, cross, orthonormal_basis, unit};
 use crate::shape::{Cuboid, Kind, Polytope, Triangle};
 
@@ -63,7 +63,7 @@ impl<N: Real> Flat<N> {
             Kind::Polytope(polytope) => flat.fill_polytope(polytope, shrink)?,
             _ => return None,
         }
-        flat.place(&pose12.rotation.transpose(), &(pose12.translation * shrink));
+        flat.transform(&pose12.rotation.transpose(), &(pose12.translation * shrink));
         Some(flat)
     }
 
@@ -80,7 +80,7 @@ impl<N: Real> Flat<N> {
     }
 
     /// Transforms vertices and normals to the frame of the round solid; normals are negated.
-    fn place(&mut self, turn: &Matrix<N, 3>, translation: &Vector<N, 3>) {
+    fn transform(&mut self, turn: &Matrix<N, 3>, translation: &Vector<N, 3>) {
         for vertex in &self.own_vertices {
             self.vertices.push(turn * (vertex - translation));
         }
@@ -104,7 +104,7 @@ impl<N: Real> Flat<N> {
     fn fill_segment(&mut self, ends: [&Point<N, 3>; 2], shrink: N) -> Option<()> {
         self.own_vertices.extend(ends.mapped(|end| end.coords * shrink));
         let along = self.own_vertices[1] - self.own_vertices[0];
-        let (along, _) = unit(&along).filter(|(_, length)| *length > noise())?;
+        let (along, _) = unit(&along).filter(|(_, length)| *length > rounding_error())?;
         let (u, v) = orthonormal_basis(&along);
         [u, v, -u, -v].into_iter().for_each(|normal| self.push_normal(normal, 0));
         [[0, 1], [1, 2], [2, 3], [3, 0]].into_iter().for_each(|arc| self.push_edge([0, 1], arc));

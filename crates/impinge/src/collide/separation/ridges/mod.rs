@@ -80,18 +80,18 @@ impl<N: Real> Peaks<N, 3> for OverlapPeaks<'_, '_, N> {
         }
         let round = Round::new(&self.pair.second, shrink)?;
         let flat = Flat::new(&self.pair.first, &self.pair.pose12, shrink)?;
-        let mut meeting = DepthSearch {
+        let mut depth_search = DepthSearch {
             flat: &flat,
             round: &round,
             least: N::INFINITY,
             at: DepthFeature::Face(0),
             normal: Vector::<N, 3>::y(),
         };
-        meeting.search(gap)?;
-        if !meeting.is_confirmed(gap) {
+        depth_search.search(gap)?;
+        if !depth_search.is_confirmed(gap) {
             return None;
         }
-        Some(meeting.peak(&self.pair.pose12, shrink))
+        Some(depth_search.peak(&self.pair.pose12, shrink))
     }
 }
 
@@ -211,7 +211,7 @@ impl<N: Real> DepthSearch<'_, N> {
         let line = |u: &Vector<N, 2>| {
             let vertex = flat.vertices[flat.lowest(&lift(u))];
             let toward = Vector::<N, 2>::new(vertex.x, vertex.z) * -slope.aside;
-            RidgeLine { base: slope.reach - slope.along * vertex.y, toward }
+            RidgeLine { base: slope.extent - slope.along * vertex.y, toward }
         };
         let (x, y) = (Vector::<N, 2>::x(), Vector::<N, 2>::y());
         let mut search = ArcSearch::new(self.least, gap);
@@ -232,11 +232,11 @@ impl<N: Real> DepthSearch<'_, N> {
 
     /// Returns the result in the frame of the flat solid.
     fn peak(&self, pose12: &Pose<N, 3>, shrink: N) -> Peak<N, 3> {
-        let turned = -(pose12.rotation * self.normal);
+        let opposite = -(pose12.rotation * self.normal);
         let (is_exact, normal) = match self.at {
             DepthFeature::Face(index) => (true, self.flat.own_normals[index]),
-            DepthFeature::Cap => (true, turned),
-            _ => (false, unit(&turned).map_or(turned, |(normal, _)| normal)),
+            DepthFeature::Cap => (true, opposite),
+            _ => (false, unit(&opposite).map_or(opposite, |(normal, _)| normal)),
         };
         let low = self.touched();
         let on_round =

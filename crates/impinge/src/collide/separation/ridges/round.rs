@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use crate::collide::separation::hulls::noise;
+use crate::collide::separation::hulls::rounding_error;
 use crate::collide::separation::revolved::cylinder_cylinder::radial;
 use crate::math::{Real, Vector, unit};
 use crate::shape::Kind;
@@ -15,7 +15,7 @@ pub(super) struct Slope<N> {
     /// Component along the axis.
     pub(super) along: N,
     /// Extent of the solid along the normals.
-    pub(super) reach: N,
+    pub(super) extent: N,
 }
 
 /// A cylinder, or a cone with its apex up, in units of the pair.
@@ -37,7 +37,7 @@ impl<N: Real> Round<N> {
             _ => return None,
         };
         let round = Self { half: half * shrink, radius: radius * shrink, is_cone };
-        (round.half > noise() && round.radius > noise()).then_some(round)
+        (round.half > rounding_error() && round.radius > rounding_error()).then_some(round)
     }
 
     /// Signs of the caps along the axis.
@@ -68,11 +68,11 @@ impl<N: Real> Round<N> {
     /// Returns the normals of the side.
     pub(super) fn slope(&self) -> Slope<N> {
         if !self.is_cone {
-            return Slope { aside: N::ONE, along: N::ZERO, reach: self.radius };
+            return Slope { aside: N::ONE, along: N::ZERO, extent: self.radius };
         }
         let normal = unit(&Vector::<N, 2>::new(N::TWO * self.half, self.radius));
         let (aside, along) = normal.map_or((N::ONE, N::ZERO), |(normal, _)| (normal.x, normal.y));
-        Slope { aside, along, reach: along * self.half }
+        Slope { aside, along, extent: along * self.half }
     }
 
     /// Returns points whose mixes may touch others along a direction, where the others are `below`.

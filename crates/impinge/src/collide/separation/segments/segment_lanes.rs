@@ -54,7 +54,10 @@ pub(crate) fn nearest_on_segment<S: Simd, N: Real, V: Wide<S, Scalar = N>, const
 /// Returns the lanes where a square is far from underflow and overflow, so that its root is the
 /// length.
 #[inline(always)]
-pub(crate) fn is_usual<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, squared: V) -> V::Mask {
+pub(crate) fn is_square_in_range<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
+    simd: S,
+    squared: V,
+) -> V::Mask {
     squared.simd_gt(V::all(simd, N::MIN_POSITIVE / N::EPSILON))
         & squared.simd_lt(V::all(simd, N::MAX * N::EPSILON))
 }
@@ -139,17 +142,17 @@ impl<V, M> SegmentGap<V, M> {
             let is_nearer = other.is_inside & other.squared.simd_lt(beside.squared);
             beside = beside.or(&other, is_nearer);
         }
-        let noise = V::all(simd, N::lit(4.0) * N::EPSILON) * size(simd, ends);
-        let is_beside = beside.squared.sqrt().simd_le(best.squared.sqrt() + noise);
+        let rounding_error = V::all(simd, N::lit(4.0) * N::EPSILON) * size(simd, ends);
+        let is_beside = beside.squared.sqrt().simd_le(best.squared.sqrt() + rounding_error);
         best = best.or(&beside, is_beside);
         let (normal, gap) = best.normal(simd);
-        let is_long =
-            is_usual(simd, length_squared(ends[0])) & is_usual(simd, length_squared(ends[1]));
+        let is_long = is_square_in_range(simd, length_squared(ends[0]))
+            & is_square_in_range(simd, length_squared(ends[1]));
         // Apart by more than rounding, with the gap confirmed by supporting lines.
-        let slack = V::all(simd, N::lit(16.0)) * noise;
+        let slack = V::all(simd, N::lit(16.0)) * rounding_error;
         let parted = lowest(ends[1], &normal) + lowest(ends[0], &negated(&normal));
         let is_apart = gap.simd_gt(slack) & (parted + slack).simd_gt(gap);
-        let is_known = is_long & is_apart & is_usual(simd, best.squared);
+        let is_known = is_long & is_apart & is_square_in_range(simd, best.squared);
         Self { normal, gap, points: best.points, is_known }
     }
 }

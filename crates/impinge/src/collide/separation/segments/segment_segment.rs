@@ -3,7 +3,7 @@
 use super::nearest::{core, gap_along, nearest_of_segments};
 use crate::collide::Pair;
 use crate::collide::separation::projection::{
-    first_axis, made_perpendicular, noise, perpendicular_to,
+    first_axis, made_perpendicular, perpendicular_to, rounding_error,
 };
 use crate::convex::Separation;
 use crate::math::{Mapped, Point, Real, Vector, cross, max, unit};
@@ -59,12 +59,13 @@ fn best_normal<N: Real>(
     offset: &Vector<N, 3>,
 ) -> Vector<N, 3> {
     let reach = ends1.iter().chain(ends2).fold(N::ZERO, |most, p| max(p.coords.norm(), most));
-    let mut widest = Widest { ends1, ends2, noise: noise(reach), best: None };
+    let mut widest = Widest { ends1, ends2, rounding_error: rounding_error(reach), best: None };
     let direct = unit(offset).map(|(along, _)| along);
     widest.consider(direct);
     // The gap cannot exceed the distance by more than rounding.
-    let is_best =
-        widest.best.is_some_and(|(gap, _)| gap + widest.noise / N::lit(4.0) >= offset.norm());
+    let is_best = widest
+        .best
+        .is_some_and(|(gap, _)| gap + widest.rounding_error / N::lit(4.0) >= offset.norm());
     if let Some(normal) = direct.filter(|_| is_best) {
         return normal;
     }
@@ -83,12 +84,12 @@ fn best_normal<N: Real>(
     widest.best.map_or_else(first_axis, |(_, normal)| normal)
 }
 
-/// The normal that leaves the largest gap between two segments; the first of equals up to `noise`.
+/// The normal that leaves the largest gap between two segments; the first of equals up to `rounding_error`.
 struct Widest<'a, N: Real> {
     ends1: &'a [Point<N, 3>; 2],
     ends2: &'a [Point<N, 3>; 2],
     /// Gaps that differ by less count as equal.
-    noise: N,
+    rounding_error: N,
     /// Largest gap so far and its normal.
     best: Option<(N, Vector<N, 3>)>,
 }
@@ -98,7 +99,7 @@ impl<N: Real> Widest<'_, N> {
     fn consider(&mut self, normal: Option<Vector<N, 3>>) {
         let Some(normal) = normal else { return };
         let gap = gap_along(&normal, self.ends1, self.ends2);
-        if self.best.is_none_or(|(widest, _)| gap > widest + self.noise) {
+        if self.best.is_none_or(|(widest, _)| gap > widest + self.rounding_error) {
             self.best = Some((gap, normal));
         }
     }
@@ -156,7 +157,7 @@ mod tests {
         let found = of(&near, &over);
         assert_eq!((found.distance, found.normal.x), (0.0, 0.0), "they leave sideways");
         let point = Segment::new(p(1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
-        assert_eq!(of(&point, &point).normal, Vector::<f64, 3>::x(), "two points at one place");
+        assert_eq!(of(&point, &point).normal, Vector::<f64, 3>::x(), "two points at one position");
     }
 
     #[test]

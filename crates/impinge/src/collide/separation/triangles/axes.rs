@@ -18,11 +18,11 @@
 //! Lane `i` is triangle `i` of the [`PartPacket`], whose triangles [`super`] has collected from
 //! tiles.
 
-use super::{TriangleQuery, noise};
+use super::{TriangleQuery, rounding_error};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::collide::separation::hulls::{PLANE_BLOCKS, Polyhedral, THIN};
 use crate::math::lanes::{
-    bits, cross, dot, either, in_lanes, load, minus, negated, over, spread, times, turned_back,
+    bits, cross, dot, either, in_lanes, load, minus, negated, over, rotated_back, spread, times,
 };
 use crate::math::simd::{Run, Simd, SimdMask};
 use crate::math::{Mapped, Matrix, Real, Wide, max, max_component};
@@ -91,7 +91,7 @@ impl AxisFeature {
 
 /// Returns the length that counts as rounding in a pair with the unit `scale`.
 pub(super) fn slack<N: Real>(scale: N) -> N {
-    N::lit(16.0) * noise::<N>() * scale
+    N::lit(16.0) * rounding_error::<N>() * scale
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
@@ -125,17 +125,17 @@ impl<N: Real> TriangleQuery<'_, N> {
             normal: either(is_above, &negated(front), front),
             feature: V::all(simd, N::lit(TRIANGLE)),
         };
-        let is_less = of_solid.gap.simd_gt(own.gap + V::all(simd, noise()));
+        let is_less = of_solid.gap.simd_gt(own.gap + V::all(simd, rounding_error()));
         let face = own.or(is_less, &of_solid);
         let beyond = beyond | (packet.is_beyond(face.gap) & is_wide);
-        let asked = is_wide & !beyond;
-        if asked.to_bitmask() == 0 {
+        let wanted = is_wide & !beyond;
+        if wanted.to_bitmask() == 0 {
             return packet.stored(&face, beyond, none);
         }
-        let best = packet.query_edges(&climbs, &directions, asked, face);
+        let best = packet.query_edges(&climbs, &directions, wanted, face);
         // For a short edge, its two faces alone may claim a gap that other vertices do not leave.
         let [_, gap] = packet.gaps_along(&best.normal);
-        let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * noise()));
+        let known = is_wide & gap.simd_gt(best.gap - V::all(simd, N::lit(4.0) * rounding_error()));
         packet.stored(&best, beyond | (packet.is_beyond(best.gap) & known), known)
     }
 }
@@ -206,7 +206,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         let mut corners = given;
         for corner in &mut corners {
             let arm = times(&minus(corner, &center), shrink);
-            *corner = turned_back(simd, &query.pose12.rotation, &arm);
+            *corner = rotated_back(simd, &query.pose12.rotation, &arm);
         }
         let slack = V::all(simd, slack(N::ONE)) * scale;
         let beyond = V::all(simd, query.limit) + slack;
@@ -252,19 +252,20 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
     #[inline(always)]
     fn directions(&self, turn: &Matrix<N, 3>) -> Directions<V, V::Mask> {
         let (simd, [a, b, c], shrink) = (self.simd, &self.given, self.shrink);
-        let ways =
+        let edges =
             [times(&minus(b, a), shrink), times(&minus(c, b), shrink), times(&minus(a, c), shrink)];
-        let squared = [dot(&ways[0], &ways[0]), dot(&ways[1], &ways[1]), dot(&ways[2], &ways[2])];
+        let squared =
+            [dot(&edges[0], &edges[0]), dot(&edges[1], &edges[1]), dot(&edges[2], &edges[2])];
         let longest = squared[0].larger(squared[1]).larger(squared[2]);
-        let across = cross(&ways[0], &ways[1]);
+        let across = cross(&edges[0], &edges[1]);
         let area = dot(&across, &across).sqrt();
         let is_wide = area.simd_gt(V::all(simd, N::lit(THIN)) * longest)
             & longest.simd_gt(V::all(simd, N::MIN_POSITIVE.sqrt()));
-        let mut sides = ways;
+        let mut sides = edges;
         for (side, squared) in sides.iter_mut().zip(squared) {
-            *side = turned_back(simd, turn, &over(side, squared.sqrt()));
+            *side = rotated_back(simd, turn, &over(side, squared.sqrt()));
         }
-        Directions { sides, front: turned_back(simd, turn, &over(&across, area)), is_wide }
+        Directions { sides, front: rotated_back(simd, turn, &over(&across, area)), is_wide }
     }
 
     /// Returns the gaps from the triangles to the solid along `-along` and along `along`, unit
@@ -312,13 +313,13 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
         &self,
         climbs: &[[V::Mask; 3]; MAX_FACES],
         directions: &Directions<V, V::Mask>,
-        asked: V::Mask,
+        wanted: V::Mask,
         face: TriangleAxis<V>,
     ) -> TriangleAxis<V> {
         let (simd, zero, one) = (self.simd, V::all(self.simd, N::ZERO), V::all(self.simd, N::ONE));
         let mut feature = V::all(simd, N::lit(EDGES)) - one;
         let sine = N::lit(PARALLEL) * N::EPSILON;
-        let (mut best, mut bound) = (face, face.gap + V::all(simd, noise()));
+        let (mut best, mut bound) = (face, face.gap + V::all(simd, rounding_error()));
         for edge in self.solid.edges {
             let [first, second] = edge.faces.mapped(|face| &climbs[face as usize]);
             let [from, to] = edge.vertices.mapped(|end| self.solid.vertex(end as usize));
@@ -331,8 +332,9 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
             let least = V::all(simd, sine * sine) * dot(&along, &along);
             for side in 0..3 {
                 feature += one;
-                let is_asked = (first[side] ^ second[side]) & !(is_forward ^ first[side]) & asked;
-                if is_asked.to_bitmask() == 0 {
+                let is_candidate =
+                    (first[side] ^ second[side]) & !(is_forward ^ first[side]) & wanted;
+                if is_candidate.to_bitmask() == 0 {
                     continue;
                 }
                 let outward = first[side].select(one, -one);
@@ -341,7 +343,7 @@ impl<'a, S: Simd, N: Real, V: Wide<S, Scalar = N>> PlacedPacket<'a, S, N, V> {
                 let squared = dot(&across, &across);
                 let length = squared.sqrt();
                 // Parallel edges have no perpendicular; faces separate the two as much.
-                let is_more = is_asked & squared.simd_gt(least) & slack.simd_gt(bound * length);
+                let is_more = is_candidate & squared.simd_gt(least) & slack.simd_gt(bound * length);
                 // Divisions cost more than all the rest, and few directions improve on the best so
                 // far.
                 if is_more.to_bitmask() == 0 {
@@ -375,9 +377,9 @@ fn units<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let (mut sizes, mut shrinks) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
     most.store(&mut sizes);
     for (size, shrink) in sizes.iter_mut().zip(&mut shrinks) {
-        let is_plain = *size > N::ZERO && size.is_finite_number();
+        let is_scalable = *size > N::ZERO && size.is_finite_number();
         let scale = size.power_of_two_below();
-        *shrink = if is_plain { N::ONE / scale } else { N::INFINITY };
+        *shrink = if is_scalable { N::ONE / scale } else { N::INFINITY };
         *size = scale;
     }
     [sizes, shrinks]

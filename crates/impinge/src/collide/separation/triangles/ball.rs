@@ -53,26 +53,30 @@ pub(crate) struct BallQuestion<'a, N: Real> {
 }
 
 /// The triangles near a ball.
-pub(crate) struct NearTriangles<N> {
+pub(crate) struct CandidateTriangles<N> {
     /// Lower bound of the distance from the centre to the triangles in the box; zero if unknown.
     pub(crate) from_middle: N,
     /// For each packet with near triangles, in order: its index, and the bits of those that may be
     /// within reach and of the hidden ones among them.
-    pub(crate) near: SmallVec<[(usize, [u8; 2]); 8]>,
+    pub(crate) masks: SmallVec<[(usize, [u8; 2]); 8]>,
     /// Squared distances of all hidden triangles are at least this; infinite if none is hidden.
     pub(crate) hidden_from: N,
 }
 
 /// Finds the triangles near a ball; none counts as hidden unless `has_seams`.
-pub(crate) fn near_triangles<N: Real>(
+pub(crate) fn candidate_triangles<N: Real>(
     question: &BallQuestion<'_, N>,
     has_seams: bool,
-) -> NearTriangles<N> {
+) -> CandidateTriangles<N> {
     at(Level::new(), question, has_seams)
 }
 
 /// Runs the search with the vectors of an instruction set; the result does not depend on it.
-fn at<N: Real>(level: Level, question: &BallQuestion<'_, N>, has_seams: bool) -> NearTriangles<N> {
+fn at<N: Real>(
+    level: Level,
+    question: &BallQuestion<'_, N>,
+    has_seams: bool,
+) -> CandidateTriangles<N> {
     with_lanes!(level, simd => look::<_, N, N::Lanes<_>>(simd, question, has_seams))
 }
 
@@ -82,10 +86,13 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
     has_seams: bool,
-) -> NearTriangles<N> {
-    let mut places: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
-    let mut seen =
-        NearTriangles { from_middle: N::INFINITY, near: SmallVec::new(), hidden_from: N::INFINITY };
+) -> CandidateTriangles<N> {
+    let mut features: SmallVec<[NearestFeatures<N>; 8]> = SmallVec::new();
+    let mut candidates = CandidateTriangles {
+        from_middle: N::INFINITY,
+        masks: SmallVec::new(),
+        hidden_from: N::INFINITY,
+    };
     for (block, tiles) in question.tiles.iter().enumerate() {
         let meant = u8::MAX >> (LANES - (question.count - block * LANES).min(LANES));
         let within = meant & bits(are_within::<S, N, V>(simd, question, tiles));
@@ -93,28 +100,28 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
             continue;
         }
         let eight = TrianglePacket::<V>::of(simd, question, tiles);
-        let (mut own, least) = eight.places(simd, question, block, within, has_seams);
-        seen.from_middle = min(seen.from_middle, least);
-        if own.near != 0 {
-            own.sides &= own.near;
-            seen.near.push((block, [own.near, 0]));
-            places.push(own);
+        let (mut own, least) = eight.nearest_features(simd, question, block, within, has_seams);
+        candidates.from_middle = min(candidates.from_middle, least);
+        if own.mask != 0 {
+            own.sides &= own.mask;
+            candidates.masks.push((block, [own.mask, 0]));
+            features.push(own);
         }
     }
-    for (at, own) in places.iter().enumerate() {
-        let mut asked = own.sides;
-        while asked != 0 {
-            let lane = asked.trailing_zeros() as usize;
-            asked &= asked - 1;
+    for (at, own) in features.iter().enumerate() {
+        let mut sides_left = own.sides;
+        while sides_left != 0 {
+            let lane = sides_left.trailing_zeros() as usize;
+            sides_left &= sides_left - 1;
             let around =
-                &places[at.saturating_sub(MAX_APART)..places.len().min(at + 1 + MAX_APART)];
+                &features[at.saturating_sub(MAX_APART)..features.len().min(at + 1 + MAX_APART)];
             if is_hidden::<S, N, V>(simd, question, around, own, lane) {
-                seen.near[at].1[1] |= 1 << lane;
-                seen.hidden_from = min(seen.hidden_from, own.least[lane]);
+                candidates.masks[at].1[1] |= 1 << lane;
+                candidates.hidden_from = min(candidates.hidden_from, own.least[lane]);
             }
         }
     }
-    seen
+    candidates
 }
 
 /// Returns which of eight triangles have boxes that overlap the box of the question.
@@ -142,7 +149,7 @@ struct NearestFeatures<N> {
     /// Index of the packet.
     block: usize,
     /// Bit of each triangle that may be within reach.
-    near: u8,
+    mask: u8,
     /// Bit of each triangle whose nearest point certainly lies on one of its sides or corners.
     sides: u8,
     /// Nearest feature: a side by the index of its first corner, a corner by its index plus 3.
@@ -217,7 +224,7 @@ impl<V> TrianglePacket<V> {
 
     /// Returns the nearest features, and the least lower bound of the distances.
     #[inline(always)]
-    fn places<S: Simd, N: Real>(
+    fn nearest_features<S: Simd, N: Real>(
         &self,
         simd: S,
         question: &BallQuestion<'_, N>,
@@ -237,21 +244,21 @@ impl<V> TrianglePacket<V> {
         let [a, b, c, d, e, f, g, h] = known;
         let least = min(min(min(a, e), min(c, g)), min(min(b, f), min(d, h)));
         let (blank, most) = ([N::ZERO; LANES], [N::INFINITY; LANES]);
-        let near = within & bits(!is_beyond);
-        let mut places =
-            NearestFeatures { block, near, sides: 0, kinds: blank, least: blank, most };
-        if near != 0 && has_seams {
+        let mask = within & bits(!is_beyond);
+        let mut features =
+            NearestFeatures { block, mask, sides: 0, kinds: blank, least: blank, most };
+        if mask != 0 && has_seams {
             let clear = V::all(simd, N::lit(CLEAR) * N::EPSILON) * (size * size);
             let is_tall = self.is_tall(simd, size, clear, max_component(&question.center));
-            let (kind, room) = self.beside(simd);
-            let is_beside = is_tall & room.simd_gt(clear.sqrt()) & is_bound;
-            places.sides = bits(is_beside);
-            kind.store(&mut places.kinds);
-            (self.squared - clear).store(&mut places.least);
+            let (kind, margin) = self.beside(simd);
+            let is_beside = is_tall & margin.simd_gt(clear.sqrt()) & is_bound;
+            features.sides = bits(is_beside);
+            kind.store(&mut features.kinds);
+            (self.squared - clear).store(&mut features.least);
             let most = is_tall.select(self.squared + clear, V::all(simd, N::INFINITY));
-            most.store(&mut places.most);
+            most.store(&mut features.most);
         }
-        (places, least)
+        (features, least)
     }
 
     /// Returns lower bounds of the distances, by the planes through the nearest points
@@ -261,8 +268,8 @@ impl<V> TrianglePacket<V> {
     where
         V: Wide<S, Scalar = N>,
     {
-        let ([a, b, c], way, length) = (&self.corners, &self.nearest, self.squared.sqrt());
-        let low = dot(way, a).smaller(dot(way, b)).smaller(dot(way, c));
+        let ([a, b, c], nearest, length) = (&self.corners, &self.nearest, self.squared.sqrt());
+        let low = dot(nearest, a).smaller(dot(nearest, b)).smaller(dot(nearest, c));
         let slack = V::all(simd, N::lit(ROUNDING) * N::EPSILON) * size;
         let bound = low / length - slack;
         // False for NaN and for values that have lost digits by underflow.
@@ -305,19 +312,19 @@ impl<V> TrianglePacket<V> {
             -self.shares[0] / (area * root[1]),
             -self.shares[1] / (area * root[2]),
         ];
-        let (mut kind, mut room) = (V::all(simd, N::ZERO), V::all(simd, -N::INFINITY));
+        let (mut kind, mut margin) = (V::all(simd, N::ZERO), V::all(simd, -N::INFINITY));
         for (at, number) in [0.0, 1.0, 2.0].into_iter().enumerate() {
             let before = (at + 2) % 3;
             let aside = outside[at].larger(outside[before]);
             let of_side = outside[at].smaller(past[at]).smaller(left[at]);
             let of_corner = aside.smaller(-past[at]).smaller(-left[before]);
             for (new, number) in [(of_side, number), (of_corner, number + CORNER)] {
-                let is_more = new.simd_gt(room);
+                let is_more = new.simd_gt(margin);
                 kind = is_more.select(V::all(simd, N::lit(number)), kind);
-                room = is_more.select(new, room);
+                margin = is_more.select(new, margin);
             }
         }
-        (kind, room)
+        (kind, margin)
     }
 }
 
@@ -327,7 +334,7 @@ impl<V> TrianglePacket<V> {
 fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
     question: &BallQuestion<'_, N>,
-    places: &[NearestFeatures<N>],
+    features: &[NearestFeatures<N>],
     own: &NearestFeatures<N>,
     lane: usize,
 ) -> bool {
@@ -337,7 +344,7 @@ fn is_hidden<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let at = if number == N::ZERO { 0 } else { 1 + usize::from(number > N::ONE) };
     let corners = question.tiles[own.block].corners(lane);
     let (from, to) = (corners[at], corners[(at + 1) % 3]);
-    for other in places {
+    for other in features {
         let tiles = &question.tiles[other.block];
         let is_nearer = V::load(simd, &other.most).simd_lt(V::all(simd, least));
         let hides = is_nearer & has_corner::<S, N, V>(simd, tiles, &from);
@@ -397,8 +404,8 @@ mod tests {
         let mut points: Vec<Point<N, 3>> = Vec::new();
         for at in 0..12_u32 {
             let [x, z] = [at / 2, at % 2].map(|n| N::lit(f64::from(n) - 2.0));
-            let place = Vector::<N, 3>::new(x, N::ZERO, z * N::TWO + N::ONE);
-            points.push(Point::from(place + random.vector::<N>() * N::lit(0.3)));
+            let position = Vector::<N, 3>::new(x, N::ZERO, z * N::TWO + N::ONE);
+            points.push(Point::from(position + random.vector::<N>() * N::lit(0.3)));
         }
         let mut tiles = vec![PartPacket::blank(), PartPacket::blank()];
         for at in 0..16 {
@@ -415,19 +422,20 @@ mod tests {
             let tiles = strip::<N>(random);
             let center = random.vector::<N>() * N::HALF;
             let (radius, limit) = (N::ONE, N::lit(0.1));
-            let reach = Vector::<N, 3>::repeat(N::lit(1.2));
-            let within = Aabb::around(Point::from(center), reach);
+            let half_extents = Vector::<N, 3>::repeat(N::lit(1.2));
+            let within = Aabb::around(Point::from(center), half_extents);
             let question = BallQuestion { tiles: &tiles, count: 10, center, radius, limit, within };
-            let expected = near_triangles(&question, true);
+            let expected = candidate_triangles(&question, true);
             for level in Level::available() {
                 let found = at(level, &question, true);
-                assert_eq!(found.near, expected.near, "{level:?}");
+                assert_eq!(found.masks, expected.masks, "{level:?}");
                 assert_eq!(found.from_middle, expected.from_middle, "{level:?}");
                 assert_eq!(found.hidden_from, expected.hidden_from, "{level:?}");
             }
-            let shown = near_triangles(&question, false);
-            for ((_, [near, without]), (_, [same, with])) in shown.near.iter().zip(&expected.near) {
-                assert_eq!((near, *without), (same, 0), "without seams all are shown");
+            let found = candidate_triangles(&question, false);
+            for ((_, [all, without]), (_, [same, with])) in found.masks.iter().zip(&expected.masks)
+            {
+                assert_eq!((all, *without), (same, 0), "without seams none is hidden");
                 hidden += with.count_ones();
             }
         }
@@ -435,7 +443,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_ball_sees_does_not_depend_on_vectors() {
+    fn projections_from_balls_do_not_depend_on_vectors() {
         compare::<f32>(21);
         compare::<f64>(22);
     }

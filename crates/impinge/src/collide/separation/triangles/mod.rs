@@ -9,7 +9,7 @@
 //! decides whether a pair is within.
 //!
 //! ```text
-//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `near`: bits of the selected ones
+//!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of the selected ones
 //!              |   | |         |     |
 //!   packet  [0 1 2 3 4 ...]                            up to eight of them, packed without gaps;
 //!                                                      the visitor counts on over all packets
@@ -23,7 +23,7 @@ mod ball;
 pub(super) mod pair;
 
 use self::axes::{AxisFeature, TriangleAxes};
-pub(crate) use self::ball::{BallQuestion, NearTriangles, near_triangles};
+pub(crate) use self::ball::{BallQuestion, CandidateTriangles, candidate_triangles};
 use super::hulls::{LocalFeatures, Polyhedral};
 use crate::collide::packet::{LANES, PartPacket};
 use crate::math::ones::Ones;
@@ -44,7 +44,7 @@ const CLEAR: f64 = 64.0;
 const LONG: f64 = 8192.0;
 
 /// Returns the rounding error of arithmetic on numbers of size 2.
-fn noise<N: Real>() -> N {
+fn rounding_error<N: Real>() -> N {
     N::lit(16.0) * N::EPSILON
 }
 
@@ -52,7 +52,7 @@ fn noise<N: Real>() -> N {
 pub(crate) struct TiledTriangles<'a, N: Real> {
     pub(crate) tiles: &'a [PartPacket<N, 3>],
     /// For each tile the bits of the selected triangles.
-    pub(crate) near: &'a [u8],
+    pub(crate) masks: &'a [u8],
     /// Origin that the triangles are taken relative to.
     pub(crate) origin: Vector<N, 3>,
 }
@@ -73,10 +73,10 @@ pub(crate) type GapVisitor<'v, N> = &'v mut dyn FnMut(usize, Option<&TriangleGap
 
 impl<N: Real> TiledTriangles<'_, N> {
     /// Tile and lane of each selected triangle.
-    fn places(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
-        let all = self.tiles.iter().zip(self.near);
-        all.flat_map(move |(tiles, near)| {
-            Ones::<LANES>((*near).into()).map(move |lane| (tiles, lane))
+    fn slots(&self) -> impl Iterator<Item = (&PartPacket<N, 3>, usize)> {
+        let all = self.tiles.iter().zip(self.masks);
+        all.flat_map(move |(tiles, mask)| {
+            Ones::<LANES>((*mask).into()).map(move |lane| (tiles, lane))
         })
     }
 }
@@ -114,10 +114,10 @@ struct TriangleQuery<'a, N: Real> {
 impl<N: Real> TriangleQuery<'_, N> {
     /// Packs the selected triangles, eight at a time, and visits those within the limit.
     fn each(&self, visit: GapVisitor<'_, N>) {
-        let (mut places, mut first) = (self.parts.places(), 0);
+        let (mut slots, mut first) = (self.parts.slots(), 0);
         loop {
             let (mut packet, mut count) = (PartPacket::blank(), 0);
-            for (tiles, lane) in places.by_ref().take(LANES) {
+            for (tiles, lane) in slots.by_ref().take(LANES) {
                 packet.copy(count, tiles, lane);
                 count += 1;
             }
@@ -127,7 +127,7 @@ impl<N: Real> TriangleQuery<'_, N> {
             for run in Level::new().runs(count) {
                 let axes = self.axes(run, &packet);
                 for lane in run.lanes().filter(|lane| axes.beyond >> lane & 1 == 0) {
-                    visit(first + lane, self.plain(&axes, lane).as_ref());
+                    visit(first + lane, self.certain_gap(&axes, lane).as_ref());
                 }
             }
             first += count;
@@ -135,7 +135,7 @@ impl<N: Real> TriangleQuery<'_, N> {
     }
 
     /// Returns the gap along the axis of a triangle, if the case is plain.
-    fn plain(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
+    fn certain_gap(&self, axes: &TriangleAxes<N>, lane: usize) -> Option<TriangleGap<N>> {
         let triangle = PlacedTriangle {
             corners: axes.corners.each_ref().mapped(|corner| of_lane(corner, lane)),
             normal: of_lane(&axes.normals, lane),
@@ -181,25 +181,25 @@ impl<N: Real> PlacedTriangle<'_, N> {
     fn crossing(&self, edge: usize, side: usize) -> Option<FeatureId> {
         let [from, to] = self.solid.edges[edge].vertices.mapped(|end| self.vertex(end));
         let start = &self.corners[side];
-        let way = self.corners[(side + 1) % 3] - start;
+        let edge = self.corners[(side + 1) % 3] - start;
         let third = self.corners[(side + 2) % 3] - start;
         let (along, arm) = (to - from, start - from);
         // Parameters of the nearest points of two lines, times the determinant.
-        let (own, other, both) = (way.norm_squared(), along.norm_squared(), way.dot(&along));
-        let (on_way, on_along) = (way.dot(&arm), along.dot(&arm));
+        let (own, other, both) = (edge.norm_squared(), along.norm_squared(), edge.dot(&along));
+        let (on_edge, on_along) = (edge.dot(&arm), along.dot(&arm));
         let det = own * other - both * both;
-        let (share1, share2) = (both * on_along - on_way * other, own * on_along - both * on_way);
-        let room = det * N::lit(INSIDE);
+        let (share1, share2) = (both * on_along - on_edge * other, own * on_along - both * on_edge);
+        let margin = det * N::lit(INSIDE);
         let is_inside =
-            share1 > room && share1 < det - room && share2 > room && share2 < det - room;
-        let longest = max(own, max(third.norm_squared(), (third - way).norm_squared()));
-        let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * noise::<N>());
+            share1 > margin && share1 < det - margin && share2 > margin && share2 < det - margin;
+        let longest = max(own, max(third.norm_squared(), (third - edge).norm_squared()));
+        let (tall, long) = (N::lit(TALL) * longest, N::lit(LONG) * rounding_error::<N>());
         // Written so that NaN is not plain.
-        let is_plain = is_inside
+        let is_certain = is_inside
             && det > N::lit(MIN_SINE) * own * other
             && own > long * long
-            && cross(&way, &third).norm_squared() > tall * tall;
-        is_plain.then(|| FeatureId::Edge([0, 1, 2][side]))
+            && cross(&edge, &third).norm_squared() > tall * tall;
+        is_certain.then(|| FeatureId::Edge([0, 1, 2][side]))
     }
 
     /// Returns the corner of the triangle that alone is nearest to a face of the solid and over its
@@ -210,14 +210,14 @@ impl<N: Real> PlacedTriangle<'_, N> {
         let lower =
             |best: usize, next: usize| if heights[next] < heights[best] { next } else { best };
         let lowest = lower(lower(0, 1), 2);
-        let clear = heights[lowest] + N::lit(CLEAR) * noise::<N>();
+        let clear = heights[lowest] + N::lit(CLEAR) * rounding_error::<N>();
         let is_alone = (0..3).all(|other: usize| other == lowest || heights[other] > clear);
         let (ring, at) = (self.solid.ring(face), self.corners[lowest]);
         let is_over = |(from, to): (&u32, &u32)| {
             let from = self.vertex(*from);
             cross(&outward, &(self.vertex(*to) - from)).dot(&(at - from)) > N::ZERO
         };
-        let is_plain = is_alone && ring.iter().zip(ring.iter().cycle().skip(1)).all(is_over);
-        is_plain.then(|| FeatureId::Vertex([0, 1, 2][lowest]))
+        let is_certain = is_alone && ring.iter().zip(ring.iter().cycle().skip(1)).all(is_over);
+        is_certain.then(|| FeatureId::Vertex([0, 1, 2][lowest]))
     }
 }

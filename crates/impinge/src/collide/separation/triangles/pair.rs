@@ -40,9 +40,8 @@ pub(crate) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Sep
     };
     match by_axes([first, second], &pair.pose12, limit) {
         Axes::Beyond => None,
-        Axes::Found(found) => {
-            Some(shared_corner::settled(pair, found)).filter(|found| found.distance <= limit)
-        }
+        Axes::Found(found) => Some(shared_corner::with_shared_corner(pair, found))
+            .filter(|found| found.distance <= limit),
         Axes::Unproved => hulls::separation(pair, limit),
     }
 }
@@ -69,22 +68,25 @@ fn by_axes<N: Real>(triangles: [&Triangle<N, 3>; 2], pose12: &Pose<N, 3>, limit:
     let [Some(first), Some(second)] = placed else { return Axes::Unproved };
     let [face1, face2] = [FaceAxis::new(&first, &second), FaceAxis::new(&second, &first)];
     let (edges, inexact) = EdgeAxis::best(&first, &second);
-    let noise = hulls::noise::<N>();
-    let is_second = face2.gap > face1.gap + noise;
+    let rounding_error = hulls::rounding_error::<N>();
+    let is_second = face2.gap > face1.gap + rounding_error;
     let face = if is_second { &face2 } else { &face1 };
-    if max(face.gap, edges.gap) > hulls::out_of_reach(&units, limit) {
+    if max(face.gap, edges.gap) > hulls::beyond_limit(&units, limit) {
         return Axes::Beyond;
     }
-    let of_edges = || edges.points(&first, &second).filter(|_| edges.gap > face.gap - noise);
+    let of_edges =
+        || edges.points(&first, &second).filter(|_| edges.gap > face.gap - rounding_error);
     let of_face = || {
         let (own, other) = if is_second { (&second, &first) } else { (&first, &second) };
         face.points(own, other).map(|[own, other]| face.found(is_second, own, other))
     };
-    let is_edge = edges.gap > face.gap + noise;
+    let is_edge = edges.gap > face.gap + rounding_error;
     let found = if is_edge { of_edges() } else { of_face().or_else(of_edges) };
     match found {
         // False for NaN.
-        Some(found) if inexact <= found.distance + noise => Axes::Found(found.scaled(units.scale)),
+        Some(found) if inexact <= found.distance + rounding_error => {
+            Axes::Found(found.scaled(units.scale))
+        }
         _ => Axes::Unproved,
     }
 }
@@ -111,7 +113,7 @@ impl<N: Real> PlacedTriangle<N> {
         let longest = max(max(squared[0], squared[1]), squared[2]);
         let across = cross(&sides[0], &sides[1]);
         let area = across.norm();
-        let least = N::TWO * hulls::noise() * longest.sqrt();
+        let least = N::TWO * hulls::rounding_error() * longest.sqrt();
         // False for NaN.
         let is_wide = area > N::lit(THIN) * longest && area > least && area < N::INFINITY;
         is_wide.then(|| Self { corners, sides, squared, normal: across / area })
@@ -130,11 +132,12 @@ impl<N: Real> PlacedTriangle<N> {
     /// Whether the foot of a point on the plane of the triangle lies in the triangle, within
     /// rounding error.
     fn is_over(&self, point: &Vector<N, 3>) -> bool {
-        let noise = hulls::noise::<N>();
+        let rounding_error = hulls::rounding_error::<N>();
         (0..3).all(|side: usize| {
             let inward = cross(&self.normal, &self.sides[side]);
             let inside = inward.dot(&(point - self.corners[side]));
-            inside >= N::ZERO || inside * inside <= noise * noise * self.squared[side]
+            inside >= N::ZERO
+                || inside * inside <= rounding_error * rounding_error * self.squared[side]
         })
     }
 }
@@ -169,7 +172,7 @@ impl<N: Real> FaceAxis<N> {
         own: &PlacedTriangle<N>,
         other: &PlacedTriangle<N>,
     ) -> Option<[Vector<N, 3>; 2]> {
-        let most = self.gap + hulls::noise();
+        let most = self.gap + hulls::rounding_error();
         let mut corners = other.corners.iter().zip(self.heights);
         let (corner, _) = corners.find(|(at, height)| *height <= most && own.is_over(at))?;
         Some([corner - self.outward * self.gap, *corner])
@@ -218,8 +221,8 @@ impl<N: Real> EdgeAxis<N> {
                     best = Self { gap: slack / length, sides: [i, j], across, length };
                 }
             } else if squared > least * least * both {
-                let room = N::TWO * hulls::noise() * both.sqrt();
-                inexact = max((slack + room) / length, inexact);
+                let extra_slack = N::TWO * hulls::rounding_error() * both.sqrt();
+                inexact = max((slack + extra_slack) / length, inexact);
             }
         }
         (best, inexact)
@@ -253,7 +256,7 @@ impl<N: Real> EdgeAxis<N> {
 mod tests {
     use super::*;
     use crate::collide::separation::general;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::Shape;
 
     /// The distance by the general algorithm, and by axes where these prove it.
@@ -287,9 +290,9 @@ mod tests {
 
     #[test]
     fn most_overlaps_are_proved() {
-        let (mut noise, mut grid) = (Noise(3), Noise(4));
-        assert!(share::<f32>(|| Point::from(noise.vector(1.0))) > 0.9);
-        assert!(share::<f64>(|| Point::from(noise.vector(1.0))) > 0.9);
+        let (mut random, mut grid) = (Xorshift(3), Xorshift(4));
+        assert!(share::<f32>(|| Point::from(random.vector(1.0))) > 0.9);
+        assert!(share::<f64>(|| Point::from(random.vector(1.0))) > 0.9);
         // Corners on a grid: parallel sides, shared corners, coplanar triangles and triangles
         // without area.
         let mut step = || Point::from(grid.vector::<f64>(1.5).map(f64::round));

@@ -228,6 +228,6 @@ fn push_sorted<N: Real>(
     key: N,
     block: PyramidBlock,
 ) {
-    let place = (base..stack.len()).find(|&at| stack[at].0 <= key).unwrap_or(stack.len());
-    stack.insert(place, (key, block));
+    let index = (base..stack.len()).find(|&at| stack[at].0 <= key).unwrap_or(stack.len());
+    stack.insert(index, (key, block));
 }

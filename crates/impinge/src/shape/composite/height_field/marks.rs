@@ -83,9 +83,9 @@ impl Marks {
 
     /// The diagonal of the cell at a row and column.
     pub(super) fn diagonal(&self, [row, column]: [usize; 2], columns: usize) -> Diagonal {
-        let usual = self.diagonals.of(row, column);
-        match (usual, self.has(row * columns + column, OTHER_DIAGONAL)) {
-            (usual, false) => usual,
+        let default_diagonal = self.diagonals.of(row, column);
+        match (default_diagonal, self.has(row * columns + column, OTHER_DIAGONAL)) {
+            (default_diagonal, false) => default_diagonal,
             (Diagonal::Forward, true) => Diagonal::Backward,
             (Diagonal::Backward, true) => Diagonal::Forward,
         }

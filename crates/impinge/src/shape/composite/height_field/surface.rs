@@ -5,12 +5,12 @@ use smallvec::SmallVec;
 
 use super::HeightField;
 use super::marks::Diagonal;
-use super::sheet::GridPoint;
+use super::triangles::GridPoint;
 use crate::math::{Mapped, Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::composite::tri_mesh::{inward_of, normal_of};
 use crate::shape::surface::bend::Bend;
 use crate::shape::surface::own_surface::OwnSurface;
-use crate::shape::surface::seam::{CornerWays, Seam, is_across, slack};
+use crate::shape::surface::seam::{CornerEdges, Seam, is_across, slack};
 use crate::shape::surface::sidedness::Joining;
 use crate::shape::{FaceSeams, FeatureId, Sidedness, Surface};
 
@@ -71,7 +71,7 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
     }
 
     /// Grid points have distinct positions unless the field has no extent.
-    fn has_plain_seams(&self) -> bool {
+    fn has_regular_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
 }
@@ -255,7 +255,7 @@ impl<N: Real> HeightField<N, 3> {
         for face in [Some(own), other.as_ref()].into_iter().flatten() {
             let inward = face.beyond(ends).and_then(|tip| inward_of(&[start, end, tip]));
             if let Some(inward) = inward {
-                seam.add_face(|way| inward.dot(way), &face.front);
+                seam.add_face(|direction| inward.dot(direction), &face.front);
             }
         }
         is_across(&(end - start), normal) && seam.admits(self.is_one_sided)
@@ -282,28 +282,28 @@ impl<N: Real> HeightField<N, 3> {
         own: (&Vector<N, 3>, bool),
         normal: &Vector<N, 3>,
     ) -> bool {
-        let known = self.ways_around(at, normal).admit(own, self.is_one_sided);
+        let known = self.edges_around(at, normal).admit(own, self.is_one_sided);
         known.unwrap_or_else(|| {
             let star = star.get_or_insert_with(|| self.star_of(at));
             let mut seam = Seam::of_faces(*own.0, normal);
-            for StarFace { ways, front } in star {
-                seam.add_face(|along| max(rise(&ways[0], along), rise(&ways[1], along)), front);
+            for StarFace { edges, front } in star {
+                seam.add_face(|along| max(rise(&edges[0], along), rise(&edges[1], along)), front);
             }
             seam.admits(self.is_one_sided)
         })
     }
 
     /// Collects the sides that leave a point of the grid, until they reject a normal.
-    fn ways_around<'n>(&self, at: GridPoint, normal: &'n Vector<N, 3>) -> CornerWays<'n, N, 3> {
-        let (mut ways, [row, column]) = (CornerWays::new(normal), at);
+    fn edges_around<'n>(&self, at: GridPoint, normal: &'n Vector<N, 3>) -> CornerEdges<'n, N, 3> {
+        let (mut edges, [row, column]) = (CornerEdges::new(normal), at);
         let point = self.grid.point(row, column);
         self.each_around(at, |others| {
             for [row, column] in others {
-                ways.add(&(self.grid.point(row, column) - point));
+                edges.add(&(self.grid.point(row, column) - point));
             }
-            ways.is_refused()
+            edges.is_refused()
         });
-        ways
+        edges
     }
 
     /// The triangles around a point of the grid.
@@ -312,9 +312,10 @@ impl<N: Real> HeightField<N, 3> {
         let point = self.grid.point(row, column);
         self.each_around(at, |others| {
             let [next, last] = others.mapped(|[row, column]| self.grid.point(row, column));
-            let unit_way = |other: &Point<N, 3>| unit_or(&(other - point), Vector::<N, 3>::zeros());
-            let ways = [unit_way(&next), unit_way(&last)];
-            star.push(StarFace { ways, front: normal_of(&[point, next, last]) });
+            let unit_edge =
+                |other: &Point<N, 3>| unit_or(&(other - point), Vector::<N, 3>::zeros());
+            let edges = [unit_edge(&next), unit_edge(&last)];
+            star.push(StarFace { edges, front: normal_of(&[point, next, last]) });
             false
         });
         star
@@ -324,13 +325,13 @@ impl<N: Real> HeightField<N, 3> {
 /// A triangle at a point of the grid: the unit vectors (or zero) along its sides that leave the
 /// point, and its front.
 struct StarFace<N: Real> {
-    ways: [Vector<N, 3>; 2],
+    edges: [Vector<N, 3>; 2],
     front: Vector<N, 3>,
 }
 
 /// The rise of a unit vector along another one; −1 for the zero vector.
-fn rise<N: Real>(way: &Vector<N, 3>, along: &Vector<N, 3>) -> N {
-    if *way == Vector::<N, 3>::zeros() { -N::ONE } else { way.dot(along) }
+fn rise<N: Real>(edge: &Vector<N, 3>, along: &Vector<N, 3>) -> N {
+    if *edge == Vector::<N, 3>::zeros() { -N::ONE } else { edge.dot(along) }
 }
 
 /// The triangles around a point.
@@ -412,8 +413,8 @@ mod tests {
 
     #[test]
     fn two_normals_in_turn_are_as_each_alone() {
-        let noise = |at: u32| f64::from((at * at * 31 + at * 7) % 97) / 97.0 - 0.5;
-        let heights = (0..36).map(|at| 0.8 * noise(at)).collect();
+        let pseudo_random = |at: u32| f64::from((at * at * 31 + at * 7) % 97) / 97.0 - 0.5;
+        let heights = (0..36).map(|at| 0.8 * pseudo_random(at)).collect();
         let field = HeightField::<f64, 3>::new(6, 6, heights, Vector::<f64, 3>::new(5.0, 1.0, 5.0));
         let mut counts = [0; 3];
         for (field, part) in [field.clone(), field.one_sided()]
@@ -422,7 +423,11 @@ mod tests {
         {
             let front = field.front_of(&field.corners(part));
             for at in 0..60_u32 {
-                let aside = Vector::<f64, 3>::new(noise(at), noise(at + 60), noise(at + 120));
+                let aside = Vector::<f64, 3>::new(
+                    pseudo_random(at),
+                    pseudo_random(at + 60),
+                    pseudo_random(at + 120),
+                );
                 let far = (front + aside).normalize();
                 let near = (front + aside * 0.03).normalize();
                 let feature = [FeatureId::Edge(at / 3 % 3), FeatureId::Vertex(at % 3)];
@@ -433,6 +438,6 @@ mod tests {
                 counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
             }
         }
-        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 100), "all cases occur: {counts:?}");
     }
 }

@@ -60,13 +60,13 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         let mut crossed: SmallVec<[_; 4]> = SmallVec::new();
         crossed.push((triangle, side, None));
         let line = OnceCell::new();
-        let stretch = |other: u32, exit: usize| {
+        let interval = |other: u32, exit: usize| {
             let line = line.get_or_init(|| SideLine::of(&self.corners(triangle), side));
             Some(line.span(&self.ends_of(other, exit))).filter(|span| line.overlaps(span))
         };
         if self.inward(triangle, side).is_none() {
             for other in [1, 2].map(|turn| (side + turn) % 3) {
-                let span = stretch(triangle, other);
+                let span = interval(triangle, other);
                 crossed.extend(span.map(|span| (triangle, other, Some(span))));
             }
         }
@@ -79,7 +79,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
                 None => {
                     for exit in [1, 2].map(|turn| (entered + turn) % 3) {
                         let is_new = !crossed_before(&crossed, other, exit);
-                        let span = stretch(other, exit).filter(|_| is_new);
+                        let span = interval(other, exit).filter(|_| is_new);
                         crossed.extend(span.map(|span| (other, exit, Some(span))));
                     }
                 }
@@ -88,7 +88,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     /// Whether part of a side of a triangle without area has no triangle with an area beside it.
-    pub(super) fn sticks_out(&self, triangle: u32, side: usize) -> bool {
+    pub(super) fn is_exposed(&self, triangle: u32, side: usize) -> bool {
         if self.inward(triangle, side).is_some() {
             return false;
         }
@@ -98,8 +98,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
             spans.push(span.unwrap_or([N::ZERO, line.length]));
         });
         let mut covered = N::ZERO;
-        while covered < line.length - line.room {
-            let reaching = spans.iter().filter(|span| span[0] <= covered + line.room);
+        while covered < line.length - line.slack {
+            let reaching = spans.iter().filter(|span| span[0] <= covered + line.slack);
             let next = reaching.fold(covered, |next, span| max(next, span[1]));
             if next <= covered {
                 return true;
@@ -116,7 +116,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         for &triangle in self.topology.joints.parts(joint) {
             let at = self.corner_at(triangle, joint);
             let opposite = (at + 1) % 3;
-            let has_area = self.is_plain(triangle) || self.inward(triangle, opposite).is_some();
+            let has_area =
+                self.has_certain_area(triangle) || self.inward(triangle, opposite).is_some();
             if has_area {
                 continue;
             }
@@ -125,9 +126,9 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
             if is_middle {
                 let corners = self.corners(triangle);
                 let line = SideLine::of(&corners, opposite);
-                let [place, _] = line.span(&[corners[at], corners[at]]);
+                let [position, _] = line.span(&[corners[at], corners[at]]);
                 let is_within =
-                    |[from, to]: [N; 2]| from + line.room < place && place < to - line.room;
+                    |[from, to]: [N; 2]| from + line.slack < position && position < to - line.slack;
                 self.each_along(triangle, opposite, |other, inward, span| {
                     let found = Some(inward).filter(|_| span.is_none_or(is_within));
                     found.into_iter().for_each(|inward| visit(other, inward));
@@ -138,8 +139,8 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 
     /// Whether the triangle is tall enough that its area is beyond doubt; false leaves the area
     /// undecided.
-    pub(super) fn is_plain(&self, triangle: u32) -> bool {
-        self.bends.is_plain(triangle, || is_tall(&self.corners(triangle)))
+    pub(super) fn has_certain_area(&self, triangle: u32) -> bool {
+        self.bends.has_certain_area(triangle, || is_tall(&self.corners(triangle)))
     }
 
     /// The unit vectors along the sides of a triangle that leave a joint.
@@ -182,7 +183,7 @@ pub(in crate::shape) fn inward_of<N: Real, const D: usize>(
     // The height over the longest side is the smallest and decides whether there is an area.
     let longest = max(length, max(from_a, from_b));
     let least = height * (length / longest);
-    let has_area = least > noise(corners, longest);
+    let has_area = least > rounding_error(corners, longest);
     has_area.then(|| unit_or(&without(&inward), inward))
 }
 
@@ -208,15 +209,15 @@ struct SideLine<N: Real, const D: usize> {
     along: Vector<N, D>,
     length: N,
     /// Lengths up to this are rounding errors.
-    room: N,
+    slack: N,
 }
 
 impl<N: Real, const D: usize> SideLine<N, D> {
     fn of(corners: &[Point<N, D>; 3], side: usize) -> Self {
         let from = corners[side];
-        let way = corners[(side + 1) % 3] - from;
-        let (along, length) = unit(&way).unwrap_or((Vector::<N, D>::zeros(), N::ZERO));
-        Self { from, along, length, room: noise(corners, length) }
+        let edge = corners[(side + 1) % 3] - from;
+        let (along, length) = unit(&edge).unwrap_or((Vector::<N, D>::zeros(), N::ZERO));
+        Self { from, along, length, slack: rounding_error(corners, length) }
     }
 
     /// The interval of a segment along the line, from the beginning of the side.
@@ -228,7 +229,7 @@ impl<N: Real, const D: usize> SideLine<N, D> {
     /// Whether an interval of the line has more than a point in common with the side; true for a
     /// side without length.
     fn overlaps(&self, span: &[N; 2]) -> bool {
-        self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.room
+        self.length == N::ZERO || min(span[1], self.length) - max(span[0], N::ZERO) > self.slack
     }
 }
 
@@ -240,7 +241,7 @@ fn crossed_before<S>(crossed: &[(u32, usize, S)], triangle: u32, side: usize) ->
 
 /// The height over its longest side up to which a triangle has no area: the rounding error of the
 /// difference of coordinates, and of the coordinates themselves.
-pub(super) fn noise<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
+pub(super) fn rounding_error<N: Real, const D: usize>(corners: &[Point<N, D>; 3], longest: N) -> N {
     let mut farthest = N::ZERO;
     for corner in corners {
         farthest = max(farthest, max_component(&corner.coords));

@@ -15,8 +15,8 @@ const BITS: usize = 4;
 const UNKNOWN: u16 = 0;
 const UNCLEAR: u16 = 4;
 /// Bits above the sides: the triangle is known to be plain, or known not to be.
-const PLAIN: u16 = 1 << 12;
-const NOT_PLAIN: u16 = 1 << 13;
+const CERTAIN_AREA: u16 = 1 << 12;
+const UNCERTAIN_AREA: u16 = 1 << 13;
 
 /// The [`BendShape`] of each triangle's sides, and which triangles are plain.
 ///
@@ -65,15 +65,18 @@ impl Bends {
     }
 
     /// Returns whether the triangle is plain, from the cache or by `find`.
-    pub(super) fn is_plain(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
+    pub(super) fn has_certain_area(&self, triangle: u32, find: impl FnOnce() -> bool) -> bool {
         let kept = &self.sides[triangle as usize];
         let all = kept.load(Ordering::Relaxed);
-        if all & (PLAIN | NOT_PLAIN) == 0 {
-            let is_plain = find();
-            kept.store(all | if is_plain { PLAIN } else { NOT_PLAIN }, Ordering::Relaxed);
-            return is_plain;
+        if all & (CERTAIN_AREA | UNCERTAIN_AREA) == 0 {
+            let has_certain_area = find();
+            kept.store(
+                all | if has_certain_area { CERTAIN_AREA } else { UNCERTAIN_AREA },
+                Ordering::Relaxed,
+            );
+            return has_certain_area;
         }
-        all & PLAIN != 0
+        all & CERTAIN_AREA != 0
     }
 }
 
@@ -109,12 +112,19 @@ mod tests {
         for (at, shape) in all.into_iter().cycle().take(6).enumerate() {
             let (triangle, side) = (u32::from(at > 2), at % 3);
             for kept in [&bends, &copy] {
-                let again = kept.at(triangle, side, || panic!("asked twice"));
+                let again = kept.at(triangle, side, || panic!("computed twice"));
                 assert_eq!(again, shape, "as kept");
             }
         }
-        assert!(bends.is_plain(1, || true) && bends.is_plain(1, || panic!("asked twice")), "kept");
-        assert!(!bends.is_plain(0, || false) && !bends.is_plain(0, || true), "kept");
+        assert!(
+            bends.has_certain_area(1, || true)
+                && bends.has_certain_area(1, || panic!("computed twice")),
+            "kept"
+        );
+        assert!(
+            !bends.has_certain_area(0, || false) && !bends.has_certain_area(0, || true),
+            "kept"
+        );
         bends.clear();
         assert_eq!(bends.at(0, 0, || None), None, "found anew");
     }

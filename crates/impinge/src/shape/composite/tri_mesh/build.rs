@@ -108,8 +108,8 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         let vertices: Vec<_> = self.vertices.iter().map(scaled).collect();
         check_vertices(&vertices)?;
         let is_mirrored = scale.iter().filter(|&&x| x < N::ZERO).count() % 2 == 1;
-        let turned = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
-        let triangles = self.triangles.iter().map(turned).collect();
+        let reversed = |&[a, b, c]: &[u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
+        let triangles = self.triangles.iter().map(reversed).collect();
         Ok(self.with(vertices, triangles))
     }
 

@@ -83,7 +83,7 @@ impl<N: Real> MeshByDimension<N, 2> for Here {
         feature: FeatureId,
         normal: &Vector<N, 2>,
     ) -> bool {
-        mesh.admits_in_plane(part, feature, normal)
+        mesh.admits_2d(part, feature, normal)
     }
 
     fn mesh_admits_in_turn(
@@ -92,8 +92,8 @@ impl<N: Real> MeshByDimension<N, 2> for Here {
         feature: FeatureId,
         [first, second]: [&Vector<N, 2>; 2],
     ) -> [bool; 2] {
-        let is_first = mesh.admits_in_plane(part, feature, first);
-        [is_first, !is_first && mesh.admits_in_plane(part, feature, second)]
+        let is_first = mesh.admits_2d(part, feature, first);
+        [is_first, !is_first && mesh.admits_2d(part, feature, second)]
     }
 
     fn mesh_corner_admits_in_turn(
@@ -114,7 +114,7 @@ impl<N: Real> MeshByDimension<N, 2> for Here {
         part: u32,
         normal: &Vector<N, 2>,
     ) -> Option<Vector<N, 2>> {
-        mesh.snapped_in_plane(part, normal)
+        mesh.snapped_2d(part, normal)
     }
 
     fn mesh_winds_around(_: &TriMesh<N, 2>, _: &Point<N, 2>) -> bool {
@@ -150,7 +150,7 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
         feature: FeatureId,
         normal: &Vector<N, 3>,
     ) -> bool {
-        mesh.admits_in_space(part, feature, normal)
+        mesh.admits_3d(part, feature, normal)
     }
 
     fn mesh_admits_in_turn(
@@ -159,7 +159,7 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
         feature: FeatureId,
         normals: [&Vector<N, 3>; 2],
     ) -> [bool; 2] {
-        mesh.admits_in_turn_in_space(part, feature, normals)
+        mesh.admits_in_turn_3d(part, feature, normals)
     }
 
     fn mesh_corner_admits_in_turn(
@@ -173,7 +173,7 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
     }
 
     fn mesh_face_seams(mesh: &TriMesh<N, 3>, part: u32) -> Option<FaceSeams<N>> {
-        mesh.face_seams_in_space(part)
+        mesh.face_seams_3d(part)
     }
 
     fn mesh_snapped(
@@ -181,7 +181,7 @@ impl<N: Real> MeshByDimension<N, 3> for Here {
         part: u32,
         normal: &Vector<N, 3>,
     ) -> Option<Vector<N, 3>> {
-        mesh.snapped_in_space(part, normal)
+        mesh.snapped_3d(part, normal)
     }
 
     fn mesh_winds_around(mesh: &TriMesh<N, 3>, point: &Point<N, 3>) -> bool {

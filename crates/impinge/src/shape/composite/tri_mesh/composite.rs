@@ -128,7 +128,7 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
         self.is_solid()
     }
 
-    fn has_plain_seams(&self) -> bool {
+    fn has_regular_seams(&self) -> bool {
         !(self.keeps_internal_edges || self.topology.is_moved)
     }
 }
@@ -174,16 +174,16 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     let size = BoundingSphere::around_box(bounds).farthest_from(&Point::origin());
     let corner = |&vertex: &u32| vertices[vertex as usize].coords;
     if parts.len() * K <= MAX_PLACED {
-        let turned = Aabb::around_all(
+        let rotated = Aabb::around_all(
             parts.as_flattened().iter().map(|vertex| Point::from(pose.vector(&corner(vertex)))),
         );
         // A non-finite pose gives no box; then the box is unbounded.
-        return turned.map_or_else(Aabb::unbounded, |turned| {
-            Aabb::of_turned(turned.mins().coords, turned.maxs().coords, size, pose)
+        return rotated.map_or_else(Aabb::unbounded, |rotated| {
+            Aabb::of_rotated(rotated.mins().coords, rotated.maxs().coords, size, pose)
         });
     }
-    let reach = |direction: Vector<N, D>| {
-        tree.reach_along(direction, |part| {
+    let extent = |direction: Vector<N, D>| {
+        tree.extent_along(direction, |part| {
             let along = parts[part as usize].iter().map(|vertex| corner(vertex).dot(&direction));
             along.fold(-N::INFINITY, max)
         })
@@ -191,9 +191,9 @@ pub(in crate::shape) fn aabb_at<N: Space<D>, const D: usize, const K: usize>(
     let (mut low, mut high) = (Vector::<N, D>::zeros(), Vector::<N, D>::zeros());
     for axis in 0..D {
         let direction = pose.rotation.row(axis).transpose();
-        (low[axis], high[axis]) = (-reach(-direction), reach(direction));
+        (low[axis], high[axis]) = (-extent(-direction), extent(direction));
     }
-    Aabb::of_turned(low, high, size, pose)
+    Aabb::of_rotated(low, high, size, pose)
 }
 
 /// The sphere about the centre of a box that contains some vertices; its radius exceeds the

@@ -7,12 +7,7 @@ use crate::shape::surface::seam::{is_flat, slack};
 
 impl<N: Real> TriMesh<N, 2> {
     /// [`Surface::admits`](crate::shape::Surface::admits) in 2D.
-    pub(super) fn admits_in_plane(
-        &self,
-        part: u32,
-        feature: FeatureId,
-        normal: &Vector<N, 2>,
-    ) -> bool {
+    pub(super) fn admits_2d(&self, part: u32, feature: FeatureId, normal: &Vector<N, 2>) -> bool {
         if self.keeps_internal_edges {
             return true;
         }
@@ -31,11 +26,7 @@ impl<N: Real> TriMesh<N, 2> {
 
     /// The normal of a border side that is nearest to the given normal, if within a right angle;
     /// `None` if the triangle has no such side, as inside the shape.
-    pub(super) fn snapped_in_plane(
-        &self,
-        part: u32,
-        normal: &Vector<N, 2>,
-    ) -> Option<Vector<N, 2>> {
+    pub(super) fn snapped_2d(&self, part: u32, normal: &Vector<N, 2>) -> Option<Vector<N, 2>> {
         let open = (0..3).filter_map(|side| self.open_normal(part, side));
         let facing = open.filter(|own| own.dot(normal) > N::ZERO);
         facing.reduce(|best, own| if own.dot(normal) > best.dot(normal) { own } else { best })
@@ -61,7 +52,7 @@ impl<N: Real> TriMesh<N, 2> {
             // A triangle without area is a segment, which has both sides.
             None => {
                 self.inward(part, side).is_none()
-                    && (self.is_open_along(part, side, normal) || self.sticks_out(part, side))
+                    && (self.is_open_along(part, side, normal) || self.is_exposed(part, side))
             }
         }
     }

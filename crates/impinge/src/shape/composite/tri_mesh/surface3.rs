@@ -1,11 +1,11 @@
 //! The seam rule of meshes in 3D: the normals at a face, an edge or a vertex.
 
 use super::TriMesh;
-use super::around::noise;
+use super::around::rounding_error;
 use crate::math::{Point, Real, Vector, cross, max, max_component, unit};
 use crate::shape::solids::segment::length_of;
 use crate::shape::surface::bend::{Bend, BendShape};
-use crate::shape::surface::seam::{CornerWays, Seam, is_across, slack};
+use crate::shape::surface::seam::{CornerEdges, Seam, is_across, slack};
 use crate::shape::{FaceSeams, FeatureId};
 
 /// The unit normal on the side from which the corners run counter-clockwise; zero without area.
@@ -20,18 +20,13 @@ pub(in crate::shape) fn normal_of<N: Real>(corners: &[Point<N, 3>; 3]) -> Vector
     let scale = lengths[longest].power_of_two_below();
     let found = unit(&cross(&(sides[0] / scale), &(sides[1] / scale)));
     let height = |area: N| area * scale / (lengths[longest] / scale);
-    let found = found.filter(|&(_, area)| height(area) > noise(corners, lengths[longest]));
+    let found = found.filter(|&(_, area)| height(area) > rounding_error(corners, lengths[longest]));
     found.map_or_else(Vector::<N, 3>::zeros, |(normal, _)| normal)
 }
 
 impl<N: Real> TriMesh<N, 3> {
     /// [`Surface::admits`](crate::shape::Surface::admits) in 3D.
-    pub(super) fn admits_in_space(
-        &self,
-        part: u32,
-        feature: FeatureId,
-        normal: &Vector<N, 3>,
-    ) -> bool {
+    pub(super) fn admits_3d(&self, part: u32, feature: FeatureId, normal: &Vector<N, 3>) -> bool {
         if self.keeps_internal_edges {
             return !self.is_one_sided || self.cosine(part, normal) >= -slack::<N>();
         }
@@ -45,9 +40,9 @@ impl<N: Real> TriMesh<N, 3> {
             }
     }
 
-    /// [`Self::admits_in_space`] for two normals, the second only if the first is rejected; the
+    /// [`Self::admits_3d`] for two normals, the second only if the first is rejected; the
     /// neighbourhood is evaluated once.
-    pub(super) fn admits_in_turn_in_space(
+    pub(super) fn admits_in_turn_3d(
         &self,
         part: u32,
         feature: FeatureId,
@@ -64,18 +59,14 @@ impl<N: Real> TriMesh<N, 3> {
                 [is_first, !is_first && (is_free(normals[1]) || admits(normals[1]))]
             }
             _ => {
-                let is_first = self.admits_in_space(part, feature, normals[0]);
-                [is_first, !is_first && self.admits_in_space(part, feature, normals[1])]
+                let is_first = self.admits_3d(part, feature, normals[0]);
+                [is_first, !is_first && self.admits_3d(part, feature, normals[1])]
             }
         }
     }
 
     /// [`Surface::snapped`](crate::shape::Surface::snapped) in 3D; `None` without area.
-    pub(super) fn snapped_in_space(
-        &self,
-        part: u32,
-        normal: &Vector<N, 3>,
-    ) -> Option<Vector<N, 3>> {
+    pub(super) fn snapped_3d(&self, part: u32, normal: &Vector<N, 3>) -> Option<Vector<N, 3>> {
         let own = self.normal(part)?;
         let is_front = self.is_one_sided || own.dot(normal) >= N::ZERO;
         Some(if is_front { own } else { -own })
@@ -87,8 +78,7 @@ impl<N: Real> TriMesh<N, 3> {
 
     /// Whether `normal` is the triangle's own normal, on a side that it has.
     fn is_own_normal(&self, part: u32, normal: &Vector<N, 3>) -> bool {
-        self.snapped_in_space(part, normal)
-            .is_some_and(|own| max_component(&(own - normal)) <= slack())
+        self.snapped_3d(part, normal).is_some_and(|own| max_component(&(own - normal)) <= slack())
     }
 
     fn edge_admits(&self, part: u32, side: usize, normal: &Vector<N, 3>) -> bool {
@@ -128,13 +118,13 @@ impl<N: Real> TriMesh<N, 3> {
         let edge = corners[(side + 1) % 3] - corners[side];
         let mut seam = Seam::of_faces(self.normals[part as usize], normal).along(&edge);
         let mut add = |triangle: u32, inward: Vector<N, 3>| {
-            seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
+            seam.add_face(|direction| inward.dot(direction), &self.normals[triangle as usize]);
         };
         if let Some(inward) = self.inward(part, side) {
             add(part, inward);
         }
         self.each_beyond(part, side, add);
-        is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.sticks_out(part, side))
+        is_across(&edge, normal) && (seam.admits(self.is_one_sided) || self.is_exposed(part, side))
     }
 
     /// The rise, along a vector of length at most 1, of the steeper of the two sides that leave a
@@ -160,47 +150,49 @@ impl<N: Real> TriMesh<N, 3> {
     ) -> bool {
         let (joint, own) = (self.joint_at(part, corner), &self.normals[part as usize]);
         let around = self.topology.joints.parts(joint);
-        match self.ways_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
+        match self.edges_around(part, corner, normal).admit((own, is_bent), self.is_one_sided) {
             Some(false) => return false,
             // Triangles without area may have others beyond them.
-            Some(true) if around.iter().all(|&triangle| self.is_plain(triangle)) => return true,
+            Some(true) if around.iter().all(|&triangle| self.has_certain_area(triangle)) => {
+                return true;
+            }
             _ => {}
         }
         let mut seam = Seam::of_faces(*own, normal);
         for &triangle in around {
             let front = &self.normals[triangle as usize];
-            seam.add_face(|way| self.rise_from(triangle, joint, way), front);
+            seam.add_face(|direction| self.rise_from(triangle, joint, direction), front);
         }
         self.each_beyond_joint(joint, |triangle, inward| {
-            seam.add_face(|way| inward.dot(way), &self.normals[triangle as usize]);
+            seam.add_face(|direction| inward.dot(direction), &self.normals[triangle as usize]);
         });
         seam.admits(self.is_one_sided)
     }
 
     /// Collects the sides that leave a corner, those of `part` first, until they reject the normal.
-    fn ways_around<'n>(
+    fn edges_around<'n>(
         &self,
         part: u32,
         corner: usize,
         normal: &'n Vector<N, 3>,
-    ) -> CornerWays<'n, N, 3> {
-        let (joint, mut ways) = (self.joint_at(part, corner), CornerWays::new(normal));
+    ) -> CornerEdges<'n, N, 3> {
+        let (joint, mut edges) = (self.joint_at(part, corner), CornerEdges::new(normal));
         let mut look = |triangle: u32, at: usize| {
             let corners = self.corners(triangle);
             for turn in [1, 2] {
-                ways.add(&(corners[(at + turn) % 3] - corners[at]));
+                edges.add(&(corners[(at + turn) % 3] - corners[at]));
             }
-            ways.is_refused()
+            edges.is_refused()
         };
         if !look(part, corner) {
             let mut around = self.topology.joints.parts(joint).iter();
             around.any(|&other| other != part && look(other, self.corner_at(other, joint)));
         }
-        ways
+        edges
     }
 
     /// See [`OwnSurface::face_seams`](crate::shape::surface::own_surface::OwnSurface::face_seams).
-    pub(super) fn face_seams_in_space(&self, part: u32) -> Option<FaceSeams<N>> {
+    pub(super) fn face_seams_3d(&self, part: u32) -> Option<FaceSeams<N>> {
         let front = self.normal(part).filter(|_| !self.keeps_internal_edges)?;
         let (bend, is_rim) =
             (|side| self.bend_at(part, side), |side| self.topology.is_border(part, side));
@@ -211,17 +203,17 @@ impl<N: Real> TriMesh<N, 3> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::shape::Surface;
     use crate::shape::surface::own_surface::OwnSurface;
 
     /// A rough sheet of triangles.
-    fn sheet(noise: &mut Noise) -> TriMesh<f64, 3> {
-        let place = |at: u32| {
+    fn rough_mesh(random: &mut Xorshift) -> TriMesh<f64, 3> {
+        let position = |at: u32| {
             let [x, z] = [at % 6, at / 6].map(f64::from);
-            Point::<f64, 3>::new(x, 0.4 * noise.next(), z)
+            Point::<f64, 3>::new(x, 0.4 * random.next(), z)
         };
-        let vertices = (0..36).map(place).collect();
+        let vertices = (0..36).map(position).collect();
         let cells = (0..30).filter(|at| at % 6 < 5);
         let triangles = cells.flat_map(|at| [[at, at + 6, at + 7], [at, at + 7, at + 1]]);
         TriMesh::new(vertices, triangles.collect())
@@ -229,13 +221,13 @@ mod tests {
 
     #[test]
     fn two_normals_in_turn_are_as_each_alone() {
-        let (mut noise, mut counts) = (Noise(5), [0; 3]);
-        let (rough, other) = (sheet(&mut noise), sheet(&mut noise).one_sided());
-        let kept = sheet(&mut noise).one_sided().with_internal_edges_kept();
+        let (mut random, mut counts) = (Xorshift(5), [0; 3]);
+        let (rough, other) = (rough_mesh(&mut random), rough_mesh(&mut random).one_sided());
+        let kept = rough_mesh(&mut random).one_sided().with_internal_edges_kept();
         for mesh in [rough, other, kept] {
             for (part, at) in (0..50_u32).flat_map(|part| (0..90_u32).map(move |at| (part, at))) {
                 let front = mesh.normal(part).expect("an area");
-                let aside: Vector<f64, 3> = noise.vector(0.6);
+                let aside: Vector<f64, 3> = random.vector(0.6);
                 let share = [0.0, 1.0, 1.0][at as usize % 3];
                 let far = (front + aside * share).normalize();
                 let near = (front + aside * 0.03).normalize();
@@ -248,6 +240,6 @@ mod tests {
                 counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
             }
         }
-        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 100), "all cases occur: {counts:?}");
     }
 }

@@ -17,7 +17,7 @@ pub(super) struct BestSide<V, M> {
     /// Signed distance along the normal.
     pub(super) gap: V,
     /// Rounding error of lengths of the pair.
-    pub(super) noise: V,
+    pub(super) rounding_error: V,
     /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
 }
@@ -35,7 +35,7 @@ struct AxisSide<V, M> {
 impl<V> Boxes<V, 2> {
     /// Rounding error of lengths of each pair.
     #[inline(always)]
-    fn noise<S: Simd, N: Real>(&self, simd: S) -> V
+    fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
         V: Wide<S, Scalar = N>,
     {
@@ -67,8 +67,8 @@ impl<V> Boxes<V, 2> {
             },
         );
         let gap = is_second.select(second.gap, first.gap);
-        let (noise, is_finite) = (self.noise(simd), is_finite(simd, self));
-        BestSide { is_second, is_y, normal, gap, noise, is_finite }
+        let (rounding_error, is_finite) = (self.rounding_error(simd), is_finite(simd, self));
+        BestSide { is_second, is_y, normal, gap, rounding_error, is_finite }
     }
 
     /// Returns the best side of each box; of equal gaps the one that comes first in the box's
@@ -80,26 +80,26 @@ impl<V> Boxes<V, 2> {
         M: SimdMask<S>,
     {
         let (r, t, zero) = (&self.rotation, &self.translation, V::all(simd, N::ZERO));
-        let leans = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
-        let reach2: [V; 2] = filled(
+        let abs_rotation = [[r[0][0].abs(), r[0][1].abs()], [r[1][0].abs(), r[1][1].abs()]];
+        let extent2: [V; 2] = filled(
             #[inline(always)]
-            |i| dot(&[leans[0][i], leans[1][i]], &self.half2),
+            |i| dot(&[abs_rotation[0][i], abs_rotation[1][i]], &self.half2),
         );
         let gaps: [V; 2] = filled(
             #[inline(always)]
-            |i| t[i].abs() - self.half1[i] - reach2[i],
+            |i| t[i].abs() - self.half1[i] - extent2[i],
         );
         let is = [t[0].simd_ge(zero), t[1].simd_gt(zero)];
         // Ties go by the outline: below, right, above, left. So x is first only for right and
         // above.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & !(is[0] & is[1]));
         let first = side(gaps, is_y, is);
-        let seen = [dot(&r[0], t), dot(&r[1], t)];
+        let offset2 = [dot(&r[0], t), dot(&r[1], t)];
         let gaps: [V; 2] = filled(
             #[inline(always)]
-            |j| seen[j].abs() - self.half2[j] - dot(&leans[j], &self.half1),
+            |j| offset2[j].abs() - self.half2[j] - dot(&abs_rotation[j], &self.half1),
         );
-        let is = [seen[0].simd_gt(zero), seen[1].simd_ge(zero)];
+        let is = [offset2[0].simd_gt(zero), offset2[1].simd_ge(zero)];
         // The side of the second box is opposite to the normal: x is first only for left and below.
         let is_y = gaps[1].simd_gt(gaps[0]) | (gaps[1].simd_eq(gaps[0]) & (is[0] | is[1]));
         (first, side(gaps, is_y, is))

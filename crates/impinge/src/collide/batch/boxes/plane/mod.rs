@@ -8,18 +8,18 @@
 //!
 //!   byte `sides` of a pair, from bit 0 on: lower side is across y, and faces up; upper side is
 //!   across its own y, and on its positive side; lower side is the second box's; upper ends swapped;
-//!   beyond the prediction; slots are filled. `names` encodes bits 0..6 in a code.
+//!   beyond the prediction; slots are filled. `features` encodes bits 0..6 in a code.
 //! ```
 
 mod axis;
-mod names;
+mod features;
 mod sides;
 
-use self::names::SideNames;
+use self::features::SideFeatures;
 use self::sides::BoxSides;
 use super::admit::{Admission, Limits, Slots};
 use super::choose::SlotChoice;
-use super::masks::turned;
+use super::masks::per_pair;
 use super::{Inputs, smaller_size};
 use crate::collide::RawManifold;
 use crate::collide::batch::{Batch, PairQuestion};
@@ -99,13 +99,13 @@ impl<N: Real> Batch<N, 2> for Boxes2 {
     }
 
     #[inline(always)]
-    fn settle<const L: usize>(
+    fn write_manifold<const L: usize>(
         found: &LaneSides<N, L>,
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 2>,
     ) -> bool {
-        found.settle(lane & (L - 1), max_points, raw)
+        found.write_manifold(lane & (L - 1), max_points, raw)
     }
 }
 
@@ -115,27 +115,28 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 2, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
         let axis = boxes.best_side(simd);
-        let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
+        let is_apart =
+            axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.rounding_error);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         let is_apart = bits(is_apart & axis.is_finite);
-        let is_asked = bits(is_near) & inputs.is_usable;
+        let is_candidate = bits(is_near) & inputs.is_usable;
         // Valid for batches that end here.
         self.sides = [0, 0, 0, 0, 0, 0, is_apart, 0];
-        if is_asked == 0 {
+        if is_candidate == 0 {
             return;
         }
-        let sides = BoxSides::meeting(simd, &boxes, &axis);
+        let sides = BoxSides::of_axis(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), sides.tolerance);
         let mut admission = Admission::new(simd, Limits { gap, prediction, sine, tolerance });
         self.at_ends = sides.share(simd, &mut admission, &mut self.slots);
-        let is_built = bits(admission.is_found() & sides.is_fit) & is_asked;
+        let is_built = bits(admission.is_found() & sides.is_fit) & is_candidate;
         self.sides = [
             bits(sides.is_y),
             bits(sides.is_upward),
             bits(sides.is_own_y),
             bits(sides.is_positive),
             bits(axis.is_second),
-            bits(sides.is_turned),
+            bits(sides.is_reversed),
             is_apart,
             is_built,
         ];
@@ -149,7 +150,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
             simd,
             &mut self.slots,
             #[inline(always)]
-            |[place, _], height| sides.point1(simd, &boxes, is_second, place, height),
+            |[coordinate, _], height| sides.point1(simd, &boxes, is_second, coordinate, height),
         );
     }
 
@@ -158,15 +159,15 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
     fn turn(&mut self) {
         let [a, b, c, d] = self.slots.valid;
         let [e, f, g, h] = self.slots.level;
-        self.filled = turned([a, b, c, d, e, f, g, h]);
-        (self.sides, self.at_ends) = (turned(self.sides), turned(self.at_ends));
+        self.filled = per_pair([a, b, c, d, e, f, g, h]);
+        (self.sides, self.at_ends) = (per_pair(self.sides), per_pair(self.at_ends));
     }
 
     /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
-    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
-        let names = SideNames { sides: self.sides[lane], at_ends: self.at_ends[lane] };
-        let (is_apart, is_built) = (names.sides & 64 != 0, names.sides & 128 != 0);
+    fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 2>) -> bool {
+        let features = SideFeatures { sides: self.sides[lane], at_ends: self.at_ends[lane] };
+        let (is_apart, is_built) = (features.sides & 64 != 0, features.sides & 128 != 0);
         if is_apart {
             raw.points.clear();
         } else if is_built {
@@ -181,7 +182,7 @@ impl<N: Real, const L: usize> LaneSides<N, L> {
                 size: self.size[lane],
                 normal: &self.normal,
             };
-            choice.settle(&names, max_points.clamp(1, 2), raw);
+            choice.write_manifold(&features, max_points.clamp(1, 2), raw);
         }
         is_apart | is_built
     }

@@ -35,7 +35,7 @@ pub(super) struct BoxSides<V, M> {
     pub(super) is_own_y: M,
     pub(super) is_positive: M,
     /// Lanes where the end with the smaller place is on the positive side of the upper box.
-    pub(super) is_turned: M,
+    pub(super) is_reversed: M,
     /// Ends of the upper side, the one with the smaller place first.
     ends: [End<V>; 2],
     /// Length of the upper side along the lower one.
@@ -53,7 +53,7 @@ pub(super) struct BoxSides<V, M> {
 #[derive(Clone, Copy)]
 struct End<V> {
     /// Coordinate along the lower side, zero at its middle.
-    place: V,
+    coordinate: V,
     /// Height above the lower side, outward from its box.
     height: V,
 }
@@ -76,7 +76,7 @@ fn on<S: Simd, V: Wide<S>>(is_y: V::Mask, v: &[V; 2]) -> V {
 impl<V, M> BoxSides<V, M> {
     /// Finds both sides from the separating axis.
     #[inline(always)]
-    pub(super) fn meeting<S: Simd, N: Real>(
+    pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,
         boxes: &Boxes<V, 2>,
         axis: &BestSide<V, M>,
@@ -98,7 +98,7 @@ impl<V, M> BoxSides<V, M> {
         let upper = Upper::facing(simd, boxes, axis, is_upward, level);
         let half = is_y.select(half[0], half[1]);
         let (tolerance, length) =
-            (tolerance(simd, boxes), upper.ends[1].place - upper.ends[0].place);
+            (tolerance(simd, boxes), upper.ends[1].coordinate - upper.ends[0].coordinate);
         let shortest = (half + half).smaller(length);
         let is_long = shortest.simd_gt(lit::<S, N, V>(simd, 8.0) * tolerance);
         Self {
@@ -108,7 +108,7 @@ impl<V, M> BoxSides<V, M> {
             half,
             is_own_y: upper.is_own_y,
             is_positive: upper.is_positive,
-            is_turned: upper.is_turned,
+            is_reversed: upper.is_reversed,
             ends: upper.ends,
             length,
             is_corner: !upper.is_aligned,
@@ -145,7 +145,7 @@ impl<V, M> BoxSides<V, M> {
         }
         let (mut at_ends, [near, far], [low, high]) = ([0; 2 * SLOTS], &above, &below);
         for (slot, found) in [near, far, low, high].into_iter().enumerate() {
-            let flat = [found.end.place, V::all(simd, N::ZERO)];
+            let flat = [found.end.coordinate, V::all(simd, N::ZERO)];
             admission.store(simd, slots, slot, &flat, found.end.height, found.is_inside);
             at_ends[2 * slot] = bits(found.at_end[0]);
             at_ends[2 * slot + 1] = bits(found.at_end[1]);
@@ -162,7 +162,7 @@ impl<V, M> BoxSides<V, M> {
         simd: S,
         boxes: &Boxes<V, 2>,
         is_second: M,
-        place: V,
+        coordinate: V,
         height: V,
     ) -> [V; 2]
     where
@@ -171,7 +171,7 @@ impl<V, M> BoxSides<V, M> {
     {
         let rise = self.is_upward.select(height, -height);
         let level = self.level + is_second.select(rise, V::all(simd, N::ZERO));
-        let own = [self.is_y.select(place, level), self.is_y.select(level, place)];
+        let own = [self.is_y.select(coordinate, level), self.is_y.select(level, coordinate)];
         let ([x, y], shift) = (&boxes.rotation, &boxes.translation);
         filled(
             #[inline(always)]
@@ -190,22 +190,22 @@ impl<V, M> BoxSides<V, M> {
         M: SimdMask<S>,
     {
         let end = self.ends[end];
-        self.beside(simd, end, end.place + self.half, self.half + self.half)
+        self.beside(simd, end, end.coordinate + self.half, self.half + self.half)
     }
 
     /// Compares an end of the lower side with the upper one.
     #[inline(always)]
-    fn below<S: Simd, N: Real>(&self, simd: S, place: V) -> SideCandidate<V, M>
+    fn below<S: Simd, N: Real>(&self, simd: S, coordinate: V) -> SideCandidate<V, M>
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
     {
         let (zero, one) = (V::all(simd, N::ZERO), V::all(simd, N::ONE));
-        let along = place - self.ends[0].place;
+        let along = coordinate - self.ends[0].coordinate;
         let share = (along / self.length).larger(zero).smaller(one);
         let (low, high) = (self.ends[0].height, self.ends[1].height);
         let height = low + (high - low) * share;
-        self.beside(simd, End { place, height }, along, self.length)
+        self.beside(simd, End { coordinate, height }, along, self.length)
     }
 
     /// Compares an end with the other side, of the given length, at the coordinate `along` on it.
@@ -234,7 +234,7 @@ struct Upper<V, M> {
     /// Masks and ends as in [`BoxSides`].
     is_own_y: M,
     is_positive: M,
-    is_turned: M,
+    is_reversed: M,
     ends: [End<V>; 2],
     is_second_lower: M,
     is_aligned: M,
@@ -264,9 +264,9 @@ impl<V, M> Upper<V, M> {
             },
         );
         let is_own_y = facing[1].abs().simd_gt(facing[0].abs());
-        let (across, lean) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
+        let (across, sine) = (on(is_own_y, &facing), is_own_y.select(facing[0], facing[1]));
         // The limit of supporting features: `FACING_SINE_SQUARED`.
-        let is_aligned = (lean * lean).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
+        let is_aligned = (sine * sine).simd_le(lit::<S, N, V>(simd, FACING_SINE_SQUARED));
         let zero = V::all(simd, N::ZERO);
         let is_positive = across.simd_gt(zero);
         let half = either(axis.is_second, &boxes.half1, &boxes.half2);
@@ -286,19 +286,22 @@ impl<V, M> Upper<V, M> {
                     },
                 );
                 let height = on(axis.is_y, &point) - level;
-                let place = axis.is_y.select(point[0], point[1]);
-                End { place, height: is_upward.select(height, -height) }
+                let coordinate = axis.is_y.select(point[0], point[1]);
+                End { coordinate, height: is_upward.select(height, -height) }
             },
         );
-        let is_turned = far.place.simd_lt(near.place);
-        let ends = [in_order(is_turned, far, near), in_order(is_turned, near, far)];
+        let is_reversed = far.coordinate.simd_lt(near.coordinate);
+        let ends = [in_order(is_reversed, far, near), in_order(is_reversed, near, far)];
         // Both hold, or neither: the far end faces the other box, the ends are exchanged.
-        let is_second_lower = is_turned ^ !lean.simd_lt(zero);
-        Self { is_own_y, is_positive, is_turned, ends, is_second_lower, is_aligned }
+        let is_second_lower = is_reversed ^ !sine.simd_lt(zero);
+        Self { is_own_y, is_positive, is_reversed, ends, is_second_lower, is_aligned }
     }
 }
 
 #[inline(always)]
 fn in_order<S: Simd, V: Wide<S>>(is: V::Mask, one: End<V>, other: End<V>) -> End<V> {
-    End { place: is.select(one.place, other.place), height: is.select(one.height, other.height) }
+    End {
+        coordinate: is.select(one.coordinate, other.coordinate),
+        height: is.select(one.height, other.height),
+    }
 }

@@ -18,7 +18,7 @@ pub(super) struct BestAxis<V, M> {
     /// Signed distance along the normal.
     pub(super) gap: V,
     /// Rounding error of lengths of the pair.
-    pub(super) noise: V,
+    pub(super) rounding_error: V,
     /// The sum of all numbers of the pose is finite.
     pub(super) is_finite: M,
 }
@@ -44,7 +44,7 @@ pub(super) fn which<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, number: V
 
 /// Absolute values of the rotation.
 #[inline(always)]
-fn leans<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
+fn abs_rotation<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
     filled(
         #[inline(always)]
         |j| [rotation[j][0].abs(), rotation[j][1].abs(), rotation[j][2].abs()],
@@ -54,7 +54,7 @@ fn leans<S: Simd, V: Wide<S>>(rotation: &[[V; 3]; 3]) -> [[V; 3]; 3] {
 impl<V> Boxes<V, 3> {
     /// Rounding error of lengths of each pair.
     #[inline(always)]
-    fn noise<S: Simd, N: Real>(&self, simd: S) -> V
+    fn rounding_error<S: Simd, N: Real>(&self, simd: S) -> V
     where
         V: Wide<S, Scalar = N>,
     {
@@ -70,10 +70,11 @@ impl<V> Boxes<V, 3> {
     where
         V: Wide<S, Scalar = N>,
     {
-        let leans = leans(&self.rotation);
-        let (face, is_second, gap) = self.best_face(simd, &leans);
-        let noise = self.noise(simd);
-        let (edges, bound) = self.best_edges(simd, &leans, (gap + noise).larger(gap));
+        let abs_rotation = abs_rotation(&self.rotation);
+        let (face, is_second, gap) = self.best_face(simd, &abs_rotation);
+        let rounding_error = self.rounding_error(simd);
+        let (edges, bound) =
+            self.best_edges(simd, &abs_rotation, (gap + rounding_error).larger(gap));
         // The axes are negative if no pair of edges is better.
         let is_edges = V::all(simd, N::ZERO).simd_le(edges[0]);
         let is_second = is_second & !is_edges;
@@ -81,20 +82,20 @@ impl<V> Boxes<V, 3> {
         let normal = self.direction(simd, ends, (is_second, is_edges));
         let is_finite = is_finite(simd, self);
         let gap = is_edges.select(bound, gap);
-        BestAxis { face, is_second, is_edges, normal, gap, noise, is_finite }
+        BestAxis { face, is_second, is_edges, normal, gap, rounding_error, is_finite }
     }
 
     /// Returns the face with the largest gap: its axis, whether it is the second box's, and the
     /// gap.
     #[inline(always)]
-    fn best_face<S: Simd, N: Real>(&self, simd: S, leans: &[[V; 3]; 3]) -> (V, V::Mask, V)
+    fn best_face<S: Simd, N: Real>(&self, simd: S, abs_rotation: &[[V; 3]; 3]) -> (V, V::Mask, V)
     where
         V: Wide<S, Scalar = N>,
     {
         let (t, number) = (&self.translation, [N::ZERO, N::ONE, N::TWO]);
         let (mut best, mut gap) = (V::all(simd, N::ZERO), V::all(simd, N::ZERO));
         for i in 0..3 {
-            let row = [leans[0][i], leans[1][i], leans[2][i]];
+            let row = [abs_rotation[0][i], abs_rotation[1][i], abs_rotation[2][i]];
             let found = t[i].abs() - self.half1[i] - dot(&row, &self.half2);
             let is_better = found.simd_gt(gap);
             best = is_better.select(V::all(simd, number[i]), best);
@@ -103,7 +104,7 @@ impl<V> Boxes<V, 3> {
         let mut is_second = V::all(simd, N::ONE).simd_lt(V::all(simd, N::ZERO));
         for j in 0..3 {
             let along = dot(&self.rotation[j], t);
-            let found = along.abs() - dot(&leans[j], &self.half1) - self.half2[j];
+            let found = along.abs() - dot(&abs_rotation[j], &self.half1) - self.half2[j];
             let is_better = found.simd_gt(gap);
             best = is_better.select(V::all(simd, number[j]), best);
             gap = is_better.select(found, gap);
@@ -118,7 +119,7 @@ impl<V> Boxes<V, 3> {
     fn best_edges<S: Simd, N: Real>(
         &self,
         simd: S,
-        leans: &[[V; 3]; 3],
+        abs_rotation: &[[V; 3]; 3],
         mut bound: V,
     ) -> ([V; 2], V)
     where
@@ -133,13 +134,14 @@ impl<V> Boxes<V, 3> {
             for j in 0..3 {
                 let (j1, j2) = ((j + 1) % 3, (j + 2) % 3);
                 let along = t[i2] * r[j][i1] - t[i1] * r[j][i2];
-                let reach1 = self.half1[i1] * leans[j][i2] + self.half1[i2] * leans[j][i1];
+                let extent1 =
+                    self.half1[i1] * abs_rotation[j][i2] + self.half1[i2] * abs_rotation[j][i1];
                 // Components of the product on the other axes of the second box; see
                 // `BoxPair::best_edges`.
-                let lean1 = (r[j][i1] * r[j1][i2] - r[j][i2] * r[j1][i1]).abs();
-                let lean2 = (r[j][i1] * r[j2][i2] - r[j][i2] * r[j2][i1]).abs();
-                let reach2 = self.half2[j1] * lean1 + self.half2[j2] * lean2;
-                let slack = along.abs() - reach1 - reach2;
+                let product1 = (r[j][i1] * r[j1][i2] - r[j][i2] * r[j1][i1]).abs();
+                let product2 = (r[j][i1] * r[j2][i2] - r[j][i2] * r[j2][i1]).abs();
+                let extent2 = self.half2[j1] * product1 + self.half2[j2] * product2;
+                let slack = along.abs() - extent1 - extent2;
                 let sine = (r[j][i1] * r[j][i1] + r[j][i2] * r[j][i2]).sqrt();
                 let is_better = !slack.simd_le(bound.smaller(zero))
                     & sine.simd_gt(least)

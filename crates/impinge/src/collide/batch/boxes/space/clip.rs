@@ -12,13 +12,13 @@
 //!             6 -------------- 7
 //! ```
 //!
-//! `valid` says which of the 24 exist, so nothing is moved until all is known. `names` has the same
+//! `valid` says which of the 24 exist, so nothing is moved until all is known. `features` has the same
 //! order.
 
 use super::super::admit::{Admission, Limits, Slots};
 use super::SLOTS;
 use super::faces::{FacesInLanes, cross};
-use super::shown::ShownFaces;
+use super::supporting::SupportingParts;
 use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
@@ -45,7 +45,7 @@ impl Corners {
 }
 
 /// A corner of one face, relative to the other face.
-struct CornerPlace<V, M> {
+struct CornerPosition<V, M> {
     /// Coordinates along the axes `u` and `v` of the rectangle.
     flat: [V; 2],
     /// Height above the rectangle along the normal.
@@ -73,7 +73,7 @@ pub(super) struct Clip<'a, S, N: Real, V, M, const L: usize> {
     simd: S,
     faces: &'a FacesInLanes<V, M>,
     /// Supporting features of the rectangle and of the parallelogram.
-    shown: [ShownFaces<M>; 2],
+    supporting: [SupportingParts<M>; 2],
     /// Collects heights and level candidates while the slots are filled.
     admission: Admission<V>,
     slots: &'a mut Slots<N, 3, SLOTS, L>,
@@ -98,8 +98,8 @@ where
         corners: &'a mut Corners,
         is_partial: bool,
     ) -> Self {
-        let (shown, admission) = (faces.shown(simd), Admission::new(simd, *limits));
-        Self { simd, faces, shown, admission, slots, corners, is_partial }
+        let (supporting, admission) = (faces.supporting(simd), Admission::new(simd, *limits));
+        Self { simd, faces, supporting, admission, slots, corners, is_partial }
     }
 
     /// Fills the slots with the candidates.
@@ -137,21 +137,22 @@ where
 
     /// Compares a corner of the parallelogram with the rectangle.
     #[inline(always)]
-    fn above(&self, corner: usize) -> CornerPlace<V, M> {
+    fn above(&self, corner: usize) -> CornerPosition<V, M> {
         let (flat, height) = self.arm_end(SIGNS[corner]);
         let across = &self.faces.across;
         // Distances inside the sides of the rectangle, along both of its axes.
         let inside = [across[0] - flat[0].abs(), across[1] - flat[1].abs()];
-        let mut place = self.place((flat, height), inside, flat);
+        let mut position = self.compare((flat, height), inside, flat);
         if self.is_partial {
-            place.is_inside &= self.shown[0].is_whole() & self.shown[1].has_corner(corner);
+            position.is_inside &=
+                self.supporting[0].is_whole() & self.supporting[1].has_corner(corner);
         }
-        place
+        position
     }
 
     /// Compares a corner of the rectangle with the parallelogram.
     #[inline(always)]
-    fn below(&self, corner: usize) -> CornerPlace<V, M> {
+    fn below(&self, corner: usize) -> CornerPosition<V, M> {
         let signs = SIGNS[corner];
         let (faces, one) = (self.faces, V::all(self.simd, N::ONE));
         let flat = [signed(faces.across[0], signs[0]), signed(faces.across[1], signs[1])];
@@ -162,28 +163,28 @@ where
         let inside =
             [(one - along[0].abs()) * faces.widths[0], (one - along[1].abs()) * faces.widths[1]];
         let height = faces.height + along[0] * faces.climbs[0] + along[1] * faces.climbs[1];
-        let mut place = self.place((flat, height), inside, along);
+        let mut position = self.compare((flat, height), inside, along);
         if self.is_partial {
-            place.is_inside &=
-                self.shown[0].is_whole() & self.shown[1].has_place(&place.at_end, &place.beyond);
+            position.is_inside &= self.supporting[0].is_whole()
+                & self.supporting[1].has_position(&position.at_end, &position.beyond);
         }
-        place
+        position
     }
 
     /// Compares a point with the other face, whose ends it lies `inside` of along both axes, with
     /// the coordinates `coordinates` on them.
     #[inline(always)]
-    fn place(
+    fn compare(
         &self,
         (flat, height): ([V; 2], V),
         inside: [V; 2],
         coordinates: [V; 2],
-    ) -> CornerPlace<V, M> {
+    ) -> CornerPosition<V, M> {
         let (tolerance, zero) = (self.faces.tolerance, V::all(self.simd, N::ZERO));
         // A crossing is farther than the tolerance from all ends. Corners are admitted up to twice
         // as far outside, so that rounding never drops both a corner and the crossing next to it.
         let out = -(tolerance + tolerance);
-        CornerPlace {
+        CornerPosition {
             flat,
             height,
             is_inside: !inside[0].smaller(inside[1]).simd_lt(out),
@@ -194,12 +195,12 @@ where
 
     /// Stores a corner in its slot, and its position relative to the other face.
     #[inline(always)]
-    fn corner(&mut self, slot: usize, place: &CornerPlace<V, M>) {
+    fn corner(&mut self, slot: usize, position: &CornerPosition<V, M>) {
         for axis in 0..2 {
-            self.corners.at_end[axis][slot] = bits(place.at_end[axis]);
-            self.corners.beyond[axis][slot] = bits(place.beyond[axis]);
+            self.corners.at_end[axis][slot] = bits(position.at_end[axis]);
+            self.corners.beyond[axis][slot] = bits(position.beyond[axis]);
         }
-        self.store(slot, &place.flat, place.height, place.is_inside);
+        self.store(slot, &position.flat, position.height, position.is_inside);
     }
 
     /// Crosses a side of the parallelogram with all sides of the rectangle.
@@ -210,11 +211,11 @@ where
         let side = [to[0] - from[0], to[1] - from[1]];
         let (from, side) = ((&from, low), (&side, high - low));
         let ends = [from, side, (&to, high)];
-        let is_shown = self.shown[1].has_side(arm, sign);
-        self.crossing(slot, ends, (0, true), is_shown);
-        self.crossing(slot + 1, ends, (0, false), is_shown);
-        self.crossing(slot + 2, ends, (1, true), is_shown);
-        self.crossing(slot + 3, ends, (1, false), is_shown);
+        let is_supporting = self.supporting[1].has_side(arm, sign);
+        self.crossing(slot, ends, (0, true), is_supporting);
+        self.crossing(slot + 1, ends, (0, false), is_supporting);
+        self.crossing(slot + 2, ends, (1, true), is_supporting);
+        self.crossing(slot + 3, ends, (1, false), is_supporting);
     }
 
     /// Crosses a side with the side of the rectangle at one end of an axis; only crossings away
@@ -225,7 +226,7 @@ where
         slot: usize,
         [from, side, to]: [(&[V; 2], V); 3],
         (axis, is_positive): (usize, bool),
-        is_shown: M,
+        is_supporting: M,
     ) {
         let (across, tolerance) = (&self.faces.across, self.faces.tolerance);
         let at = signed(across[axis], is_positive);
@@ -244,7 +245,7 @@ where
         let height = from.1 + side.1 * along;
         let mut is_there = (leaves | enters) & is_within;
         if self.is_partial {
-            is_there &= is_shown & self.shown[0].has_side(axis, is_positive);
+            is_there &= is_supporting & self.supporting[0].has_side(axis, is_positive);
         }
         self.store(slot, &flat, height, is_there);
     }
@@ -259,8 +260,8 @@ where
 /// Drops corners of the rectangle that coincide with a corner of the parallelogram.
 #[inline(always)]
 fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
-    above: &[CornerPlace<V, M>; 4],
-    below: &mut [CornerPlace<V, M>; 4],
+    above: &[CornerPosition<V, M>; 4],
+    below: &mut [CornerPosition<V, M>; 4],
 ) {
     for (lower, lower_signs) in below.iter_mut().zip(SIGNS) {
         let at_corner = lower.is_inside & lower.at_end[0] & lower.at_end[1];
@@ -277,7 +278,7 @@ fn drop_coincident<S: Simd, V, M: SimdMask<S>>(
 
 /// Returns the lanes where the coordinates have these signs.
 #[inline(always)]
-fn is_at<S: Simd, V, M: SimdMask<S>>(place: &CornerPlace<V, M>, signs: [bool; 2]) -> M {
-    let [x, y] = place.beyond;
+fn is_at<S: Simd, V, M: SimdMask<S>>(position: &CornerPosition<V, M>, signs: [bool; 2]) -> M {
+    let [x, y] = position.beyond;
     (if signs[0] { x } else { !x }) & (if signs[1] { y } else { !y })
 }

@@ -17,8 +17,8 @@
 
 use super::super::{Boxes, other, tolerance};
 use super::axis::{BestAxis, of_three, which};
-use super::shown::ShownFaces;
-use crate::math::lanes::{dot, either, lit, negated, norm, seen_from};
+use super::supporting::SupportingParts;
+use crate::math::lanes::{dot, either, lit, negated, norm, rotated_into};
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide, filled};
 
@@ -27,7 +27,7 @@ pub(super) struct FacesInLanes<V, M> {
     /// Lanes where the rectangle belongs to the second box.
     pub(super) is_second: M,
     /// Lanes where it does, and the normal is that of edges, tilted against it.
-    is_leaning: M,
+    is_tilted: M,
     /// Masks of the axis across the rectangle: the first, the second, the third.
     pub(super) is_w: [M; 3],
     /// Normal away from the rectangle's box, by its axes in turn.
@@ -38,13 +38,13 @@ pub(super) struct FacesInLanes<V, M> {
     pub(super) half: V,
     pub(super) across: [V; 2],
     /// Components of the normal along these sides: its tilt.
-    leans: [V; 2],
+    tilt: [V; 2],
     /// Masks of the axis across the parallelogram, in its own box; and where its normal is on the
     /// positive side.
     pub(super) is_m: [M; 3],
     pub(super) is_positive: M,
     /// Components of the normal along the axes of the parallelogram, as it faces the rectangle.
-    leans_above: [V; 2],
+    tilt_above: [V; 2],
     /// Lanes where neither face is tilted too far, so that all of both is used.
     pub(super) is_whole: M,
     /// Centre of the parallelogram in the coordinates `u`, `v` of the rectangle.
@@ -117,15 +117,15 @@ fn below<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     let along1 = in_turn(&is_face, normal)[0];
     let along2 = -dot(normal, &of_three(&is_face, boxes.rotation.each_ref()));
     let straight = sign(simd, !axis.is_second.select(along2, along1).simd_lt(zero));
-    let (leaning, is_second) = between_edges(simd, boxes, axis);
-    let most = largest(&leaning);
+    let (edge_normal, is_second) = between_edges(simd, boxes, axis);
+    let most = largest(&edge_normal);
     let is_w = filled(
         #[inline(always)]
         |a| (axis.is_edges & most[a]) | (!axis.is_edges & is_face[a]),
     );
     let toward = filled(
         #[inline(always)]
-        |a| axis.is_edges.select(leaning[a], is_face[a].select(straight, zero)),
+        |a| axis.is_edges.select(edge_normal[a], is_face[a].select(straight, zero)),
     );
     let in_turn_w = in_turn(&is_w, &toward);
     Below {
@@ -146,23 +146,23 @@ fn between_edges<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask
     boxes: &Boxes<V, 3>,
     axis: &BestAxis<V, M>,
 ) -> ([V; 3], M) {
-    let leans_too_far = axis.is_edges & !is_shown(simd, &axis.normal);
-    if !leans_too_far.any_true() {
+    let is_tilted_too_far = axis.is_edges & !is_supporting(simd, &axis.normal);
+    if !is_tilted_too_far.any_true() {
         return (axis.normal, axis.is_second);
     }
-    let toward2 = negated(&seen_from(&boxes.rotation, &axis.normal));
-    let is_second = leans_too_far & is_shown(simd, &toward2);
+    let toward2 = negated(&rotated_into(&boxes.rotation, &axis.normal));
+    let is_second = is_tilted_too_far & is_supporting(simd, &toward2);
     (either(is_second, &toward2, &axis.normal), axis.is_second | is_second)
 }
 
 /// Returns the lanes where the face of a box most aligned with a unit vector is not tilted too far.
 #[inline(always)]
-fn is_shown<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
+fn is_supporting<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>, M: SimdMask<S>>(
     simd: S,
     toward: &[V; 3],
 ) -> M {
     let [_, u, v] = in_turn(&largest(toward), toward);
-    ShownFaces::is_all(simd, [u, v])
+    SupportingParts::is_all(simd, [u, v])
 }
 
 /// Selects one of three axes in each lane, times a length.
@@ -175,7 +175,7 @@ fn arm<S: Simd, V: Wide<S>>(is: &[V::Mask; 3], axes: [&[V; 3]; 3], length: V) ->
 /// Projects a vector, by the axes in turn, along the normal onto the rectangle's plane; returns its
 /// coordinates there and its height along the normal.
 #[inline(always)]
-fn seen<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
+fn projected<S: Simd, V: Wide<S>>([w, u, v]: [V; 3], toward: &[V; 3]) -> ([V; 2], V) {
     let height = w / toward[0];
     ([u - toward[1] * height, v - toward[2] * height], height)
 }
@@ -188,7 +188,7 @@ pub(super) fn cross<S: Simd, V: Wide<S>>(a: &[V; 2], b: &[V; 2]) -> V {
 impl<V, M> FacesInLanes<V, M> {
     /// Finds both faces from the separating axis.
     #[inline(always)]
-    pub(super) fn meeting<S: Simd, N: Real>(
+    pub(super) fn of_axis<S: Simd, N: Real>(
         simd: S,
         boxes: &Boxes<V, 3>,
         axis: &BestAxis<V, M>,
@@ -200,7 +200,7 @@ impl<V, M> FacesInLanes<V, M> {
         let below = below(simd, boxes, axis);
         let (rotation, shift) = other(boxes, below.is_second);
         let toward = below.in_turn;
-        let facing = negated(&seen_from(&rotation, &below.toward));
+        let facing = negated(&rotated_into(&rotation, &below.toward));
         let is_m = largest(&facing);
         let [f0, f1, f2] = in_turn(&is_m, &facing);
         let is_positive = f0.simd_gt(V::all(simd, N::ZERO));
@@ -214,10 +214,10 @@ impl<V, M> FacesInLanes<V, M> {
         let [w, u, v] = in_turn(&below.is_w, &from_plane);
         let upward: V = sign(simd, below.is_upward);
         let level = upward * below.half[0];
-        let (center, height) = seen([w - level, u, v], &toward);
+        let (center, height) = projected([w - level, u, v], &toward);
         let arm1 = in_turn(&below.is_w, &arm(&is_m, [y, z, x], half[1]));
         let arm2 = in_turn(&below.is_w, &arm(&is_m, [z, x, y], half[2]));
-        let ((arm1, climb1), (arm2, climb2)) = (seen(arm1, &toward), seen(arm2, &toward));
+        let ((arm1, climb1), (arm2, climb2)) = (projected(arm1, &toward), projected(arm2, &toward));
         let area = cross(&arm1, &arm2);
         let widths = [area.abs() / norm(&arm2), area.abs() / norm(&arm1)];
         let across = [below.half[1], below.half[2]];
@@ -227,18 +227,18 @@ impl<V, M> FacesInLanes<V, M> {
             & widths[0].smaller(widths[1]).simd_gt(narrow);
         Self {
             is_second: below.is_second,
-            is_leaning: below.is_second & axis.is_edges,
+            is_tilted: below.is_second & axis.is_edges,
             is_w: below.is_w,
             toward,
             is_upward: below.is_upward,
             half: below.half[0],
             across,
-            leans: [toward[1], toward[2]],
+            tilt: [toward[1], toward[2]],
             is_m,
             is_positive,
-            leans_above: [f1, f2],
-            is_whole: ShownFaces::is_all(simd, [toward[1], toward[2]])
-                & ShownFaces::is_all(simd, [f1, f2]),
+            tilt_above: [f1, f2],
+            is_whole: SupportingParts::is_all(simd, [toward[1], toward[2]])
+                & SupportingParts::is_all(simd, [f1, f2]),
             center,
             arms: [arm1, arm2],
             height,
@@ -252,13 +252,13 @@ impl<V, M> FacesInLanes<V, M> {
 
     /// Returns the supporting features of the rectangle and of the parallelogram.
     #[inline(always)]
-    pub(super) fn shown<S: Simd, N: Real>(&self, simd: S) -> [ShownFaces<M>; 2]
+    pub(super) fn supporting<S: Simd, N: Real>(&self, simd: S) -> [SupportingParts<M>; 2]
     where
         V: Wide<S, Scalar = N, Mask = M>,
         M: SimdMask<S>,
     {
-        let below = ShownFaces::of(simd, self.is_w[1], self.leans);
-        [below, ShownFaces::of(simd, self.is_m[1], self.leans_above)]
+        let below = SupportingParts::of(simd, self.is_w[1], self.tilt);
+        [below, SupportingParts::of(simd, self.is_m[1], self.tilt_above)]
     }
 
     /// Returns the point on the first box, in its frame, of projected coordinates and a height. A
@@ -280,11 +280,11 @@ impl<V, M> FacesInLanes<V, M> {
         let level = self.half + is_second.select(height, V::all(simd, N::ZERO));
         let mut w = self.is_upward.select(level, -level);
         if is_partial {
-            let (is_leaning, toward) = (self.is_leaning, &self.toward);
+            let (is_tilted, toward) = (self.is_tilted, &self.toward);
             let ground = self.is_upward.select(self.half, -self.half);
-            w = is_leaning.select(ground + toward[0] * height, w);
-            u = is_leaning.select(u + toward[1] * height, u);
-            v = is_leaning.select(v + toward[2] * height, v);
+            w = is_tilted.select(ground + toward[0] * height, w);
+            u = is_tilted.select(u + toward[1] * height, u);
+            v = is_tilted.select(v + toward[2] * height, v);
         }
         let [w0, w1, _] = self.is_w;
         let own = [

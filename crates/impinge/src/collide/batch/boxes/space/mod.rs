@@ -11,15 +11,15 @@
 mod axis;
 mod clip;
 mod faces;
-mod names;
-mod shown;
+mod features;
+mod supporting;
 
 use self::clip::{Clip, Corners};
 use self::faces::FacesInLanes;
-use self::names::{BoxPairNames, FaceSide, parts_at};
+use self::features::{BoxPairFeatures, FaceSide, parts_at};
 use super::admit::{Limits, Slots};
 use super::choose::SlotChoice;
-use super::masks::turned;
+use super::masks::per_pair;
 use super::{Boxes, Inputs, smaller_size};
 use crate::collide::RawManifold;
 use crate::collide::batch::{Batch, PairQuestion};
@@ -99,13 +99,13 @@ impl<N: Real> Batch<N, 3> for Boxes3 {
     }
 
     #[inline(always)]
-    fn settle<const L: usize>(
+    fn write_manifold<const L: usize>(
         found: &LaneFaces<N, L>,
         lane: usize,
         max_points: usize,
         raw: &mut RawManifold<N, 3>,
     ) -> bool {
-        found.settle(lane & (L - 1), max_points, raw)
+        found.write_manifold(lane & (L - 1), max_points, raw)
     }
 }
 
@@ -115,21 +115,22 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
     fn find<S: Simd, V: Wide<S, Scalar = N>>(&mut self, simd: S, inputs: &Inputs<N, 3, L>) {
         let (boxes, prediction) = (inputs.boxes::<S, V>(simd), inputs.prediction::<S, V>(simd));
         let axis = boxes.best_axis(simd);
-        let is_apart = axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.noise);
+        let is_apart =
+            axis.gap.simd_gt(prediction + lit::<S, N, V>(simd, 16.0) * axis.rounding_error);
         let is_near = axis.gap.simd_le(prediction) & axis.is_finite;
         self.is_apart = bits(is_apart & axis.is_finite);
-        let is_asked = bits(is_near) & inputs.is_usable;
+        let is_candidate = bits(is_near) & inputs.is_usable;
         self.is_built = 0;
-        if is_asked == 0 {
+        if is_candidate == 0 {
             return;
         }
-        let faces = FacesInLanes::meeting(simd, &boxes, &axis);
+        let faces = FacesInLanes::of_axis(simd, &boxes, &axis);
         let (gap, sine, tolerance) = (axis.gap, inputs.sine::<S, V>(simd), faces.tolerance);
         let limits = Limits { gap, prediction, sine, tolerance };
         // If no face of the batch is tilted too far, nothing of the faces has to be excluded.
-        let is_partial = bits(!faces.is_whole) & is_asked != 0;
+        let is_partial = bits(!faces.is_whole) & is_candidate != 0;
         let is_found = self.fill::<S, V>(simd, &boxes, &faces, &limits, is_partial);
-        self.is_built = bits(is_found & faces.is_fit) & is_asked;
+        self.is_built = bits(is_found & faces.is_fit) & is_candidate;
         self.sides = [
             bits(faces.is_w[0]),
             bits(faces.is_w[1]),
@@ -156,15 +157,15 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
 
     /// Replaces the manifold of one pair; returns `false` if it has to fall back.
     #[inline(always)]
-    fn settle(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
+    fn write_manifold(&self, lane: usize, max_points: usize, raw: &mut RawManifold<N, 3>) -> bool {
         if self.is_apart >> lane & 1 == 1 {
             raw.points.clear();
             return true;
         }
         let is_built = self.is_built >> lane & 1 == 1;
         if is_built {
-            let (choice, names) = self.choice(lane);
-            choice.settle(&names, max_points.max(1), raw);
+            let (choice, features) = self.choice(lane);
+            choice.write_manifold(&features, max_points.max(1), raw);
         }
         is_built
     }
@@ -194,7 +195,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
 
     /// Returns the candidates of one pair, and their names.
     #[inline(always)]
-    fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairNames) {
+    fn choice(&self, lane: usize) -> (SlotChoice<'_, N, 3, SLOTS, L>, BoxPairFeatures) {
         let (columns, bits) = (&self.columns, self.columns.byte(6, lane));
         let sides = FaceSides::of(bits);
         let parts = parts_at(lane, &self.corners.at_end, &self.corners.beyond);
@@ -208,7 +209,7 @@ impl<N: Real, const L: usize> LaneFaces<N, L> {
             size: self.size[lane],
             normal: &self.normal,
         };
-        (choice, BoxPairNames::new(&sides, bits, parts))
+        (choice, BoxPairFeatures::new(&sides, bits, parts))
     }
 }
 
@@ -249,7 +250,7 @@ impl Columns {
         ];
         let mut columns = [[0; 8]; 7];
         for (column, row) in columns.iter_mut().zip(rows) {
-            *column = turned(row);
+            *column = per_pair(row);
         }
         Self(columns)
     }

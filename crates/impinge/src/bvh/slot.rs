@@ -3,11 +3,11 @@
 use super::{Bounds, LANES, NONE, Tree};
 
 /// Greatest relative growth of a leaf block's surface by an object that is added or moves.
-const ROOM: f64 = 0.3;
+const MAX_GROWTH: f64 = 0.3;
 
 impl<const D: usize> Tree<D> {
     /// Returns a free slot near the box if there is one, else the slot at the end.
-    pub(super) fn find_place(&mut self, bounds: &Bounds<D>) -> usize {
+    pub(super) fn find_slot(&mut self, bounds: &Bounds<D>) -> usize {
         let has_holes = self.live < self.end;
         let hole = if has_holes { self.hole_near(bounds) } else { None };
         hole.unwrap_or_else(|| self.append_slot())
@@ -30,7 +30,7 @@ impl<const D: usize> Tree<D> {
                 }
             }
             block = least.1;
-            if layer == 1 && !self.has_room_for(block, bounds) {
+            if layer == 1 && !self.hardly_grows_by(block, bounds) {
                 return None;
             }
         }
@@ -40,10 +40,10 @@ impl<const D: usize> Tree<D> {
 
     /// Returns `true` if the surface of a leaf block hardly grows by a box; `false` if there is no
     /// such block.
-    pub(super) fn has_room_for(&self, block: usize, bounds: &Bounds<D>) -> bool {
+    pub(super) fn hardly_grows_by(&self, block: usize, bounds: &Bounds<D>) -> bool {
         self.layers[0].bounds.get(block).is_some_and(|block| {
             let own = block.half_surface();
-            own == 0.0 || block.merged(bounds).half_surface() - own <= ROOM * own
+            own == 0.0 || block.merged(bounds).half_surface() - own <= MAX_GROWTH * own
         })
     }
 

@@ -168,7 +168,7 @@ impl<N: Real> HeightField<N, 3> {
     /// If there is no such part.
     #[must_use]
     pub fn is_hole(&self, part: u32) -> bool {
-        let (_, cell, k) = self.place(part);
+        let (_, cell, k) = self.locate(part);
         self.marks.is_hole(cell, k)
     }
 
@@ -242,7 +242,7 @@ impl<N: Real> HeightField<N, 3> {
     /// # Panics
     /// If there is no such part.
     pub fn set_part_hole(&mut self, part: u32, is_hole: bool) {
-        let ([row, column], cell, k) = self.place(part);
+        let ([row, column], cell, k) = self.locate(part);
         self.marks.set_hole(cell, k, is_hole, self.num_cells());
         self.refresh(row, column);
     }
@@ -283,7 +283,7 @@ impl<N: Real> HeightField<N, 3> {
     /// The row and column of the cell of a part, the number of the cell, and 0 or 1 for the
     /// triangle in it.
     #[track_caller]
-    pub(super) fn place(&self, part: u32) -> (GridPoint, usize, usize) {
+    pub(super) fn locate(&self, part: u32) -> (GridPoint, usize, usize) {
         let (cell, k) = (part as usize / 2, part as usize % 2);
         assert!(cell < self.num_cells(), "there is no part {part}");
         let columns = self.pyramid.cells()[1];
@@ -292,7 +292,7 @@ impl<N: Real> HeightField<N, 3> {
 
     /// The corners of a part, counter-clockwise seen from the front.
     pub(super) fn corners(&self, part: u32) -> [GridPoint; 3] {
-        let ([row, column], _, k) = self.place(part);
+        let ([row, column], _, k) = self.locate(part);
         self.corners_in(row, column, k)
     }
 
@@ -427,7 +427,7 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
     }
 
     fn revision(&self) -> Option<Revision> {
-        Some(self.named())
+        Some(self.revision_with_options())
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, 3>> {

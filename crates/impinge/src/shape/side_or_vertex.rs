@@ -5,14 +5,14 @@ use crate::shape::{Feature, FeatureId, Geometry, Kind, Segment, SupportMap};
 
 /// The result of [`SupportMap::core_feature`] in 2D, without a heap or a polygon's storage.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Shown<N: Real> {
+pub(crate) struct SideOrVertex<N: Real> {
     pub(crate) id: FeatureId,
     /// Twice the same for a vertex.
     pub(crate) ends: [(FeatureId, Point<N, 2>); 2],
     pub(crate) is_side: bool,
 }
 
-impl<N: Real> Shown<N> {
+impl<N: Real> SideOrVertex<N> {
     #[inline]
     pub(super) fn vertex(id: FeatureId, point: Point<N, 2>) -> Self {
         Self { id, ends: [(id, point); 2], is_side: false }
@@ -29,9 +29,9 @@ impl<N: Real> Shown<N> {
         let own = match kind {
             Kind::Segment(segment) => Some(Self::of_segment(segment)),
             Kind::Capsule(capsule) => Some(Self::of_segment(capsule.segment())),
-            Kind::Cuboid(cuboid) => cuboid.shown(direction),
-            Kind::Polytope(polygon) => Some(polygon.shown(direction)),
-            Kind::Triangle(triangle) => triangle.shown(direction),
+            Kind::Cuboid(cuboid) => cuboid.supporting(direction),
+            Kind::Polytope(polygon) => Some(polygon.supporting(direction)),
+            Kind::Triangle(triangle) => triangle.supporting(direction),
             Kind::Rounded(solid) => Self::of(solid.inner().0, direction),
             _ => None,
         };
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_shown_is_the_feature() {
+    fn the_result_is_the_core_feature() {
         let p = |x: f64, y: f64| Point::<f64, 2>::new(x, y);
         let corners = [p(0.0, -1.0), p(1.5, 0.0), p(1.0, 1.0), p(-0.5, 0.75)];
         let cuboid = Cuboid::new(Vector::<f64, 2>::new(1.0, 0.5));
@@ -87,9 +87,9 @@ mod tests {
                 let (sine, cosine) = Real::sine_cosine(f64::from(step) * 0.1);
                 let direction = Vector::<f64, 2>::new(cosine, sine);
                 let kind = solid.geometry().0;
-                let found = Shown::of(kind, &direction).expect("a solid of the plane");
+                let found = SideOrVertex::of(kind, &direction).expect("a solid of the plane");
                 let map = Geometry(kind).as_support_map().expect("convex");
-                let expected = Shown::of_map(map, &direction).expect("a side or a vertex");
+                let expected = SideOrVertex::of_map(map, &direction).expect("a side or a vertex");
                 assert_eq!(found, expected, "{solid:?} along {direction}");
                 sides += usize::from(found.is_side);
                 vertices += usize::from(!found.is_side);

@@ -12,7 +12,7 @@
 //!          [1 | ... | faces | pair  | slot ]     faces: byte 6 of `Columns`
 //! ```
 
-use super::super::choose::Naming;
+use super::super::choose::SlotFeatures;
 use super::FaceSides;
 use super::SLOTS;
 use super::clip::{CORNERS, SIGNS};
@@ -28,7 +28,7 @@ const NUMBERS: usize = 12;
 const NONE: u8 = u8::MAX;
 
 /// Features of a face of a box.
-struct FaceNames {
+struct FaceFeatures {
     /// Feature of each part.
     parts: [FeatureId; PARTS],
     /// Part of each feature, by kind and number.
@@ -36,13 +36,13 @@ struct FaceNames {
 }
 
 /// Faces by axis, and by whether they are on its positive side.
-static FACES: [[FaceNames; 2]; 3] = [
-    [FaceNames::new(0, false), FaceNames::new(0, true)],
-    [FaceNames::new(1, false), FaceNames::new(1, true)],
-    [FaceNames::new(2, false), FaceNames::new(2, true)],
+static FACES: [[FaceFeatures; 2]; 3] = [
+    [FaceFeatures::new(0, false), FaceFeatures::new(0, true)],
+    [FaceFeatures::new(1, false), FaceFeatures::new(1, true)],
+    [FaceFeatures::new(2, false), FaceFeatures::new(2, true)],
 ];
 
-impl FaceNames {
+impl FaceFeatures {
     /// Lists the features of the face of `axis`.
     const fn new(axis: usize, is_positive: bool) -> Self {
         let mut parts = [face(axis, is_positive); PARTS];
@@ -185,9 +185,9 @@ const fn slots_of() -> [[u8; 2]; PAIRS] {
 const ONES: u64 = 0x0101_0101_0101_0101;
 
 /// Names of the slots of one pair.
-pub(super) struct BoxPairNames {
-    rectangle: &'static FaceNames,
-    parallelogram: &'static FaceNames,
+pub(super) struct BoxPairFeatures {
+    rectangle: &'static FaceFeatures,
+    parallelogram: &'static FaceFeatures,
     /// The rectangle is the second box's.
     is_second: bool,
     /// Bits of the faces, at their position in a code.
@@ -205,7 +205,7 @@ const MARK: u32 = 1 << 31;
 /// Mask of a pair of parts.
 const PAIR_BITS: u32 = 127;
 
-impl BoxPairNames {
+impl BoxPairFeatures {
     /// Names for two faces, given decoded and as the byte `bits`; `parts` is from [`parts_at`].
     #[inline(always)]
     pub(super) fn new(sides: &FaceSides, bits: u8, parts: u64) -> Self {
@@ -217,10 +217,10 @@ impl BoxPairNames {
         let below = parts & 0xffff_ffff;
         let corners = own + 9 * below + (parts - below);
         pairs[..CORNERS].copy_from_slice(&corners.to_le_bytes());
-        let names = |side: FaceSide| &FACES[side.axis][usize::from(side.is_positive)];
+        let features = |side: FaceSide| &FACES[side.axis][usize::from(side.is_positive)];
         Self {
-            rectangle: names(sides.rectangle),
-            parallelogram: names(sides.parallelogram),
+            rectangle: features(sides.rectangle),
+            parallelogram: features(sides.parallelogram),
             is_second: sides.is_second,
             faces: MARK | u32::from(bits) << FACES_AT,
             pairs,
@@ -228,7 +228,7 @@ impl BoxPairNames {
     }
 }
 
-impl BoxPairNames {
+impl BoxPairFeatures {
     /// Returns the pair of parts that own two features; `None` if one belongs to another face.
     #[inline(always)]
     fn pair(&self, [first, second]: [FeatureId; 2]) -> Option<usize> {
@@ -239,7 +239,7 @@ impl BoxPairNames {
     }
 }
 
-impl Naming for BoxPairNames {
+impl SlotFeatures for BoxPairFeatures {
     #[inline(always)]
     fn features(&self, slot: usize) -> [FeatureId; 2] {
         let [below, above] = PARTS_OF[usize::from(self.pairs[slot])];

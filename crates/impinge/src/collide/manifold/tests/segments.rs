@@ -3,7 +3,7 @@
 
 use super::scene::{Random, Scene, describe};
 use crate::collide::Pair;
-use crate::collide::separation::separation_in_space;
+use crate::collide::separation::separation_3d;
 use crate::convex::{self, Separation};
 use crate::math::{Point, Pose, Real, Space, Vector, max};
 use crate::shape::{
@@ -12,7 +12,7 @@ use crate::shape::{
 
 type Solid<N> = Box<dyn Shape<N, 3>>;
 
-fn rod<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Solid<N> {
+fn segment<N: Real>(kind: usize, scale: f64, random: &mut Random) -> Solid<N> {
     let point =
         |random: &mut Random| Point::from(random.vector::<f64, 3>(1.0).map(|x| N::lit(x * scale)));
     let length = |random: &mut Random| N::lit(random.between(0.1, 1.0) * scale);
@@ -54,7 +54,7 @@ fn is_round<N: Real>(pair: &Pair<'_, N, 3>) -> bool {
 }
 
 /// Returns the tolerance; the general algorithm is accurate to 2⁻⁴⁰ of the size for curved solids.
-fn room<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
+fn tolerance<N: Real>(pair: &Pair<'_, N, 3>, scale: f64) -> N {
     let least = if is_round(pair) { N::lit(8.0e-12) } else { N::ZERO };
     max(N::lit(256.0) * N::EPSILON, least) * N::lit(scale)
 }
@@ -84,7 +84,7 @@ fn visit<N: Scene<3>>(
 ) {
     let random = &mut Random(seed);
     for round in 0..2400_usize {
-        let one = rod::<N>(round % 4, scale, random);
+        let one = segment::<N>(round % 4, scale, random);
         let other = solid::<N>(round / 4 % 8, scale, random);
         let turn = turn(round / 24, random);
         let direction = random.vector::<N, 3>(scale);
@@ -105,18 +105,18 @@ fn visit<N: Scene<3>>(
 /// Asserts that the distances agree, and that normal and points match the distance.
 fn separations<N: Scene<3> + Space<3>>(seed: u64, scale: f64) {
     visit::<N>((seed, scale), |pair, round, _| {
-        let room = room(pair, scale);
+        let tolerance = tolerance(pair, scale);
         let truth = truth(pair);
-        let found = separation_in_space(pair, N::INFINITY).expect("no limit");
+        let found = separation_3d(pair, N::INFINITY).expect("no limit");
         let what = describe(pair);
         let off = (found.distance - truth.distance).abs();
-        assert!(off <= room, "round {round}: {found:?}\n{truth:?}\n{what}");
+        assert!(off <= tolerance, "round {round}: {found:?}\n{truth:?}\n{what}");
         let across = found.point2 - found.point1 - found.normal * found.distance;
-        assert!(across.norm() <= room, "round {round}: {found:?} {what}");
+        assert!(across.norm() <= tolerance, "round {round}: {found:?} {what}");
         assert!((found.normal.norm() - N::ONE).abs() < N::lit(64.0) * N::EPSILON, "{found:?}");
-        let limited = separation_in_space(pair, truth.distance + room);
+        let limited = separation_3d(pair, truth.distance + tolerance);
         assert_eq!(limited.map(|limited| limited.distance), Some(found.distance), "{what}");
-        assert!(separation_in_space(pair, truth.distance - room).is_none(), "{what}");
+        assert!(separation_3d(pair, truth.distance - tolerance).is_none(), "{what}");
     });
 }
 
@@ -135,6 +135,6 @@ fn numbers_that_are_none_are_no_contacts() {
     for bad in [f32::NAN, f32::INFINITY, -f32::INFINITY] {
         let pose12 = Pose::from_translation(Vector::<f32, 3>::new(0.0, bad, 0.0));
         let pair = Pair { first: capsule.geometry().0, second: cuboid.geometry().0, pose12 };
-        assert_eq!(separation_in_space(&pair, 1.0), None, "{bad}");
+        assert_eq!(separation_3d(&pair, 1.0), None, "{bad}");
     }
 }

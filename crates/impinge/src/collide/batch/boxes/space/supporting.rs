@@ -15,12 +15,12 @@ use crate::shape::FACING_SINE_SQUARED;
 /// A part of a face, by its two axes: the lanes where it extends along the axis, and, for the
 /// others, those where it is at the positive end.
 #[derive(Clone, Copy)]
-pub(super) struct ShownFaces<M> {
+pub(super) struct SupportingParts<M> {
     is_free: [M; 2],
     is_positive: [M; 2],
 }
 
-impl<M> ShownFaces<M> {
+impl<M> SupportingParts<M> {
     /// Computes the feature from the components of a unit vector on the two axes of the face.
     /// `is_middle` are the lanes where the face's own axis is the second axis of the box; it breaks
     /// ties.
@@ -28,15 +28,15 @@ impl<M> ShownFaces<M> {
     pub(super) fn of<S: Simd, N: Real, V: Wide<S, Scalar = N, Mask = M>>(
         simd: S,
         is_middle: M,
-        leans: [V; 2],
+        tilt: [V; 2],
     ) -> Self
     where
         M: SimdMask<S>,
     {
         let (zero, limit) = (V::all(simd, N::ZERO), lit::<S, N, V>(simd, FACING_SINE_SQUARED));
-        let squares = [leans[0] * leans[0], leans[1] * leans[1]];
-        let is_all = Self::is_all(simd, leans);
-        let [one, other] = [leans[0].abs(), leans[1].abs()];
+        let squares = [tilt[0] * tilt[0], tilt[1] * tilt[1]];
+        let is_all = Self::is_all(simd, tilt);
+        let [one, other] = [tilt[0].abs(), tilt[1].abs()];
         // The weaker tilt is free first; ties go by the order of the box's axes.
         let is_first_weaker = one.simd_lt(other) | (one.simd_eq(other) & !is_middle);
         Self {
@@ -44,7 +44,7 @@ impl<M> ShownFaces<M> {
                 is_all | (is_first_weaker & squares[0].simd_le(limit)),
                 is_all | (!is_first_weaker & squares[1].simd_le(limit)),
             ],
-            is_positive: [!leans[0].simd_lt(zero), !leans[1].simd_lt(zero)],
+            is_positive: [!tilt[0].simd_lt(zero), !tilt[1].simd_lt(zero)],
         }
     }
 
@@ -88,7 +88,7 @@ impl<M> ShownFaces<M> {
     /// Returns the lanes where a point at some ends of the face (`at_end`), on their positive sides
     /// or not (`beyond`), belongs to the feature, if that is more than a corner.
     #[inline(always)]
-    pub(super) fn has_place<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
+    pub(super) fn has_position<S: Simd>(&self, at_end: &[M; 2], beyond: &[M; 2]) -> M
     where
         M: SimdMask<S>,
     {

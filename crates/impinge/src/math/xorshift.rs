@@ -3,9 +3,9 @@
 use super::{Real, Vector};
 
 /// Numbers from -1 to 1 (Marsaglia, "Xorshift RNGs", 2003).
-pub(crate) struct Noise(pub(crate) u64);
+pub(crate) struct Xorshift(pub(crate) u64);
 
-impl Noise {
+impl Xorshift {
     pub(crate) fn next(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;

@@ -19,7 +19,7 @@
 use super::frame::{Candidates, ContactFrame, MIN_COSINE, Which, lifted, part_beside};
 use super::{Pair, RawManifold, add_witness, choose_in_frame};
 use crate::math::{Point, Pose, Real, Vector, max, max_component, min};
-use crate::shape::{FeatureId, Geometry, Kind, Segment, Shown, SupportMap};
+use crate::shape::{FeatureId, Geometry, Kind, Segment, SideOrVertex, SupportMap};
 
 /// Builds the manifold of two solids within the prediction, neither of them a ball or a half-space;
 /// returns `false` if a supporting feature is neither a side nor a corner.
@@ -29,8 +29,8 @@ pub(super) fn build<N: Real>(
     limit: usize,
     out: &mut RawManifold<N, 2>,
 ) -> bool {
-    let first = Stretch::of(Which::First, pair.first, None, frame);
-    let second = Stretch::of(Which::Second, pair.second, Some(&pair.pose12), frame);
+    let first = FeatureInterval::of(Which::First, pair.first, None, frame);
+    let second = FeatureInterval::of(Which::Second, pair.second, Some(&pair.pose12), frame);
     let (Some(first), Some(second)) = (first, second) else { return false };
     let mut candidates = Candidates::new();
     if first.is_side && second.is_side {
@@ -56,7 +56,7 @@ pub(super) struct Corner<N: Real, const D: usize> {
 }
 
 /// Supporting feature of a solid: a side, or a point.
-pub(super) struct Stretch<N: Real> {
+pub(super) struct FeatureInterval<N: Real> {
     which: Which,
     id: FeatureId,
     /// Ends of the side; for a point the first counts.
@@ -75,7 +75,7 @@ pub(super) struct Stretch<N: Real> {
     top: (N, Vector<N, 2>),
 }
 
-impl<N: Real> Stretch<N> {
+impl<N: Real> FeatureInterval<N> {
     /// Returns the supporting feature of a solid at `pose` in the frame of the first; `None` if it
     /// is neither a side nor a corner.
     #[inline(always)]
@@ -87,21 +87,21 @@ impl<N: Real> Stretch<N> {
     ) -> Option<Self> {
         let outward = which.outward(frame);
         let direction = pose.map_or(outward, |pose| pose.inverse_vector(&outward));
-        let shown = Shown::of(kind, &direction)?;
-        Some(Self::placed(which, &shown, rounding(kind), pose, frame))
+        let supporting = SideOrVertex::of(kind, &direction)?;
+        Some(Self::placed(which, &supporting, rounding(kind), pose, frame))
     }
 
     /// Feature of a segment that is the first solid.
     #[inline]
     pub(super) fn of_segment(segment: &Segment<N, 2>, frame: &ContactFrame<N, 2>) -> Self {
-        Self::placed(Which::First, &Shown::of_segment(segment), N::ZERO, None, frame)
+        Self::placed(Which::First, &SideOrVertex::of_segment(segment), N::ZERO, None, frame)
     }
 
     /// Transforms and simplifies a feature.
     #[inline(always)]
     fn placed(
         which: Which,
-        shown: &Shown<N>,
+        supporting: &SideOrVertex<N>,
         rounding: N,
         pose: Option<&Pose<N, 2>>,
         frame: &ContactFrame<N, 2>,
@@ -110,28 +110,28 @@ impl<N: Real> Stretch<N> {
             let point = pose.map_or(vertex, |pose| placed(pose, &vertex));
             Corner { point, flat: frame.flat(&point), id }
         };
-        let mut stretch = Self {
+        let mut interval = Self {
             which,
-            id: shown.id,
-            corners: [corner(shown.ends[0]), corner(shown.ends[1])],
-            is_side: shown.is_side,
+            id: supporting.id,
+            corners: [corner(supporting.ends[0]), corner(supporting.ends[1])],
+            is_side: supporting.is_side,
             rounding,
             cosine: N::ONE,
             along: N::ZERO,
             length: N::ZERO,
             top: (N::ZERO, Vector::<N, 2>::zeros()),
         };
-        stretch.settle(&which.outward(frame), frame.tolerance);
-        if stretch.rounding > N::ZERO {
-            stretch.find_top(frame);
+        interval.simplify(&which.outward(frame), frame.tolerance);
+        if interval.rounding > N::ZERO {
+            interval.find_top(frame);
         }
-        stretch
+        interval
     }
 
     /// Reduces a side without length to its first corner, with the id of the side; and one that is
     /// tilted too far, or lies along the normal, to its nearest corner.
     #[inline(always)]
-    fn settle(&mut self, outward: &Vector<N, 2>, tolerance: N) {
+    fn simplify(&mut self, outward: &Vector<N, 2>, tolerance: N) {
         let [from, to] = &self.corners;
         // Long in projection. A side along the normal is not, but it has a length.
         let is_long = max_component(&(from.flat - to.flat)) > tolerance;
@@ -175,18 +175,18 @@ impl<N: Real> Stretch<N> {
 
     /// Returns the point of the core at a tangent coordinate.
     #[inline(always)]
-    pub(super) fn under(&self, place: N) -> Point<N, 2> {
+    pub(super) fn under(&self, coordinate: N) -> Point<N, 2> {
         let [from, to] = &self.corners;
         // Sides run in either direction along the tangent.
-        let share = (place - from.flat.x) * self.along / (self.along * self.along);
+        let share = (coordinate - from.flat.x) * self.along / (self.along * self.along);
         from.point + (to.point - from.point) * min(max(share, N::ZERO), N::ONE)
     }
 
     /// Returns the part beside a tangent coordinate, ends by their distance along the side; `None`
     /// beyond the ends.
     #[inline(always)]
-    fn beside(&self, place: N, tolerance: N) -> Option<FeatureId> {
-        let along = (place - self.corners[0].flat.x) * self.along / self.length;
+    fn beside(&self, coordinate: N, tolerance: N) -> Option<FeatureId> {
+        let along = (coordinate - self.corners[0].flat.x) * self.along / self.length;
         let tolerance = N::TWO * tolerance;
         let [from, to] = &self.corners;
         part_beside(along, self.length, tolerance, [from.id, to.id], self.id)
@@ -194,13 +194,13 @@ impl<N: Real> Stretch<N> {
 
     /// Returns the part that contains a tangent coordinate: an end or the side; `None` beyond the
     /// ends.
-    pub(super) fn locate(&self, place: N, tolerance: N) -> Option<FeatureId> {
+    pub(super) fn locate(&self, coordinate: N, tolerance: N) -> Option<FeatureId> {
         let [from, to] = &self.corners;
-        let near = |corner: &Corner<N, 2>| (corner.flat.x - place).abs() <= N::TWO * tolerance;
+        let near = |corner: &Corner<N, 2>| (corner.flat.x - coordinate).abs() <= N::TWO * tolerance;
         if near(from) || near(to) {
             return Some(if near(from) { from.id } else { to.id });
         }
-        let along = (place - from.flat.x) * self.along;
+        let along = (coordinate - from.flat.x) * self.along;
         (along >= N::ZERO && along <= self.length * self.length).then_some(self.id)
     }
 
@@ -210,9 +210,9 @@ impl<N: Real> Stretch<N> {
         if self.rounding <= N::ZERO {
             return N::ZERO;
         }
-        let room = self.which.below_witness(core, frame);
+        let depth = self.which.below_witness(core, frame);
         let (radius, away) = (self.rounding, frame.flat(core) - self.top.1);
-        lifted(radius, self.cosine, room, self.top.0, away.norm_squared())
+        lifted(radius, self.cosine, depth, self.top.0, away.norm_squared())
     }
 }
 
@@ -238,8 +238,8 @@ fn rounding<N: Real>(kind: Kind<'_, N, 2>) -> N {
 /// Two sides in one frame.
 pub(super) struct Shared<'a, N: Real> {
     pub(super) frame: &'a ContactFrame<N, 2>,
-    pub(super) first: &'a Stretch<N>,
-    pub(super) second: &'a Stretch<N>,
+    pub(super) first: &'a FeatureInterval<N>,
+    pub(super) second: &'a FeatureInterval<N>,
 }
 
 impl<N: Real> Shared<'_, N> {
@@ -270,11 +270,11 @@ impl<N: Real> Shared<'_, N> {
     ) {
         let (gap, normal) = (core2 - core1, self.frame.normal());
         let half = (gap - normal * normal.dot(&gap)) * N::HALF;
-        self.push_facing(&(core1 + half), &(core2 - half), features, out);
+        self.push_pair(&(core1 + half), &(core2 - half), features, out);
     }
 
     /// Adds a pair of points across from each other, once.
-    pub(super) fn push_facing(
+    pub(super) fn push_pair(
         &self,
         core1: &Point<N, 2>,
         core2: &Point<N, 2>,

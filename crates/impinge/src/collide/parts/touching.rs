@@ -12,14 +12,14 @@ use super::pair_lanes::PartPairs;
 use super::slabs::{corners, range};
 use super::solid_bounds::gap_slack;
 use crate::bounding_volume::Aabb;
-use crate::bvh::{Toward, TreeMeeting, visit_meetings};
+use crate::bvh::{TouchQuery, Toward, visit_touching};
 use crate::collide::packet::LANES;
 use crate::math::{Mapped, Point, Pose, Real, Space, Vector, max, max_component, min};
 use crate::shape::{CompositeShape, TriMesh};
 use crate::tables::ByDimension;
 
 /// Receives the pairs of parts that a search finds.
-pub(crate) trait MeetingVisitor<N: Real, const D: usize> {
+pub(crate) trait TouchingVisitor<N: Real, const D: usize> {
     /// Handles two parts. Returns the reach from now on, which must never grow; `None` ends the
     /// search.
     fn visit(&mut self, parts: [u32; 2]) -> Option<N>;
@@ -33,7 +33,7 @@ pub(crate) trait MeetingVisitor<N: Real, const D: usize> {
 
 /// The pairs of parts that a search looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Meetings {
+pub(crate) enum Touching {
     /// All within reach, each once.
     Each,
     /// Any pair: one is likely to end the search, so that no pair waits for a full batch of lanes.
@@ -43,65 +43,65 @@ pub(crate) enum Meetings {
     Nearest,
 }
 
-/// Visits the pairs of parts that may be within `reach`. Returns false, without a visit, for
+/// Visits the pairs of parts that may be within `max_distance`. Returns false, without a visit, for
 /// composites that are not searched by trees or are too far away for boxes of `f32`.
 ///
 /// Cost: O(n + k) for k pairs with boxes within reach in n blocks within reach, as long as the
 /// boxes fit tightly.
-pub(crate) fn each_meeting<N: Space<D>, const D: usize>(
+pub(crate) fn each_touching<N: Space<D>, const D: usize>(
     between: &Between<'_, N, D>,
-    reach: N,
-    wanted: Meetings,
-    visitor: &mut dyn MeetingVisitor<N, D>,
+    max_distance: N,
+    wanted: Touching,
+    visitor: &mut dyn TouchingVisitor<N, D>,
 ) -> bool {
     let [Some(parts1), Some(parts2)] = between.composites() else { return false };
     let trees = [parts1, parts2].mapped(|parts| parts.search().as_tree()?.packed_whole());
     let [Some(tree1), Some(tree2)] = trees else { return false };
-    let ways =
+    let distances =
         [&between.pair.pose12, &between.pose21].mapped(|pose| max_component(&pose.translation));
     // Translations beyond `f32` make the boxes infinite.
-    if ways.iter().any(|way| !way.as_f32().is_finite()) {
+    if distances.iter().any(|distance| !distance.as_f32().is_finite()) {
         return false;
     }
     let sizes = [parts1, parts2].mapped(|parts| extent(&parts.search().bounds()));
-    let size = sizes[0] + sizes[1] + max(ways[0], ways[1]);
-    let mut meeting = PartMeetings {
+    let size = sizes[0] + sizes[1] + max(distances[0], distances[1]);
+    let mut search = TouchingSearch {
         between,
         parts: [parts1, parts2],
         meshes: [parts1.as_mesh(), parts2.as_mesh()],
-        reach: Some(reach),
-        slack: if wanted == Meetings::Nearest { gap_slack(size) } else { N::ZERO },
+        max_distance: Some(max_distance),
+        slack: if wanted == Touching::Nearest { gap_slack(size) } else { N::ZERO },
         wanted,
         own: None,
         kept: [[0; 2]; LANES],
-        pairs: PartPairs::new(max(ways[0], ways[1])),
+        pairs: PartPairs::new(max(distances[0], distances[1])),
         visitor,
     };
-    visit_meetings([tree1, tree2], &mut meeting);
-    meeting.flush();
+    visit_touching([tree1, tree2], &mut search);
+    search.flush();
     true
 }
 
 /// A search of two trees for pairs of parts, with up to eight pairs waiting for the lanes.
-struct PartMeetings<'a, 'q, N: Real, const D: usize> {
+struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],
     /// The composites that are meshes, for quicker access to corners.
     meshes: [Option<&'a TriMesh<N, D>>; 2],
-    reach: Option<N>,
+    max_distance: Option<N>,
     /// Boxes may be farther apart than the nearest parts by this rounding error.
     slack: N,
-    wanted: Meetings,
+    wanted: Touching,
     /// The corners of the current part in the frame of the other composite; `None` for a shape
     /// without corners.
     own: Option<[Vector<N, D>; 3]>,
     /// The pairs in the lanes, waiting for a full batch.
     kept: [[u32; 2]; LANES],
     pairs: PartPairs<N, D>,
-    visitor: &'q mut dyn MeetingVisitor<N, D>,
+    visitor: &'q mut dyn TouchingVisitor<N, D>,
 }
 
-impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> TouchingSearch<'_, '_, N, D> {
     /// Returns the corners of a part of the first shape (0) or the second (1), in its frame; `None`
     /// for a part without.
     fn corners_of(&self, which: usize, id: u32) -> Option<[Vector<N, D>; 3]> {
@@ -115,27 +115,28 @@ impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
     /// Whether two parts are beyond reach along the line through their centroids; this rejects most
     /// pairs that boxes do not.
     fn are_beyond(&self, one: &[Vector<N, D>; 3], other: &[Vector<N, D>; 3]) -> bool {
-        let Some(reach) = self.reach.filter(|_| self.wanted == Meetings::Nearest) else {
+        let Some(max_distance) = self.max_distance.filter(|_| self.wanted == Touching::Nearest)
+        else {
             return false;
         };
-        let way = (other[0] + other[1] + other[2]) - (one[0] + one[1] + one[2]);
-        let [gap1, gap2] = [range(one, &way)[1], range(other, &way)[0]];
-        gap2 - gap1 > (reach + self.slack) * way.norm()
+        let axis = (other[0] + other[1] + other[2]) - (one[0] + one[1] + one[2]);
+        let [gap1, gap2] = [range(one, &axis)[1], range(other, &axis)[0]];
+        gap2 - gap1 > (max_distance + self.slack) * axis.norm()
     }
 
     /// Passes a pair to the visitor, which returns the new reach.
     fn found(&mut self, pair: [u32; 2]) {
-        self.reach = self.reach.and_then(|_| self.visitor.visit(pair));
+        self.max_distance = self.max_distance.and_then(|_| self.visitor.visit(pair));
     }
 
     /// Tests the waiting pairs in lanes and visits those not certainly beyond reach.
     fn flush(&mut self) {
         let (mut looked_at, mut within) = (0, None);
-        while let Some(reach) = self.reach.filter(|_| looked_at < self.pairs.count) {
+        while let Some(max_distance) = self.max_distance.filter(|_| looked_at < self.pairs.count) {
             // The lanes are tested again only after the reach has shrunk.
-            if within.is_none_or(|(known, _)| reach < known) {
-                let beyond = <N::Algorithms>::part_pairs(&self.pairs, reach).beyond;
-                within = Some((reach, !beyond));
+            if within.is_none_or(|(known, _)| max_distance < known) {
+                let beyond = <N::Algorithms>::part_pairs(&self.pairs, max_distance).beyond;
+                within = Some((max_distance, !beyond));
             }
             if within.is_some_and(|(_, lanes)| lanes >> looked_at & 1 == 1) {
                 self.found(self.kept[looked_at]);
@@ -158,17 +159,17 @@ impl<N: Space<D>, const D: usize> PartMeetings<'_, '_, N, D> {
     }
 }
 
-impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, D> {
+impl<N: Space<D>, const D: usize> TouchQuery<N, D> for TouchingSearch<'_, '_, N, D> {
     fn pose(&self, which: usize) -> &Pose<N, D> {
-        self.between.seen_by_other(which).1
+        self.between.in_frame_of_other(which).1
     }
 
-    fn reach(&self) -> Option<N> {
-        self.reach.map(|reach| reach + self.slack)
+    fn max_distance(&self) -> Option<N> {
+        self.max_distance.map(|max_distance| max_distance + self.slack)
     }
 
     fn is_for_nearest(&self) -> bool {
-        self.wanted == Meetings::Nearest
+        self.wanted == Touching::Nearest
     }
 
     fn guess(&mut self, parts: [u32; 2]) {
@@ -209,7 +210,7 @@ impl<N: Space<D>, const D: usize> TreeMeeting<N, D> for PartMeetings<'_, '_, N, 
                 _ => self.found(pair),
             }
         }
-        if self.wanted == Meetings::Any {
+        if self.wanted == Touching::Any {
             self.flush();
         }
     }

@@ -9,7 +9,7 @@ use crate::math::{Point, Real, unit};
 use crate::shape::Kind;
 
 /// Projects a point onto a solid in 2D, in the frame of the solid; `None` without a closed form.
-pub(crate) fn seen_in_plane<N: Real>(
+pub(crate) fn project_on_solid_2d<N: Real>(
     kind: Kind<'_, N, 2>,
     point: &Point<N, 2>,
 ) -> Option<Projection<N, 2>> {
@@ -17,15 +17,15 @@ pub(crate) fn seen_in_plane<N: Real>(
         Kind::Triangle(triangle) => ball_triangle2::project(triangle.corners(), point),
         Kind::Polytope(polygon) => Some(ball_polygon::project(polygon, point)),
         Kind::Rounded(solid) => {
-            let core = seen_in_plane(solid.inner().0, point)?;
+            let core = project_on_solid_2d(solid.inner().0, point)?;
             Some(inflated(&core, solid.radius()))
         }
-        other => seen(other, point),
+        other => project_on_common(other, point),
     }
 }
 
 /// Projects a point onto a solid in 3D, in the frame of the solid; `None` without a closed form.
-pub(crate) fn seen_in_space<N: Real>(
+pub(crate) fn project_on_solid_3d<N: Real>(
     kind: Kind<'_, N, 3>,
     point: &Point<N, 3>,
 ) -> Option<Projection<N, 3>> {
@@ -34,14 +34,16 @@ pub(crate) fn seen_in_space<N: Real>(
         Kind::Polytope(hull) => ball_polytope::project(hull, point),
         Kind::Cylinder(cylinder, _) => ball_cylinder::project(cylinder, point),
         Kind::Cone(cone, _) => ball_cone::project(cone, point),
-        Kind::Rounded(solid) => inflated(&seen_in_space(solid.inner().0, point)?, solid.radius()),
-        other => return seen(other, point),
+        Kind::Rounded(solid) => {
+            inflated(&project_on_solid_3d(solid.inner().0, point)?, solid.radius())
+        }
+        other => return project_on_common(other, point),
     })
 }
 
 /// Projects a point onto the kinds whose formula does not depend on the dimension.
 #[inline]
-fn seen<N: Real, const D: usize>(
+fn project_on_common<N: Real, const D: usize>(
     kind: Kind<'_, N, D>,
     point: &Point<N, D>,
 ) -> Option<Projection<N, D>> {

@@ -247,7 +247,7 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
     }
 
     fn revision(&self) -> Option<Revision> {
-        Some(self.named())
+        Some(self.revision_with_options())
     }
 
     fn surface(&self) -> Option<&dyn Surface<N, 2>> {

@@ -19,7 +19,7 @@ use smallvec::SmallVec;
 
 use super::agenda::{Agenda, OpenPair, STACK};
 use super::near_pairs::Toward;
-use super::regions::{Held, Turn, TurnedBox};
+use super::regions::{Held, RotatedBox, TreePose};
 use crate::bounding_volume::Aabb;
 use crate::bvh::tree::small;
 use crate::bvh::{Bounds, LANES, NONE, Tree};
@@ -34,12 +34,12 @@ use crate::math::{Mapped, Pose, Real, Vector, filled, max_component, unit};
 const ROUNDING: f32 = 64.0;
 
 /// The relative pose of two trees, and the receiver of pairs of their objects.
-pub(crate) trait TreeMeeting<N: Real, const D: usize> {
+pub(crate) trait TouchQuery<N: Real, const D: usize> {
     /// The pose of the first (0) or the second (1) tree in the frame of the other.
     fn pose(&self, which: usize) -> &Pose<N, D>;
 
     /// The largest distance of pairs to visit; it never grows, and `None` ends the search.
-    fn reach(&self) -> Option<N>;
+    fn max_distance(&self) -> Option<N>;
 
     /// Whether the reach shrinks to the best distance. If so, pairs of blocks come by their gaps,
     /// not the deepest first.
@@ -72,38 +72,39 @@ pub(crate) trait TreeMeeting<N: Real, const D: usize> {
 }
 
 /// A depth-first search of two trees, best first if it is for the nearest pair.
-struct MeetingSearch<'a, 'q, N: Real, const D: usize> {
+struct TouchSearch<'a, 'q, N: Real, const D: usize> {
     trees: [&'a Tree<D>; 2],
-    turns: [Turn<D>; 2],
+    tree_poses: [TreePose<D>; 2],
     level: Level,
     /// Bound of the rounding error of a gap in `f32`.
-    room: f32,
+    margin: f32,
     /// Bound of the rounding error of a gap in the scalar type.
     slack: N,
     is_for_nearest: bool,
-    question: &'q mut dyn TreeMeeting<N, D>,
+    question: &'q mut dyn TouchQuery<N, D>,
 }
 
 /// Visits all pairs of objects of two trees with boxes within the reach of the question; pairs
 /// somewhat farther may be among them.
-pub(crate) fn visit_meetings<N: Real, const D: usize>(
+pub(crate) fn visit_touching<N: Real, const D: usize>(
     trees: [&Tree<D>; 2],
-    question: &mut dyn TreeMeeting<N, D>,
+    question: &mut dyn TouchQuery<N, D>,
 ) {
     if trees.iter().any(|tree| tree.is_empty()) {
         return;
     }
     debug_assert!(trees.iter().all(|tree| !tree.is_stale), "searches need refitted trees");
-    let turns = [0, 1].mapped(|which| Turn::of(question.pose(which)));
-    let way = max_component(&question.pose(0).translation).as_f32()
+    let tree_poses = [0, 1].mapped(|which| TreePose::of(question.pose(which)));
+    let distances = max_component(&question.pose(0).translation).as_f32()
         + max_component(&question.pose(1).translation).as_f32();
-    let size = trees[0].size() + trees[1].size() + way;
-    let room = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
+    let size = trees[0].size() + trees[1].size() + distances;
+    let margin = ROUNDING * f32::EPSILON * size + f32::MIN_POSITIVE;
     let gap = f32::NEG_INFINITY;
     let whole = OpenPair { layers: trees.mapped(Tree::top_layer), blocks: [0, 0], gap };
     let slack = N::lit(f64::from(ROUNDING) * f64::from(size)) * N::EPSILON;
     let (level, is_for_nearest) = (Level::new(), question.is_for_nearest());
-    let mut search = MeetingSearch { trees, turns, level, room, slack, is_for_nearest, question };
+    let mut search =
+        TouchSearch { trees, tree_poses, level, margin, slack, is_for_nearest, question };
     if is_for_nearest {
         search.guess(whole);
         search.run(whole, BinaryHeap::new());
@@ -112,24 +113,24 @@ pub(crate) fn visit_meetings<N: Real, const D: usize>(
     }
 }
 
-impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
+impl<N: Real, const D: usize> TouchSearch<'_, '_, N, D> {
     /// Opens pairs of blocks until the queue is empty or the question ends the search. Of two inner
     /// blocks the one with the larger surface is opened.
     fn run(&mut self, whole: OpenPair, mut agenda: impl Agenda) {
         agenda.put(whole);
         while let Some(pair) = agenda.take() {
-            let Some(room) = self.room() else { return };
-            if pair.gap > room || (self.is_for_nearest && self.is_beyond(&pair)) {
+            let Some(margin) = self.margin() else { return };
+            if pair.gap > margin || (self.is_for_nearest && self.is_beyond(&pair)) {
                 continue;
             }
             match pair.layers {
-                [0, 0] => self.meet(&pair, room),
-                [_, 0] => self.open(0, &pair, room, &mut agenda),
-                [0, _] => self.open(1, &pair, room, &mut agenda),
+                [0, 0] => self.meet(&pair, margin),
+                [_, 0] => self.open(0, &pair, margin, &mut agenda),
+                [0, _] => self.open(1, &pair, margin, &mut agenda),
                 _ => {
                     let [one, other] =
                         [0, 1].mapped(|which| self.bounds(which, &pair).half_surface());
-                    self.open(usize::from(other > one), &pair, room, &mut agenda);
+                    self.open(usize::from(other > one), &pair, margin, &mut agenda);
                 }
             }
         }
@@ -139,10 +140,11 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     /// objects so far, or along that between the centres of their boxes. Computed in the scalar
     /// type, which resolves more than `f32` between distant blocks.
     fn is_beyond(&self, pair: &OpenPair) -> bool {
-        let Some((best, reach)) = self.question.best().zip(self.question.reach()) else {
+        let Some((best, max_distance)) = self.question.best().zip(self.question.max_distance())
+        else {
             return false;
         };
-        let limit = reach + self.slack;
+        let limit = max_distance + self.slack;
         if self.gap_along(&best, pair) > limit {
             return true;
         }
@@ -156,16 +158,16 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     /// Returns the gap along a direction, given as a unit vector toward the other tree in the frame
     /// of each.
     fn gap_along(&self, toward: &Toward<N, D>, pair: &OpenPair) -> N {
-        let reaches = [0, 1].mapped(|which| {
+        let extents = [0, 1].mapped(|which| {
             let block = self.trees[which].slab_box(pair.layers[which].into(), pair.blocks[which]);
-            block.reach(&toward[which])
+            block.extent(&toward[which])
         });
-        toward[0].dot(&self.question.pose(1).translation) - reaches[0] - reaches[1]
+        toward[0].dot(&self.question.pose(1).translation) - extents[0] - extents[1]
     }
 
     /// The reach plus the rounding error; `None` to end the search.
-    fn room(&self) -> Option<f32> {
-        self.question.reach().map(|reach| self.room + reach.as_f32_above())
+    fn margin(&self) -> Option<f32> {
+        self.question.max_distance().map(|max_distance| self.margin + max_distance.as_f32_above())
     }
 
     /// Hands out one object of each tree. Each is the end of a descent towards the centre of the
@@ -173,9 +175,9 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     fn guess(&mut self, whole: OpenPair) {
         let (mut pair, mut found) = (whole, [NONE; 2]);
         for which in [0, 1, 0, 1] {
-            let turn = &self.turns[1 - which];
-            let turned = turn.vector(&self.bounds(1 - which, &pair).center());
-            let middle = filled(|row| turned[row] + turn.shift[row]);
+            let turn = &self.tree_poses[1 - which];
+            let center = turn.vector(&self.bounds(1 - which, &pair).center());
+            let middle = filled(|row| center[row] + turn.shift[row]);
             let Some(slot) = self.trees[which].slot_near(&middle) else { return };
             (pair.layers[which], pair.blocks[which]) = (0, slot / small(LANES));
             found[which] = self.trees[which].ids[slot as usize];
@@ -192,18 +194,19 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
     }
 
     /// Returns the boxes in block `which` that the contents of the other block may touch.
-    fn held(&self, which: usize, pair: &OpenPair, room: f32) -> Held {
+    fn held(&self, which: usize, pair: &OpenPair, margin: f32) -> Held {
         let own =
             self.trees[1 - which].slab_box(pair.layers[1 - which].into(), pair.blocks[1 - which]);
-        let seen = self.turns[1 - which].turned(own.bounds, own.slab, room, self.is_for_nearest);
+        let region =
+            self.tree_poses[1 - which].region_of(own.bounds, own.slab, margin, self.is_for_nearest);
         let (layer, block) = (usize::from(pair.layers[which]), pair.blocks[which] as usize);
-        seen.held(self.level, &self.trees[which].layers[layer].blocks[block])
+        region.held(self.level, &self.trees[which].layers[layer].blocks[block])
     }
 
     /// Queues the children of one block, each paired with the other block, so that the deepest
     /// overlap comes next.
-    fn open(&self, which: usize, pair: &OpenPair, room: f32, agenda: &mut impl Agenda) {
-        let Held { mask, gaps } = self.held(which, pair, room);
+    fn open(&self, which: usize, pair: &OpenPair, margin: f32, agenda: &mut impl Agenda) {
+        let Held { mask, gaps } = self.held(which, pair, margin);
         let (layer, first) = (pair.layers[which] - 1, pair.blocks[which] * small(LANES));
         let mut near = SmallVec::<[(f32, u32); LANES]>::new();
         for lane in Ones::<LANES>(mask) {
@@ -218,17 +221,17 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             let mut below = *pair;
             (below.layers[which], below.blocks[which]) = (layer, block);
             // Minus the rounding error of the sum.
-            below.gap = gap + room - room.abs() * ROUNDING * f32::EPSILON;
+            below.gap = gap + margin - margin.abs() * ROUNDING * f32::EPSILON;
             agenda.put(below);
         }
     }
 
     /// Visits the objects of two leaf blocks: each of the block with fewer near ones, with those of
     /// the other.
-    fn meet(&mut self, pair: &OpenPair, mut room: f32) {
+    fn meet(&mut self, pair: &OpenPair, mut margin: f32) {
         let mut masks = [0; 2];
         for which in [0, 1] {
-            masks[which] = self.held(which, pair, room).mask;
+            masks[which] = self.held(which, pair, margin).mask;
             if masks[which] == 0 {
                 return;
             }
@@ -241,15 +244,15 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
             let Some(id) = tree.id_in(own * small(LANES) + small(lane)) else { continue };
             let aabb = self.question.object_in_other(which, id);
             let corners = self.question.corners().filter(|_| self.is_for_nearest);
-            let region = TurnedBox::of_object(&Bounds::enclosing(&aabb), corners, room);
+            let region = RotatedBox::of_object(&Bounds::enclosing(&aabb), corners, margin);
             let near = region.held(self.level, block);
             let ids = Ones::<LANES>(near.mask & masks[1 - which])
                 .filter_map(|lane| other.id_in(others * small(LANES) + small(lane)));
             let ids = ids.collect::<SmallVec<[u32; LANES]>>();
             if !ids.is_empty() {
                 self.question.visit(which, id, &ids);
-                let Some(shrunk) = self.room() else { return };
-                room = shrunk;
+                let Some(shrunk) = self.margin() else { return };
+                margin = shrunk;
             }
         }
     }
@@ -259,16 +262,16 @@ impl<N: Real, const D: usize> MeetingSearch<'_, '_, N, D> {
 mod tests {
     use super::*;
     use crate::bvh::Lanes;
-    use crate::math::noise::Noise;
+    use crate::math::xorshift::Xorshift;
     use crate::math::{Isometry3, Point, Vector};
 
     /// Segments by their ends, in the frame of their tree.
     type Segments = Vec<[Point<f64, 3>; 2]>;
 
-    struct Turned<'a> {
+    struct RotatedPairs<'a> {
         segments: &'a [Segments; 2],
         poses: [Pose<f64, 3>; 2],
-        reach: f64,
+        max_distance: f64,
         found: Vec<[u32; 2]>,
         is_first_enough: bool,
         is_for_nearest: bool,
@@ -276,13 +279,13 @@ mod tests {
         own: Option<[Vector<f64, 3>; 3]>,
     }
 
-    impl TreeMeeting<f64, 3> for Turned<'_> {
+    impl TouchQuery<f64, 3> for RotatedPairs<'_> {
         fn pose(&self, which: usize) -> &Pose<f64, 3> {
             &self.poses[which]
         }
 
-        fn reach(&self) -> Option<f64> {
-            (self.found.is_empty() || !self.is_first_enough).then_some(self.reach)
+        fn max_distance(&self) -> Option<f64> {
+            (self.found.is_empty() || !self.is_first_enough).then_some(self.max_distance)
         }
 
         fn is_for_nearest(&self) -> bool {
@@ -309,67 +312,69 @@ mod tests {
         Aabb::new(a.inf(b), a.sup(b))
     }
 
-    fn segments(noise: &mut Noise, count: usize) -> Segments {
+    fn segments(random: &mut Xorshift, count: usize) -> Segments {
         let each = |_| {
-            let start = Point::from(noise.vector::<f64>(20.0));
-            [start, start + noise.vector::<f64>(2.0)]
+            let start = Point::from(random.vector::<f64>(20.0));
+            [start, start + random.vector::<f64>(2.0)]
         };
         (0..count).map(each).collect()
     }
 
     /// The least distance of samples along two segments.
     fn distance(one: &[Point<f64, 3>; 2], other: &[Point<f64, 3>; 2]) -> f64 {
-        let place = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
-        let ways = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
-        ways.map(|(at1, at2)| (place(one, at1) - place(other, at2)).norm())
+        let point_at = |[a, b]: &[Point<f64, 3>; 2], at: i32| a + (b - a) * (f64::from(at) / 8.0);
+        let pairs = (0..=8).flat_map(|at1| (0..=8).map(move |at2| (at1, at2)));
+        pairs
+            .map(|(at1, at2)| (point_at(one, at1) - point_at(other, at2)).norm())
             .fold(f64::INFINITY, f64::min)
     }
 
     #[test]
     fn no_near_pair_is_missed() {
-        let noise = &mut Noise(9);
-        for (count1, count2, reach) in
+        let random = &mut Xorshift(9);
+        for (count1, count2, max_distance) in
             [(0, 9, 1.0), (1, 1, 60.0), (5, 300, 2.0), (700, 12, 1.0), (400, 900, 0.5)]
         {
-            let all = [segments(noise, count1), segments(noise, count2)];
+            let all = [segments(random, count1), segments(random, count2)];
             let tree = |segments: &Segments| {
                 let boxes = segments.iter().map(|own| Bounds::enclosing(&around(own)));
                 Tree::of_still(Lanes::detect(), (0..).zip(boxes))
             };
             let trees = [tree(&all[0]), tree(&all[1])];
-            let turn = noise.vector::<f64>(3.0);
+            let turn = random.vector::<f64>(3.0);
             let pose = Pose::from(Isometry3::new(Vector::<f64, 3>::new(9.0, -4.0, 2.0), turn));
             let poses = [pose.inverse(), pose];
-            let mut pairs = Turned {
+            let mut pairs = RotatedPairs {
                 segments: &all,
                 poses,
-                reach,
+                max_distance,
                 found: Vec::new(),
                 is_first_enough: false,
                 is_for_nearest: false,
                 own: None,
             };
-            let ways = [false, true].map(|is_for_nearest| {
+            let results = [false, true].map(|is_for_nearest| {
                 pairs.is_for_nearest = is_for_nearest;
-                visit_meetings(trees.each_ref(), &mut pairs);
+                visit_touching(trees.each_ref(), &mut pairs);
                 let mut found = core::mem::take(&mut pairs.found);
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once");
                 found
             });
-            let [found, nearest] = &ways;
+            let [found, nearest] = &results;
             assert!(nearest.len() * 2 < found.len() || found.len() < 100, "{}", nearest.len());
             for (id1, one) in (0..).zip(&all[0]) {
                 for (id2, other) in (0..).zip(&all[1]) {
                     let distance = distance(one, &other.map(|end| pose.point(&end)));
-                    let is_found = ways.iter().all(|way| way.binary_search(&[id1, id2]).is_ok());
-                    assert!(is_found || distance > reach, "{id1} and {id2}: {distance}");
+                    let is_found =
+                        results.iter().all(|result| result.binary_search(&[id1, id2]).is_ok());
+                    assert!(is_found || distance > max_distance, "{id1} and {id2}: {distance}");
                 }
             }
             let most = count1 * count2;
             assert!(most < 1000 || found.len() * 20 < most, "{} of {most} pairs", found.len());
             (pairs.is_first_enough, pairs.is_for_nearest) = (true, false);
-            visit_meetings(trees.each_ref(), &mut pairs);
+            visit_touching(trees.each_ref(), &mut pairs);
             assert!(pairs.found.len() <= LANES, "the search ends");
         }
     }
