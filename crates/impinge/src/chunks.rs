@@ -141,7 +141,7 @@ mod tests {
             slots.fill(true);
             if range.start == CHUNK { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        assert!(in_order(0..4 * CHUNK, &mut found[..], &work).is_break(), "it says so");
+        assert!(in_order(0..4 * CHUNK, &mut found[..], &work).is_break(), "the work breaks");
         assert_eq!(found.iter().filter(|&&is_done| is_done).count(), 2 * CHUNK, "two chunks");
     }
 }

@@ -424,7 +424,7 @@ mod tests {
         let still = strip.transformed_by(&Pose::identity());
         assert_eq!(still, strip, "an identity pose changes nothing");
         let rotated = strip.transformed_by(&Pose::from_isometry(&Isometry2::rotation(0.3)));
-        assert_eq!(rotated, Aabb::unbounded(), "both axes lean on the infinite one");
+        assert_eq!(rotated, Aabb::unbounded(), "both axes have a component of the infinite one");
     }
 
     #[test]

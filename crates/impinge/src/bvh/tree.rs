@@ -162,7 +162,7 @@ impl<const D: usize> Tree<D> {
 
     /// Makes the tree a sparing one, for objects that seldom change. It must be settled.
     pub(crate) fn spare(&mut self) {
-        debug_assert_eq!(self.changed, 0, "a settled tree");
+        debug_assert_eq!(self.changed, 0, "a tree with committed boxes");
         (self.is_sparing, self.remembers, self.before) = (true, false, Vec::new());
         (self.loads, self.dirty, self.touched) = (Vec::new(), Vec::new(), Vec::new());
         self.give_back();

@@ -159,7 +159,7 @@ mod tests {
         assert!(!last_of(&hulls, [(&flat, Some(0)), (&ball, None)], 0.0), "it has no volume");
         let made: Vec<_> =
             hulls.0.iter().map(|hull| hull.made.get().map(Option::is_some)).collect();
-        assert_eq!(made, [Some(false), Some(true), None], "when they are asked for");
+        assert_eq!(made, [Some(false), Some(true), None], "after enough requests");
     }
 
     #[test]

@@ -334,7 +334,7 @@ mod tests {
             shapes: [Shape::<f32, 3>::geometry(ball); 2],
             between: Vector::<f32, 3>::new(x, 0.0, 0.0),
         };
-        assert!(!apart(&small, 2.2e-23).is_beyond(0.0), "squares that vanish say nothing");
+        assert!(!apart(&small, 2.2e-23).is_beyond(0.0), "squares that underflow decide nothing");
         assert!(apart(&small, 1e-18).is_beyond(0.0), "these are numbers");
         assert!(!apart(&large, 3.7e19).is_beyond(0.0), "squares that overflow on both sides");
         assert!(!apart(&small, f32::NAN).is_beyond(0.0), "NaN");

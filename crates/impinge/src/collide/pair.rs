@@ -335,7 +335,7 @@ mod tests {
         let (pair, swapped) = canonical(&pose1, cuboid.geometry(), &pose2, ball.geometry());
         assert!(swapped, "the ball comes first");
         assert_eq!(Geometry(pair.first).kind(), ShapeKind::Ball, "the ball comes first");
-        assert_eq!(pair.pose12.translation.x, -3.0, "the box seen from the ball");
+        assert_eq!(pair.pose12.translation.x, -3.0, "the box in the frame of the ball");
     }
 
     #[test]
@@ -345,9 +345,9 @@ mod tests {
         let order = |pose1, ball1, pose2, ball2| {
             canonical(&pose1, geometry(ball1), &pose2, geometry(ball2)).1
         };
-        assert!(!order(at(0.0, 1.0), &large, at(0.0, 2.0), &small), "by place");
-        assert!(order(at(0.0, 2.0), &small, at(0.0, 1.0), &large), "by place, turned round");
-        assert!(order(at(0.0, 1.0), &large, at(0.0, 1.0), &small), "by size at one place");
-        assert!(!order(at(0.0, 1.0), &small, at(0.0, 1.0), &large), "by size at one place");
+        assert!(!order(at(0.0, 1.0), &large, at(0.0, 2.0), &small), "by position");
+        assert!(order(at(0.0, 2.0), &small, at(0.0, 1.0), &large), "by position, swapped");
+        assert!(order(at(0.0, 1.0), &large, at(0.0, 1.0), &small), "by size at one position");
+        assert!(!order(at(0.0, 1.0), &small, at(0.0, 1.0), &large), "by size at one position");
     }
 }

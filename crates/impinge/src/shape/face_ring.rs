@@ -146,7 +146,7 @@ mod tests {
             let triangle = Triangle::new(a, b, c);
             triangle.core_feature(&direction, &mut feature);
             if let Some(part) = triangle.supporting_part(&direction) {
-                assert_eq!(part, feature.id, "a triangle shows {feature:?} to {direction}");
+                assert_eq!(part, feature.id, "{feature:?} supports {direction}");
                 if let FeatureId::Face(_) = part {
                     let mut ring = FaceRing::blank();
                     triangle.fill_ring(&direction, &mut ring);

@@ -187,7 +187,7 @@ mod tests {
         }
         feature.drop_repeated();
         assert_eq!(feature.vertices.len(), 2, "{feature:?}");
-        assert_eq!(feature.vertices.len(), feature.vertex_ids.len(), "each has a name");
+        assert_eq!(feature.vertices.len(), feature.vertex_ids.len(), "each has an id");
         assert_eq!(feature.side_ids.as_slice(), [feature.id], "one side, the segment itself");
         assert!(matches!(feature.id, FeatureId::Edge(1 | 3)), "a side with a length: {feature:?}");
     }
@@ -201,6 +201,6 @@ mod tests {
         }
         feature.drop_repeated();
         assert_eq!((feature.vertices.len(), feature.side_ids.len()), (1, 0), "{feature:?}");
-        assert_eq!(feature.id, feature.vertex_ids[0], "named as its vertex");
+        assert_eq!(feature.id, feature.vertex_ids[0], "the id of its vertex");
     }
 }

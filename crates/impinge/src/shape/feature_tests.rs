@@ -50,7 +50,7 @@ fn faces<N: Real, const D: usize>(
     let mut feature = Feature::default();
     solid.core_feature(direction, &mut feature);
     let count = feature.vertices.len();
-    assert_eq!(feature.vertex_ids.len(), count, "a name for each: {feature:?}");
+    assert_eq!(feature.vertex_ids.len(), count, "an id for each: {feature:?}");
     assert_eq!(
         feature.side_ids.len(),
         [0, 0, 1][..].get(count).copied().unwrap_or(count),
@@ -113,7 +113,7 @@ fn face2<N: Real>(solid: &dyn ConvexPolyhedron<N, 2>, id: FeatureId) {
     let behind = a.coords.dot(&normal) - solid.core_support(&normal).coords.dot(&normal);
     assert!(behind.abs() <= tolerance(solid), "the solid lies behind: {face:?}");
     let ends = solid.edge(id).map(|(id, end)| (id, solid.vertex(id), end));
-    assert!(ends.iter().all(|(_, vertex, end)| vertex == end), "named ends: {ends:?}");
+    assert!(ends.iter().all(|(_, vertex, end)| vertex == end), "ids of the ends: {ends:?}");
     assert_eq!(ends.map(|(id, ..)| id).as_slice(), face.vertex_ids.as_slice(), "one order");
 }
 
@@ -177,7 +177,11 @@ fn cuboid_numbers_are_the_documented_ones() {
     );
     let mut face = Feature::default();
     solid.face(FeatureId::Face(4), &mut face);
-    assert_eq!(face.vertex_ids.as_slice(), [4, 5, 7, 6].map(FeatureId::Vertex), "seen from +z");
+    assert_eq!(
+        face.vertex_ids.as_slice(),
+        [4, 5, 7, 6].map(FeatureId::Vertex),
+        "counter-clockwise about +z"
+    );
     // Edge 6: along y (4 · 1), and of z and x only x (the second bit) positive.
     let ends = solid.edge(FeatureId::Edge(6)).map(|(_, end)| end);
     assert_eq!(ends[0], Point::<f64, 3>::new(1.0, -2.0, -3.0), "one end");
@@ -215,18 +219,18 @@ fn the_facing_feature_of_a_cube_follows_the_angle() {
         "exactly: an edge along z"
     );
     solid.support_feature_toward(&tilted, 2e-3, &mut feature);
-    assert_eq!(feature.id, FeatureId::Face(0), "turned by a little: a face");
+    assert_eq!(feature.id, FeatureId::Face(0), "rotated slightly: a face");
 }
 
 #[test]
 fn flat_cuboids_answer_what_they_are() {
     let mut feature = Feature::default();
-    let sheet = Cuboid::<f32, 3>::new(Vector::<f32, 3>::new(1.0, 2.0, 0.0));
-    sheet.core_feature(&Vector::<f32, 3>::z(), &mut feature);
+    let flat_box = Cuboid::<f32, 3>::new(Vector::<f32, 3>::new(1.0, 2.0, 0.0));
+    flat_box.core_feature(&Vector::<f32, 3>::z(), &mut feature);
     assert_eq!((feature.vertices.len(), feature.id), (4, FeatureId::Face(4)), "a rectangle");
-    sheet.core_feature(&Vector::<f32, 3>::x(), &mut feature);
+    flat_box.core_feature(&Vector::<f32, 3>::x(), &mut feature);
     assert_eq!(feature.vertices.len(), 2, "its side is a segment: {feature:?}");
-    let ends = sheet.edge(feature.id).map(|(_, end)| end);
+    let ends = flat_box.edge(feature.id).map(|(_, end)| end);
     assert!(
         feature.vertices.iter().all(|v| ends.contains(v)),
         "{feature:?} is that edge: {ends:?}"

@@ -360,8 +360,8 @@ fn boxes<F: Batch<N, D>, N: Scene<D> + Space<D>, const D: usize>() {
         for tilt in [0.005, 0.1, 3.0] {
             let steps = faced::<N, D>(seed, tilt, &request(0.1, sine));
             let [points, declined, begun] = compare::<F, N, D>(&steps, "faced");
-            assert!(points > 200, "{points} points, lean {tilt}");
-            assert!(declined * 2 < begun, "{declined} of {begun} declined, lean {tilt}");
+            assert!(points > 200, "{points} points, tilt {tilt}");
+            assert!(declined * 2 < begun, "{declined} of {begun} declined, tilt {tilt}");
         }
     }
     check::<F, N, D>([Sort::Cuboid, Sort::Cuboid]);

@@ -168,7 +168,7 @@ fn compare<N: Space<3>>(seed: u64, solid_of: impl Fn(&mut Random) -> Solid<N>, h
         let (of_one, found) = follow::<N>(solid_of(random), random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(!has_own_path || done * 2 > ROUNDS * STEPS, "{done} updates by the quick way");
+    assert!(!has_own_path || done * 2 > ROUNDS * STEPS, "{done} updates by the quick path");
     assert!(points > ROUNDS * STEPS / 2, "{points} points");
 }
 

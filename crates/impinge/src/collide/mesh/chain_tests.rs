@@ -172,7 +172,7 @@ fn compare<N: Space<2>>(seed: u64) {
         let (of_one, found) = follow::<N>(random, round);
         (done, points) = (done + of_one, points + found);
     }
-    assert!(done * 10 > 700 * STEPS * 8, "{done} updates by the quick way");
+    assert!(done * 10 > 700 * STEPS * 8, "{done} updates by the quick path");
     assert!(points > 700 * STEPS / 2, "{points} points");
 }
 

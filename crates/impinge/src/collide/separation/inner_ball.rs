@@ -85,7 +85,7 @@ mod tests {
             second: cone.geometry().0,
             pose12: Pose::from_translation(Vector::<f64, 3>::new(x, 0.5, 0.0)),
         };
-        assert!(inner_balls_meet(&at(2.49)), "1 and 1.5 are more than the way");
+        assert!(inner_balls_meet(&at(2.49)), "1 and 1.5 exceed the distance");
         assert!(!inner_balls_meet(&at(2.51)), "though the solids overlap");
         assert!(!inner_balls_meet(&at(f64::NAN)), "nowhere");
     }

@@ -50,7 +50,7 @@ fn check_proof<N: Real>(pair: &Pair<'_, N, 3>, found: &Separation<N, 3>, slack: 
     let local = pair.pose12.inverse_vector(&-normal);
     let low = normal.dot(&pair.pose12.point(&maps[1].core_support(&local)).coords);
     let proof = (low - high - found.distance).as_f64();
-    assert!(proof.abs() <= slack, "{what}: the normal says {} more", proof);
+    assert!(proof.abs() <= slack, "{what}: the height along the normal is {} more", proof);
     let away = found.point2 - found.point1 - normal * found.distance;
     assert!(away.norm().as_f64() <= slack, "{what}: the points are aside by {away:?}");
     let on = [found.point1, pair.pose12.inverse_point(&found.point2)];

@@ -115,7 +115,7 @@ fn narrow_phase_cases() {
         let curved = pair.contains("cylinder") || pair.contains("cone");
         let size = number(&case["size"]);
         let input = Case {
-            id: case["id"].as_str().expect("a name"),
+            id: case["id"].as_str().expect("an id"),
             shapes: [&case["shape1"], &case["shape2"]],
             pose12: &case["pos12"],
             pose1: None,
@@ -143,7 +143,7 @@ fn regression_cases() {
             continue;
         }
         let input = Case {
-            id: case["id"].as_str().expect("a name"),
+            id: case["id"].as_str().expect("an id"),
             shapes: [&case["shape1"], &case["shape2"]],
             pose12: &case["pose2"],
             pose1: Some(&case["pose1"]),

@@ -49,7 +49,7 @@ fn coincident<N: Real>() {
     let found = solve(&cube, &cube, [0.0; 3]);
     assert_eq!((found.distance, found.normal.x.abs()), (-N::TWO, N::ONE), "{found:?}");
     let square = Cuboid::new(vector::<N, 2>([1.0, 2.0]));
-    assert_eq!(solve(&square, &square, [0.0; 2]).distance, -N::TWO, "the narrow way out");
+    assert_eq!(solve(&square, &square, [0.0; 2]).distance, -N::TWO, "the shortest exit");
     let cylinder = Cylinder::new(N::TWO, N::ONE);
     let error = (solve(&cylinder, &cylinder, [0.0; 3]).distance + N::TWO).abs();
     assert!(error < N::lit(1e-10) + N::lit(16.0) * N::EPSILON, "sideways: {error}");

@@ -111,10 +111,10 @@ pub(crate) fn nearest_part<N: Space<D>, const D: usize>(
     let mut best: Option<PartPoint<N, D>> = None;
     let limit = if touching { N::ZERO } else { N::INFINITY };
     search.nearest(&start, limit, &mut |index, _| {
-        let near = PartQuery::new(parts.part(index), point);
-        let is_beyond = best.is_some_and(|best| near.is_beyond(best.distance));
+        let part_query = PartQuery::new(parts.part(index), point);
+        let is_beyond = best.is_some_and(|best| part_query.is_beyond(best.distance));
         if !is_beyond
-            && let Some(found) = near.nearest(index, point)
+            && let Some(found) = part_query.nearest(index, point)
             && best.is_none_or(|best| found.is_before(&best))
         {
             best = Some(found);
@@ -205,15 +205,18 @@ mod tests {
             } else {
                 PartSolid::Triangle(Triangle::new(corners[0], corners[1], corners[2]))
             };
-            let near = PartQuery::new(Part { pose: Pose::identity(), solid }, &point);
-            let found = near.nearest(0, &point).expect("finite").distance;
-            assert!(!near.is_beyond(found), "{round}: it is as near as it is");
+            let part_query = PartQuery::new(Part { pose: Pose::identity(), solid }, &point);
+            let found = part_query.nearest(0, &point).expect("finite").distance;
+            assert!(!part_query.is_beyond(found), "{round}: it is as near as it is");
             let share = N::lit(0.25 + 0.5 * f64::from(u32::try_from(round % 2).expect("small")));
             for limit in [found * share, found * N::lit(1.5)] {
-                assert!(!near.is_beyond(limit) || limit < found, "{round}: {found} and {limit}");
+                assert!(
+                    !part_query.is_beyond(limit) || limit < found,
+                    "{round}: {found} and {limit}"
+                );
             }
             beyond += 1;
-            decided += usize::from(near.is_beyond(found * share));
+            decided += usize::from(part_query.is_beyond(found * share));
         }
         assert!(decided * 3 > beyond, "{decided} of {beyond}");
     }

@@ -330,7 +330,7 @@ mod tests {
             count += usize::from(expected.is_some());
             let Some(arrival) = arrival_of_balls(&start, &path, tolerance) else { continue };
             met += 1;
-            let expected = expected.expect("they meet by steps too");
+            let expected = expected.expect("they touch by steps too");
             // If they graze each other, they are within the tolerance for a longer time.
             let closing = path.closing(&arrival.separation.normal);
             let late = (arrival.along - expected.along) * closing;

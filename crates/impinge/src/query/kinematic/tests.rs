@@ -238,7 +238,7 @@ fn common_motion_carries_the_contact_along() {
         assert!(error < 1e-12, "carried along: {error}");
         assert!((moved.depth - tracked.contact.depth).abs() < 1e-12, "as deep as before");
         assert_eq!(other.contact, tracked.contact.flipped(), "swapped");
-        assert_eq!(other.id, tracked.id, "one contact, one name");
+        assert_eq!(other.id, tracked.id, "one contact, one id");
         let back = other.kinematic.contact(&(common * m2), &(common * m1)).flipped();
         assert!((back.world1 - moved.world1).norm() < 1e-12, "swapped and moved");
         assert_eq!(other.kinematic.feature1(), tracked.kinematic.feature2(), "swapped features");
@@ -260,5 +260,5 @@ fn a_vanishing_connection_keeps_the_normal() {
     let kinematic = ContactKinematic::new(&pair, &raw.normal, &raw.points[0]);
     let met = kinematic.predicted(&at(0.0, 0.0, 0.0, [0.0; 3]));
     assert_eq!(met.normal, separation.normal, "the old one");
-    assert_eq!(met.distance.as_f64(), 0.0, "they meet");
+    assert_eq!(met.distance.as_f64(), 0.0, "they touch");
 }

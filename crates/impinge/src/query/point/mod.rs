@@ -375,11 +375,11 @@ impl<N: Real, const D: usize> PartPoint<N, D> {
         point: &Point<N, D>,
         solid: bool,
     ) -> PointLocation<N> {
-        let near = PartQuery::new(parts.part(self.part), point);
-        let is_own = solid && self.distance <= N::ZERO && near.query != self.local;
+        let part_query = PartQuery::new(parts.part(self.part), point);
+        let is_own = solid && self.distance <= N::ZERO && part_query.query != self.local;
         let (at, feature) =
-            if is_own { (&near.query, None) } else { (&self.local, Some(self.feature)) };
-        let barycentric = Barycentric::of(near.solid().geometry(), at, feature);
+            if is_own { (&part_query.query, None) } else { (&self.local, Some(self.feature)) };
+        let barycentric = Barycentric::of(part_query.solid().geometry(), at, feature);
         PointLocation { part: self.part, feature: self.feature, barycentric }
     }
 }

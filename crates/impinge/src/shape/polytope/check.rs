@@ -144,14 +144,14 @@ mod tests {
         );
         assert_eq!(polygon.validate(), Ok(()), "a triangle");
         polygon.vertices.swap(0, 1);
-        assert!(polygon.validate().is_err(), "turned over");
+        assert!(polygon.validate().is_err(), "reversed");
     }
 
     #[test]
     fn open_surfaces_are_refused() {
         let mut reversed = LOOPS;
         reversed[0].reverse();
-        assert_eq!(tetrahedron(&reversed), None, "a face turned over");
+        assert_eq!(tetrahedron(&reversed), None, "a reversed face");
         assert_eq!(tetrahedron(&LOOPS[..3]), None, "a face is missing");
     }
 }

@@ -209,7 +209,7 @@ mod tests {
                 check(parts.as_ref(), &mut random, &mut counts);
             }
         }
-        assert!(counts.iter().all(|&count| count > 1000), "all of it is met: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 1000), "all cases occur: {counts:?}");
     }
 
     #[test]

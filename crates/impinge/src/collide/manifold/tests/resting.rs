@@ -296,7 +296,7 @@ fn a_prism_of_many_sides_stands_on_four_points() {
     assert_eq!(standing.counts(&request(1e-5, 0.0)), [4; 2], "few of twenty");
     let mut wish = request(1e-5, 0.0);
     wish.max_points = 32;
-    assert_eq!(standing.counts(&wish), [20; 2], "all of them, if asked for");
+    assert_eq!(standing.counts(&wish), [20; 2], "all of them, if requested");
 }
 
 /// A flat tent: its ridge is nearest to the half-space, and the near vertices belong to two faces.

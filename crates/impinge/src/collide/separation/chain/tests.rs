@@ -103,5 +103,5 @@ fn segments_without_length_are_left_to_others() {
     assert_eq!((near.from_middle, near.found.len()), (2.0, 7), "seven lie two above");
     let mut none = Links::new(9.0);
     question.pose12.translation.x = f32::NAN;
-    assert!(links(&question, &mut none).is_none(), "no place");
+    assert!(links(&question, &mut none).is_none(), "no finite position");
 }

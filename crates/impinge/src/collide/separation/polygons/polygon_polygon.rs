@@ -420,6 +420,6 @@ pub(in crate::collide::separation) mod tests {
         assert_eq!((found.distance, found.normal.x), (3.0, 1.0), "in a row");
         let point = Triangle::new(p(0.0, 0.0), p(0.0, 0.0), p(0.0, 0.0));
         assert_eq!(of(&point, &point, 3.0, 4.0).distance, 5.0, "points");
-        assert_eq!(of(&point, &point, 0.0, 0.0).normal, Vector::<f64, 2>::x(), "at one place");
+        assert_eq!(of(&point, &point, 0.0, 0.0).normal, Vector::<f64, 2>::x(), "at one position");
     }
 }

@@ -155,10 +155,10 @@ fn pair_of<'a, N: Real>(shapes: &'a Solids<N>, pose12: Pose<N, 3>) -> Pair<'a, N
 /// A segment parallel to two edges of a sheet without thickness on the axis of a cylinder. The
 /// point across from an edge lies along the normal of a side, so the arc is split at its end. The
 /// half without length once contained the opposite normal, and its depth was taken for the sheet's.
-fn a_wire_in_a_sheet<N: Real>() {
-    let sheet = Cuboid::new(Vector::<N, 3>::new(N::ZERO, N::lit(0.95), N::lit(0.5)));
-    let wire = Cylinder::new(N::lit(0.125), N::lit(0.001));
-    let shapes: Solids<N> = [Box::new(sheet), Box::new(wire)];
+fn a_thin_cylinder_in_a_flat_box<N: Real>() {
+    let flat_box = Cuboid::new(Vector::<N, 3>::new(N::ZERO, N::lit(0.95), N::lit(0.5)));
+    let cylinder = Cylinder::new(N::lit(0.125), N::lit(0.001));
+    let shapes: Solids<N> = [Box::new(flat_box), Box::new(cylinder)];
     let (zero, one) = (N::ZERO, N::ONE);
     for across in [0.0, 0.0625, -0.0625, 0.25] {
         let translation = Vector::<N, 3>::new(zero, zero, N::lit(across));
@@ -177,13 +177,13 @@ fn a_wire_in_a_sheet<N: Real>() {
 
 #[test]
 fn an_arc_without_length_has_no_other_side() {
-    a_wire_in_a_sheet::<f64>();
-    a_wire_in_a_sheet::<f32>();
+    a_thin_cylinder_in_a_flat_box::<f64>();
+    a_thin_cylinder_in_a_flat_box::<f32>();
 }
 
 /// A roof bent by less than the root of epsilon, and a cylinder on its ridge, tilted along the
 /// ridge by less still. The least depth is between the normals of the slopes, not at one of a face.
-fn a_column_on_a_roof<N: Real>() {
+fn a_cylinder_on_a_ridge<N: Real>() {
     let (bend, tilt) = (N::EPSILON.sqrt(), N::EPSILON.sqrt() / N::lit(6.0));
     let (zero, one) = (N::ZERO, N::ONE);
     let corner = |x: N, y: N, z: N| Point::<N, 3>::new(x, y, z);
@@ -207,8 +207,8 @@ fn a_column_on_a_roof<N: Real>() {
 
 #[test]
 fn a_roof_may_be_hardly_bent() {
-    a_column_on_a_roof::<f64>();
-    a_column_on_a_roof::<f32>();
+    a_cylinder_on_a_ridge::<f64>();
+    a_cylinder_on_a_ridge::<f32>();
 }
 /// A small sliver about the axis of a cone. All normals of the side are equally good up to 10⁻⁹, so
 /// arcs across them are split endlessly before the best of them is known.

@@ -157,7 +157,7 @@ mod tests {
         let found = of(&near, &over);
         assert_eq!((found.distance, found.normal.x), (0.0, 0.0), "they leave sideways");
         let point = Segment::new(p(1.0, 0.0, 0.0), p(1.0, 0.0, 0.0));
-        assert_eq!(of(&point, &point).normal, Vector::<f64, 3>::x(), "two points at one place");
+        assert_eq!(of(&point, &point).normal, Vector::<f64, 3>::x(), "two points at one position");
     }
 
     #[test]

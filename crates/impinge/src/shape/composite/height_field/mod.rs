@@ -2,7 +2,7 @@
 //!
 //! Triangles, boxes and seams are computed from the heights on demand. Only the minimum and maximum
 //! height of blocks of cells is stored ([`Pyramid`]), in place of a tree. [`grid`] has what 2D and
-//! 3D share; `line.rs` is 2D, `sheet.rs` is 3D.
+//! 3D share; `segments.rs` is 2D, `triangles.rs` is 3D.
 //!
 //! ```text
 //! column      c           c + 1
@@ -14,12 +14,12 @@
 
 mod entries;
 mod grid;
-mod line;
 mod marks;
 mod pyramid;
 mod question;
-mod sheet;
+mod segments;
 mod surface;
+mod triangles;
 
 pub(crate) use entries::FieldEntries;
 pub use marks::{Diagonal, Diagonals};

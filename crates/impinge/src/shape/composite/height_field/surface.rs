@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::HeightField;
 use super::marks::Diagonal;
-use super::sheet::GridPoint;
+use super::triangles::GridPoint;
 use crate::math::{Mapped, Point, Real, Vector, max, max_component, perp, unit, unit_or};
 use crate::shape::composite::tri_mesh::{inward_of, normal_of};
 use crate::shape::surface::bend::Bend;
@@ -456,6 +456,6 @@ mod tests {
                 counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
             }
         }
-        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 100), "all cases occur: {counts:?}");
     }
 }

@@ -112,13 +112,13 @@ mod tests {
         for (at, shape) in all.into_iter().cycle().take(6).enumerate() {
             let (triangle, side) = (u32::from(at > 2), at % 3);
             for kept in [&bends, &copy] {
-                let again = kept.at(triangle, side, || panic!("asked twice"));
+                let again = kept.at(triangle, side, || panic!("computed twice"));
                 assert_eq!(again, shape, "as kept");
             }
         }
         assert!(
             bends.has_certain_area(1, || true)
-                && bends.has_certain_area(1, || panic!("asked twice")),
+                && bends.has_certain_area(1, || panic!("computed twice")),
             "kept"
         );
         assert!(

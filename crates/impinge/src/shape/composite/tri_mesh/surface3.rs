@@ -208,7 +208,7 @@ mod tests {
     use crate::shape::surface::own_surface::OwnSurface;
 
     /// A rough sheet of triangles.
-    fn sheet(random: &mut Xorshift) -> TriMesh<f64, 3> {
+    fn rough_mesh(random: &mut Xorshift) -> TriMesh<f64, 3> {
         let position = |at: u32| {
             let [x, z] = [at % 6, at / 6].map(f64::from);
             Point::<f64, 3>::new(x, 0.4 * random.next(), z)
@@ -222,8 +222,8 @@ mod tests {
     #[test]
     fn two_normals_in_turn_are_as_each_alone() {
         let (mut random, mut counts) = (Xorshift(5), [0; 3]);
-        let (rough, other) = (sheet(&mut random), sheet(&mut random).one_sided());
-        let kept = sheet(&mut random).one_sided().with_internal_edges_kept();
+        let (rough, other) = (rough_mesh(&mut random), rough_mesh(&mut random).one_sided());
+        let kept = rough_mesh(&mut random).one_sided().with_internal_edges_kept();
         for mesh in [rough, other, kept] {
             for (part, at) in (0..50_u32).flat_map(|part| (0..90_u32).map(move |at| (part, at))) {
                 let front = mesh.normal(part).expect("an area");
@@ -240,6 +240,6 @@ mod tests {
                 counts[if first { 0 } else { 1 + usize::from(second) }] += 1;
             }
         }
-        assert!(counts.iter().all(|&count| count > 100), "all of it is met: {counts:?}");
+        assert!(counts.iter().all(|&count| count > 100), "all cases occur: {counts:?}");
     }
 }
