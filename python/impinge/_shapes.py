@@ -365,6 +365,7 @@ def HeightField(
     scale: ArrayLike,
     *,
     holes: ArrayLike | None = None,
+    ghosts: ArrayLike | None = None,
     backward: ArrayLike | bool = False,
     one_sided: bool = False,
     keep_internal_edges: bool = False,
@@ -373,7 +374,9 @@ def HeightField(
     """Heights along y over a grid around the origin: (rows, columns) in 3D, rows along z; (n,) in 2D.
 
     scale: (D,), the extents of the whole grid along x (and z), and the factor of heights along y. holes: bools for missing
-    cells, (n-1,) in 2D and (rows-1, columns-1) in 3D, or (rows-1, columns-1, 2) for the triangles of cells. backward: a
+    cells, (n-1,) in 2D and (rows-1, columns-1) in 3D, or (rows-1, columns-1, 2) for the triangles of cells. ghosts: bools
+    for cells that nothing touches and the seams beside them know, (n-1,) or (rows-1, columns-1): the border that a tile of a
+    terrain shares with its neighbours, so that nothing bumps into the seam of two tiles. backward: a
     bool, or one for each cell in 3D, whether its two triangles share the other diagonal. one_sided: there are no contacts from
     below.
 
@@ -381,6 +384,9 @@ def HeightField(
     >>> field = HeightField([[0, 0, 0], [0, 2, 0], [0, 0, 0]], [4, 0.5, 4], holes=[[True, False], [False, False]])
     >>> impinge.cast_rays(field, None, [[-1, 9, -1], [1, 9, 1]], [0, -1, 0]).time.tolist()
     [inf, 8.5]
+    >>> tile = HeightField([0.0] * 5, [4, 1], ghosts=[True, False, False, True])
+    >>> impinge.cast_rays(tile, None, [[-1.5, 9], [0.5, 9]], [0, -1]).time.tolist()
+    [inf, 9.0]
     """
     grid = _finite(_floats(heights, "heights"), "heights")
     if grid.ndim not in (1, 2) or min(grid.shape) < 2:
@@ -395,14 +401,16 @@ def HeightField(
         grid.ndim + 1,
         dtype,
         values,
-        parts=_marks(tuple(size - 1 for size in grid.shape), holes, backward),
+        parts=_marks(tuple(size - 1 for size in grid.shape), holes, ghosts, backward),
         one_sided=one_sided,
         keep_internal_edges=keep_internal_edges,
     )
 
 
-def _marks(cells: tuple[int, ...], holes: ArrayLike | None, backward: ArrayLike) -> NDArray[np.uint32]:
-    """Returns the flags of cells: bits 0 and 1 for missing triangles, bit 2 for the other diagonal."""
+def _marks(
+    cells: tuple[int, ...], holes: ArrayLike | None, ghosts: ArrayLike | None, backward: ArrayLike
+) -> NDArray[np.uint32]:
+    """Returns the flags of cells: bits 0 and 1 for missing triangles, bit 2 for the other diagonal, bit 3 for ghosts."""
     marks = np.zeros(cells, dtype=np.uint32)
     if holes is not None:
         missing = _bools(holes, "holes")
@@ -412,6 +420,11 @@ def _marks(cells: tuple[int, ...], holes: ArrayLike | None, backward: ArrayLike)
             marks |= missing * np.uint32(3 if len(cells) == 2 else 1)
         else:
             raise ValueError(f"holes has the shape {missing.shape}, where {cells} is needed")
+    if ghosts is not None:
+        untouched = _bools(ghosts, "ghosts")
+        if untouched.shape != cells:
+            raise ValueError(f"ghosts has the shape {untouched.shape}, where {cells} is needed")
+        marks |= untouched * np.uint32(8)
     turned = _bools(backward, "backward")
     if turned.shape not in ((), cells) or (turned.any() and len(cells) == 1):
         raise ValueError(f"backward has the shape {turned.shape}, where a bool or, in 3D, {cells} is needed")

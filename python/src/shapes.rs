@@ -301,6 +301,7 @@ impl Description<'_, '_> {
         Ok(Mesh {
             vertices: self.vertices()?,
             parts: parts.as_slice()?.as_chunks::<ENDS>().0.to_vec(),
+            ghosts: Vec::new(),
             is_one_sided: self.one_sided,
             is_solid: self.solid,
             keeps_internal_edges: self.keep_internal_edges,

@@ -37,6 +37,10 @@ pub enum ShapeData<N: Space<D>, const D: usize> {
 
 /// The value of the field of sides for a solid body; for a surface the field is whether it has one side only.
 const SOLID: u8 = 2;
+/// The byte of [`SOLID`] and [`GHOSTS`], in errors.
+const SIDES: &str = "the sides of a mesh";
+/// Added to the sides of a mesh with ghosts.
+const GHOSTS: u8 = 4;
 
 /// The arguments of a triangle mesh or a polyline.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +49,8 @@ pub struct Mesh<N: Space<D>, const D: usize, const ENDS: usize> {
     pub vertices: Vec<Point<N, D>>,
     /// The vertex indices of each part.
     pub parts: Vec<[u32; ENDS]>,
+    /// The vertex indices of each ghost of a mesh; empty for a polyline.
+    pub ghosts: Vec<[u32; ENDS]>,
     /// Whether it has no contacts from behind, as a solid has none.
     pub is_one_sided: bool,
     /// Whether it is solid, not a surface.
@@ -62,7 +68,7 @@ pub struct Field<N: Space<D>, const D: usize> {
     pub heights: Vec<N>,
     /// The scale.
     pub scale: Vector<N, D>,
-    /// For each cell: bits 0 and 1 for removed parts, bit 2 for a backward diagonal.
+    /// For each cell: bits 0 and 1 for removed parts, bit 2 for a backward diagonal, bit 3 for a ghost.
     pub marks: Vec<u8>,
     /// Whether it has no contacts from behind.
     pub is_one_sided: bool,
@@ -120,6 +126,7 @@ fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
         return Some(ShapeData::Polyline(Mesh {
             vertices: line.vertices().to_vec(),
             parts: line.segments().to_vec(),
+            ghosts: Vec::new(),
             is_one_sided: line.is_one_sided(),
             is_solid: line.is_solid(),
             keeps_internal_edges: line.keeps_internal_edges(),
@@ -129,6 +136,7 @@ fn mesh_data<N: Recordable<D>, const D: usize>(shape: &dyn Shape<N, D>) -> Optio
     Some(ShapeData::TriMesh(Mesh {
         vertices: mesh.vertices().to_vec(),
         parts: mesh.triangles().to_vec(),
+        ghosts: mesh.ghosts().to_vec(),
         is_one_sided: mesh.is_one_sided(),
         is_solid: mesh.is_solid(),
         keeps_internal_edges: mesh.keeps_internal_edges(),
@@ -228,6 +236,7 @@ fn mesh_of_parts<N: Recordable<D>, const D: usize>(
     parts: &Mesh<N, D, 3>,
 ) -> Result<ShapeHandle<N, D>, Problem> {
     let mesh = TriMesh::try_new(parts.vertices.clone(), parts.parts.clone())?;
+    let mesh = if parts.ghosts.is_empty() { mesh } else { mesh.try_with_ghosts(&parts.ghosts)? };
     let mesh = if parts.is_one_sided { N::one_sided_mesh(mesh) } else { mesh };
     let mesh = if parts.is_solid { N::solid_mesh(mesh)? } else { mesh };
     let mesh = if parts.keeps_internal_edges { mesh.with_internal_edges_kept() } else { mesh };
@@ -260,8 +269,13 @@ impl Sink {
         self.count(mesh.parts.len());
         mesh.parts.iter().flatten().for_each(|corner| self.word(*corner));
         let sides = if mesh.is_solid { SOLID } else { u8::from(mesh.is_one_sided) };
-        self.byte(sides);
+        let has_ghosts = !mesh.ghosts.is_empty();
+        self.byte(if has_ghosts { sides + GHOSTS } else { sides });
         self.flag(mesh.keeps_internal_edges);
+        if has_ghosts {
+            self.count(mesh.ghosts.len());
+            mesh.ghosts.iter().flatten().for_each(|corner| self.word(*corner));
+        }
     }
 
     /// Writes the number of heights in a row, the heights, the scale, the marks and two flags.
@@ -397,16 +411,27 @@ impl Source<'_> {
         &mut self,
     ) -> Result<Mesh<N, D, ENDS>, ReadError> {
         let vertices = self.point_list()?;
-        let parts = self.list(4 * ENDS, |source| {
+        let parts = self.corners()?;
+        // Bits: 0 and 1 for the sides, 2 for ghosts, which polylines have not.
+        let sides = self.choice(if ENDS == 3 { 7 } else { 3 }, SIDES)?;
+        let keeps_internal_edges = self.flag()?;
+        let ghosts = if sides < GHOSTS { Vec::new() } else { self.corners()? };
+        let (is_one_sided, is_solid) = (sides % GHOSTS > 0, sides % GHOSTS == SOLID);
+        if sides % GHOSTS > SOLID {
+            return Err(self.error(Problem::BadValue { what: SIDES }));
+        }
+        Ok(Mesh { vertices, parts, ghosts, is_one_sided, is_solid, keeps_internal_edges })
+    }
+
+    /// Reads a list of the corners of parts.
+    fn corners<const ENDS: usize>(&mut self) -> Result<Vec<[u32; ENDS]>, ReadError> {
+        self.list(4 * ENDS, |source| {
             let mut part = [0; ENDS];
             for corner in &mut part {
                 *corner = source.word()?;
             }
             Ok(part)
-        })?;
-        let (sides, keeps_internal_edges) = (self.choice(3, "the sides of a mesh")?, self.flag()?);
-        let (is_one_sided, is_solid) = (sides > 0, sides == SOLID);
-        Ok(Mesh { vertices, parts, is_one_sided, is_solid, keeps_internal_edges })
+        })
     }
 
     fn field<N: Recordable<D>, const D: usize>(&mut self) -> Result<Field<N, D>, ReadError> {

@@ -209,15 +209,17 @@ fn hull_of<N: Scalar>(
 /// Bits of [`Field::marks`].
 const HOLES: [u8; 2] = [1, 2];
 const BACKWARD: u8 = 4;
+const GHOST: u8 = 8;
 
 /// Returns the arguments of a height field in 2D: a mark for each segment.
 fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
-    let holes = (0..).take(field.num_cells()).map(|cell| u8::from(field.is_hole(cell)));
+    let mark = |cell| u8::from(field.is_hole(cell)) + GHOST * u8::from(field.is_ghost(cell));
+    let marks = (0..).take(field.num_cells()).map(mark);
     Field {
         columns: field.heights().len(),
         heights: field.heights().to_vec(),
         scale: *field.scale(),
-        marks: holes.collect(),
+        marks: marks.collect(),
         is_one_sided: field.is_one_sided(),
         keeps_internal_edges: field.keeps_internal_edges(),
     }
@@ -226,8 +228,9 @@ fn line_data<N: Scalar>(field: &HeightField<N, 2>) -> Field<N, 2> {
 /// Makes the height field of these arguments, in 2D.
 fn line_of<N: Scalar>(data: &Field<N, 2>) -> Result<HeightField<N, 2>, Problem> {
     let field = HeightField::<N, 2>::try_new(data.heights.clone(), data.scale)?;
-    check_marks(data, field.num_cells(), HOLES[0])?;
-    let field = field.with_holes(|cell| data.marks[cell] != 0);
+    check_marks(data, field.num_cells(), HOLES[0] + GHOST)?;
+    let has = |cell: usize, bit: u8| data.marks[cell] & bit != 0;
+    let field = field.with_holes(|cell| has(cell, HOLES[0])).with_ghosts(|cell| has(cell, GHOST));
     let field = if data.is_one_sided { field.one_sided() } else { field };
     Ok(if data.keeps_internal_edges { field.with_internal_edges_kept() } else { field })
 }
@@ -243,6 +246,7 @@ fn sheet_data<N: Scalar>(field: &HeightField<N, 3>) -> Field<N, 3> {
         u8::from(parts[0]) * HOLES[0]
             + u8::from(parts[1]) * HOLES[1]
             + u8::from(is_backward) * BACKWARD
+            + u8::from(field.is_ghost(2 * cell)) * GHOST
     };
     Field {
         columns: field.columns(),
@@ -259,13 +263,14 @@ fn sheet_of<N: Scalar>(data: &Field<N, 3>) -> Result<HeightField<N, 3>, Problem>
     let rows = data.heights.len() / data.columns.max(1);
     let heights = data.heights.clone();
     let mut field = HeightField::<N, 3>::try_new(rows, data.columns, heights, data.scale)?;
-    check_marks(data, field.num_cells(), HOLES[0] + HOLES[1] + BACKWARD)?;
+    check_marks(data, field.num_cells(), HOLES[0] + HOLES[1] + BACKWARD + GHOST)?;
     let columns = data.columns - 1;
     for (cell, mark) in (0..).zip(&data.marks).filter(|(_, mark)| **mark != 0) {
+        let [row, column] = [cell as usize / columns, cell as usize % columns];
         if mark & BACKWARD != 0 {
-            let [row, column] = [cell as usize / columns, cell as usize % columns];
             field.set_diagonal(row, column, Diagonal::Backward);
         }
+        field.set_ghost(row, column, mark & GHOST != 0);
         for (part, hole) in (2 * cell..).zip(HOLES) {
             field.set_part_hole(part, mark & hole != 0);
         }

@@ -354,13 +354,15 @@ fn line<N: SceneSpace<D>, const D: usize>(
 const HOLE: [u8; 2] = [1, 3];
 /// The flag of a cell with the other diagonal.
 const BACKWARD: u8 = 4;
+/// The flag of a ghost.
+const GHOST: u8 = 8;
 
 /// Returns the arguments of a height field, with flags for each cell.
 fn field<N: SceneSpace<D>, const D: usize>(
     file: &HeightFieldFile,
     dimension: Dimension,
 ) -> Result<ShapeData<N, D>, Fault> {
-    let HeightFieldFile { heights, columns, scale, holes, diagonals, one_sided } = file;
+    let HeightFieldFile { heights, columns, scale, holes, ghosts, diagonals, one_sided } = file;
     let columns = match (dimension, columns) {
         (Dimension::Two, None) => heights.len(),
         (Dimension::Three, Some(columns)) => *columns,
@@ -380,10 +382,13 @@ fn field<N: SceneSpace<D>, const D: usize>(
     let cells = 0..rows * row;
     let mut marks: Vec<u8> =
         cells.map(|cell| if !is_line && is_backward(cell) { BACKWARD } else { 0 }).collect();
-    for (index, &cell) in holes.iter().enumerate() {
-        let (what, given, limit) = ("cells", cell.saturating_add(1), marks.len());
-        let mark = marks.get_mut(cell).ok_or(Problem::TooMany { what, given, limit });
-        *mark.within(&format!("holes[{index}]"))? |= HOLE[usize::from(!is_line)];
+    let hole = HOLE[usize::from(!is_line)];
+    for (name, cells, bits) in [("holes", holes, hole), ("ghosts", ghosts, GHOST)] {
+        for (index, &cell) in cells.iter().enumerate() {
+            let (what, given, limit) = ("cells", cell.saturating_add(1), marks.len());
+            let mark = marks.get_mut(cell).ok_or(Problem::TooMany { what, given, limit });
+            *mark.within(&format!("{name}[{index}]"))? |= bits;
+        }
     }
     Ok(ShapeData::HeightField(Field {
         columns,

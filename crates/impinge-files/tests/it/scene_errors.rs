@@ -106,6 +106,12 @@ const REFUSED: &[(usize, &str, &str, &str)] = &[
         "shape.height_field.holes[0]",
         "7",
     ),
+    (
+        2,
+        r#""shape": {"height_field": {"heights": [0, 1], "scale": [1, 1], "ghosts": [0, 9]}}"#,
+        "shape.height_field.ghosts[1]",
+        "9",
+    ),
 ];
 
 #[test]

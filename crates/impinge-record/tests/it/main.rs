@@ -2,6 +2,7 @@
 
 mod damage;
 mod engine;
+mod ghosts;
 mod golden;
 mod growing;
 mod packing;

@@ -166,8 +166,10 @@ impl<N: Space<D>, const D: usize> CompositeContacts<N, D> {
         is_self: bool,
         request: &ManifoldRequest<N>,
     ) {
-        // A solid inside a body touches no part; only the generic path handles it.
-        if between.has_bodies() || !<N::Algorithms>::update_quickly(self, between, request) {
+        // A solid inside a body touches no part, and one beside a ghost alone touches the neighbour:
+        // only the generic path handles them.
+        let has_rules = between.has_bodies() || between.has_ghosts();
+        if has_rules || !<N::Algorithms>::update_quickly(self, between, request) {
             self.update_in_general(between, is_self, request);
         }
     }
@@ -410,7 +412,7 @@ fn is_within_solid<N: Space<D>, const D: usize>(between: &Between<'_, N, D>, lim
 /// Whether the pair mostly has a kernel of its own: balls on surfaces, and chains.
 fn has_own_path<N: Space<D>, const D: usize>(between: &Between<'_, N, D>) -> bool {
     let [None, Some(parts)] = between.composites() else { return false };
-    if parts.has_bodies() {
+    if parts.has_bodies() || parts.has_ghosts() {
         return false;
     }
     let is_chain = || parts.num_parts() > 0 && matches!(parts.part(0).solid, PartSolid::Segment(_));

@@ -32,7 +32,7 @@ struct Escapes<N: Real, const D: usize>(SmallVec<[Escape<N, D>; MAX_ESCAPES]>);
 /// another, shallower contact by the depth of that.
 ///
 /// If no remaining contact is as near as the nearest two parts, the contact of these two is kept:
-/// solids that overlap always have a contact.
+/// solids that overlap always have a contact, except beside a ghost, where the neighbour has it.
 pub(super) fn resolve<N: Space<D>, const D: usize>(
     scene: &Scene<'_, N, D>,
     contacts: &mut [PartContact<N, D>],
@@ -47,7 +47,7 @@ pub(super) fn resolve<N: Space<D>, const D: usize>(
     if contacts.iter().any(has_other_normal) {
         leave_explained(scene, contacts, arena);
     }
-    keep_one(contacts, arena);
+    keep_one(scene, contacts, arena);
 }
 
 /// Drops contacts with faces that other contacts explain: first those that are not beyond a ridge,
@@ -164,7 +164,11 @@ fn is_explained<N: Space<D>, const D: usize>(
 
 /// Adds the contact of the nearest two parts if all contacts that hold are farther. If they are
 /// farther by rounding alone, their distance is corrected instead.
-fn keep_one<N: Real, const D: usize>(contacts: &mut [PartContact<N, D>], arena: &mut Arena<N, D>) {
+fn keep_one<N: Space<D>, const D: usize>(
+    scene: &Scene<'_, N, D>,
+    contacts: &mut [PartContact<N, D>],
+    arena: &mut Arena<N, D>,
+) {
     let nearest = least_of(contacts, |contact| Some(contact.distance));
     let Some(nearest) = nearest else { return };
     let (least, tolerance) =
@@ -180,6 +184,7 @@ fn keep_one<N: Real, const D: usize>(contacts: &mut [PartContact<N, D>], arena: 
             }
             contacts[index].lowest = least;
         }
+        _ if scene.are_beside_ghost(contacts[nearest].parts()) => {}
         _ => {
             // Its points, if any, are along the normal of a face and farther: they are computed
             // anew.

@@ -141,6 +141,12 @@ impl<'a, N: Space<D>, const D: usize> Scene<'a, N, D> {
         self.between.composites()[0].is_none()
     }
 
+    /// Whether a ghost is adjacent to one of two parts.
+    pub(super) fn are_beside_ghost(&self, parts: [u32; 2]) -> bool {
+        let mut both = self.surfaces.iter().zip(parts);
+        both.any(|(surface, part)| surface.is_some_and(|surface| surface.is_beside_ghost(part)))
+    }
+
     /// Whether one of two parts bounds a body.
     pub(super) fn are_bodies(&self, parts: [u32; 2]) -> bool {
         let mut both = self.surfaces.iter().zip(parts);

@@ -64,6 +64,12 @@ impl<'a, N: Real, const D: usize> Between<'a, N, D> {
         [self.pair.first, self.pair.second].mapped(|kind| Geometry(kind).as_composite())
     }
 
+    /// Whether a composite has ghosts beside parts.
+    #[inline]
+    pub(crate) fn has_ghosts(&self) -> bool {
+        self.composites().iter().flatten().any(|composite| composite.has_ghosts())
+    }
+
     /// Whether a composite has closed surfaces that bound bodies, in which the other shape may lie.
     #[inline]
     pub(crate) fn has_bodies(&self) -> bool {

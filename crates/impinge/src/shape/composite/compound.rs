@@ -64,6 +64,8 @@ pub struct Compound<N: Space<D>, const D: usize> {
     has_surface: bool,
     /// Whether a child has a body within a closed surface.
     has_bodies: bool,
+    /// Whether a child has ghosts.
+    has_ghosts: bool,
     revision: Revision,
 }
 
@@ -112,6 +114,9 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         let tree = BoxTree::from_boxes(&searched);
         let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
         let has_bodies = children.iter().any(|(_, shape)| bodies_of(shape).is_some());
+        let has_ghosts = children.iter().any(|(_, shape)| {
+            shape.geometry().as_composite().is_some_and(|composite| composite.has_ghosts())
+        });
         let sphere = sphere_around(&aabb, &children, &poses);
         let revision = Revision::new();
         Ok(Self {
@@ -124,6 +129,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
             sphere,
             has_surface,
             has_bodies,
+            has_ghosts,
             revision,
         })
     }
@@ -356,6 +362,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for Compound<N, D> {
         self.has_bodies
     }
 
+    fn has_ghosts(&self) -> bool {
+        self.has_ghosts
+    }
+
     fn piece_of(&self, part: u32) -> u32 {
         let (child, own) = self.child_of_part(part);
         let within = self.composite(child).map_or(own, |composite| composite.piece_of(own));
@@ -398,6 +408,11 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for Compound<N, D> {
     fn is_body(&self, part: u32) -> bool {
         self.has_bodies
             && self.surface_at(part).is_some_and(|(surface, _, own)| surface.is_body(own))
+    }
+
+    fn is_beside_ghost(&self, part: u32) -> bool {
+        let at = self.surface_at(part).filter(|_| self.has_ghosts);
+        at.is_some_and(|(surface, _, own)| surface.is_beside_ghost(own))
     }
 }
 

@@ -150,6 +150,12 @@ pub trait CompositeShape<N: Real, const D: usize>: Send + Sync {
         false
     }
 
+    /// Whether parts have ghosts beside them, which seams know and nothing touches. O(1).
+    #[doc(hidden)]
+    fn has_ghosts(&self) -> bool {
+        false
+    }
+
     /// Whether the composite, as a boundary, winds around a point; either result is allowed for a
     /// point on a part.
     #[doc(hidden)]

@@ -51,6 +51,13 @@ pub(crate) trait OwnSurface<N: Real, const D: usize>: Surface<N, D> {
         false
     }
 
+    /// Whether a ghost is adjacent to the part: what overlaps the part there alone touches the
+    /// neighbour that the ghost stands for.
+    fn is_beside_ghost(&self, part: u32) -> bool {
+        let _ = part;
+        false
+    }
+
     /// Whether, in 3D, parts are adjacent exactly where they have corners at one position, and a
     /// seam admits no normal along which a direction into an adjacent part rises.
     fn has_regular_seams(&self) -> bool {
@@ -139,6 +146,11 @@ impl<'a, N: Real, const D: usize> SurfaceAccess<'a, N, D> {
     /// See [`OwnSurface::is_body`].
     pub(crate) fn is_body(&self, part: u32) -> bool {
         self.own.is_some_and(|own| own.is_body(part))
+    }
+
+    /// See [`OwnSurface::is_beside_ghost`].
+    pub(crate) fn is_beside_ghost(&self, part: u32) -> bool {
+        self.own.is_some_and(|own| own.is_beside_ghost(part))
     }
 
     /// See [`OwnSurface::sidedness`].

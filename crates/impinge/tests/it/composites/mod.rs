@@ -11,6 +11,7 @@ mod composite_rays;
 mod composite_worlds;
 mod compounds;
 mod doubled_parts;
+mod ghosts;
 mod height_field_seams;
 mod height_fields;
 mod internal_edges;

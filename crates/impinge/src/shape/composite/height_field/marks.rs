@@ -1,4 +1,4 @@
-//! Exceptions of single cells: holes, and diagonals that differ from the rule.
+//! Exceptions of single cells: holes, ghosts, and diagonals that differ from the rule.
 
 /// The two corners of a cell that the line between its two triangles joins.
 ///
@@ -59,17 +59,26 @@ impl Diagonals {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Marks {
     diagonals: Diagonals,
-    /// For each cell: bits 0 and 1 mark part 0 and 1 as holes, bit 2 reverses the diagonal. Empty
-    /// as long as nothing is marked.
+    /// For each cell: bits 0 and 1 mark part 0 and 1 as holes, bit 2 reverses the diagonal, bit 3
+    /// marks a ghost. Empty as long as nothing is marked.
     bits: Vec<u8>,
+    /// The number of ghosts.
+    ghosts: usize,
 }
 
 const OTHER_DIAGONAL: u8 = 4;
+const GHOST: u8 = 8;
 
 impl Marks {
     /// No exceptions.
     pub(super) const fn new(diagonals: Diagonals) -> Self {
-        Self { diagonals, bits: Vec::new() }
+        Self { diagonals, bits: Vec::new(), ghosts: 0 }
+    }
+
+    /// These marks with the diagonals of a rule alone.
+    pub(super) fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
+        self.bits.iter_mut().for_each(|bits| *bits &= !OTHER_DIAGONAL);
+        Self { diagonals, ..self }
     }
 
     /// Whether part `k`, 0 or 1, of a cell is a hole.
@@ -79,6 +88,26 @@ impl Marks {
 
     pub(super) fn set_hole(&mut self, cell: usize, k: usize, is_hole: bool, cells: usize) {
         self.set(cell, 1 << k, is_hole, cells);
+    }
+
+    /// Whether the parts of a cell are known to the seams around it, and are not touched.
+    pub(super) fn is_ghost(&self, cell: usize) -> bool {
+        self.has(cell, GHOST)
+    }
+
+    pub(super) const fn has_ghosts(&self) -> bool {
+        self.ghosts > 0
+    }
+
+    pub(super) fn set_ghost(&mut self, cell: usize, is_ghost: bool, cells: usize) {
+        self.ghosts += usize::from(is_ghost);
+        self.ghosts -= usize::from(self.is_ghost(cell));
+        self.set(cell, GHOST, is_ghost, cells);
+    }
+
+    /// Whether part `k` of a cell is not touched: a hole, or one of a ghost.
+    pub(super) fn is_untouched(&self, cell: usize, k: usize) -> bool {
+        self.has(cell, 1 << k | GHOST)
     }
 
     /// The diagonal of the cell at a row and column.

@@ -51,7 +51,9 @@ use crate::shape::error::finite;
 /// `2 · cell + 1`, divided along its [`Diagonal`]. The corners of a triangle run counter-clockwise
 /// seen from the front, so that in 3D `Face(0)` is the front. In 2D a cell, and part, is the
 /// segment from one height to the next. Parts may be holes: these keep their number, but no search
-/// finds them, and a seam beside one is a border.
+/// finds them, and a seam beside one is a border. Cells may be ghosts, which no search finds either;
+/// a seam beside one is that of a surface that goes on, so that nothing bumps into the seams of a
+/// terrain of many fields (`with_ghost_border`).
 ///
 /// Making it takes one pass over the heights, changing a height O(log n). Memory: about two numbers
 /// per height, and a byte per cell if there are holes or single cells with a diagonal of their own.

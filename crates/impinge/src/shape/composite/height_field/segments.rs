@@ -53,6 +53,41 @@ impl<N: Real> HeightField<N, 2> {
         self
     }
 
+    /// Makes exactly the cells ghosts for which `is_ghost(cell)` is true; see [`Self::set_ghost`].
+    #[must_use]
+    pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize) -> bool) -> Self {
+        let cells = self.num_cells();
+        for cell in 0..cells {
+            self.marks.set_ghost(cell, is_ghost(cell), cells);
+        }
+        self.rebuild();
+        self
+    }
+
+    /// Makes the first and the last cell ghosts: the outermost heights are samples of the
+    /// neighbouring fields, so that nothing bumps into the ends of this one.
+    ///
+    /// ```
+    /// use impinge::dim2::math::{Isometry, Vector};
+    /// use impinge::dim2::query::{self, ContactPrediction};
+    /// use impinge::dim2::shape::{Ball, HeightField};
+    ///
+    /// // A flat field from -1 to 1, with one more sample at each end.
+    /// let field = HeightField::<f32>::new(vec![0.0; 5], Vector::new(4.0, 1.0)).with_ghost_border();
+    /// assert_eq!(field.height_at(1.5), None, "a ghost");
+    /// // Beyond its end a ball touches the last point: as a part of one flat line, so straight up.
+    /// let (ball, at) = (Ball::new(0.5), Isometry::translation(1.0625, 0.48));
+    /// let found = query::contact_manifolds(
+    ///     &Isometry::identity(), &field, &at, &ball, &ContactPrediction::new(0.01, 0.0, 0.0), None);
+    /// let mut contacts = found.iter().flat_map(|manifold| manifold.contacts());
+    /// assert!(contacts.all(|tracked| tracked.contact.normal.y == 1.0));
+    /// ```
+    #[must_use]
+    pub fn with_ghost_border(self) -> Self {
+        let last = self.num_cells() - 1;
+        self.with_ghosts(|cell| cell == 0 || cell == last)
+    }
+
     /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
     ///
     /// # Errors
@@ -81,14 +116,14 @@ impl<N: Real> HeightField<N, 2> {
         Point::<N, 2>::new(x, y)
     }
 
-    /// The segment between a height and the next; `None` if it is a hole.
+    /// The segment between a height and the next; `None` if it is a hole or a ghost.
     ///
     /// # Panics
     /// If there is no such cell.
     #[must_use]
     pub fn segment(&self, cell: usize) -> Option<Segment<N, 2>> {
         let segment = Segment::new(self.point(cell), self.point(cell + 1));
-        Some(segment).filter(|_| !self.marks.is_hole(cell, 0))
+        Some(segment).filter(|_| !self.marks.is_untouched(cell, 0))
     }
 
     /// Whether the part is a hole. Parts have the numbers of their cells.
@@ -100,7 +135,16 @@ impl<N: Real> HeightField<N, 2> {
         self.marks.is_hole(self.cell_of(part), 0)
     }
 
-    /// The scaled height of the line at `x`; `None` beside the field and at a hole.
+    /// Whether the part is a ghost; see [`Self::set_ghost`].
+    ///
+    /// # Panics
+    /// If there is no such part.
+    #[must_use]
+    pub fn is_ghost(&self, part: u32) -> bool {
+        self.marks.is_ghost(self.cell_of(part))
+    }
+
+    /// The scaled height of the line at `x`; `None` beside the field, at a hole and at a ghost.
     #[must_use]
     pub fn height_at(&self, x: N) -> Option<N> {
         let ends = [-N::INFINITY, N::INFINITY].map(|y| Point::<N, 2>::new(x, y));
@@ -160,6 +204,17 @@ impl<N: Real> HeightField<N, 2> {
         self.refresh(cell);
     }
 
+    /// Makes a cell a ghost, or restores its segment: nothing touches a ghost, and no search finds
+    /// it, but the seams beside it are those of a line that goes on. A hole stays a hole.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn set_ghost(&mut self, cell: usize, is_ghost: bool) {
+        assert!(cell < self.num_cells(), "there is no cell {cell}");
+        self.marks.set_ghost(cell, is_ghost, self.num_cells());
+        self.refresh(cell);
+    }
+
     fn refresh(&mut self, cell: usize) {
         let mut pyramid = self.pyramid.take();
         pyramid.refresh(0, cell, |row, column| self.cell_span(row, column));
@@ -194,11 +249,11 @@ impl<N: Real> GridCells<N> for HeightField<N, 2> {
     }
 
     fn cell_span(&self, _: usize, cell: usize) -> HeightSpan<N> {
-        if self.marks.is_hole(cell, 0) { no_span() } else { step_span(&self.grid, cell) }
+        if self.marks.is_untouched(cell, 0) { no_span() } else { step_span(&self.grid, cell) }
     }
 
     fn parts(&self, _: usize, cell: usize) -> SmallVec<[(u32, GridExtent<N>); 2]> {
-        if self.marks.is_hole(cell, 0) {
+        if self.marks.is_untouched(cell, 0) {
             return SmallVec::new();
         }
         let extent = GridExtent::between(self.grid.at(0, cell), self.grid.at(0, cell + 1));
@@ -264,6 +319,10 @@ impl<N: Real> CompositeShape<N, 2> for HeightField<N, 2> {
         visit(u64::from(part) + 1);
     }
 
+    fn has_ghosts(&self) -> bool {
+        self.marks.has_ghosts()
+    }
+
     fn built_in(&self) -> Option<&dyn Shape<N, 2>> {
         Some(self)
     }
@@ -274,7 +333,7 @@ impl<N: Real> Shape<N, 2> for HeightField<N, 2> {
         Geometry::composite(self)
     }
 
-    /// Around all parts that are not holes; the origin for a field of holes only.
+    /// Around all parts that are neither holes nor ghosts; the origin for a field without others.
     fn local_aabb(&self) -> Aabb<N, 2> {
         match whole(self) {
             Some(GridExtent { low, high }) => {

@@ -74,6 +74,17 @@ impl<N: Real> OwnSurface<N, 3> for HeightField<N, 3> {
     fn has_regular_seams(&self) -> bool {
         !self.keeps_internal_edges && self.grid.has_extent()
     }
+
+    /// Whether one of the cells around that of the part is a ghost.
+    fn is_beside_ghost(&self, part: u32) -> bool {
+        let ([row, column], ..) = self.locate(part);
+        let [rows, columns] = self.pyramid.cells();
+        let ends = |at: usize, count: usize| at.saturating_sub(1)..count.min(at + 2);
+        self.marks.has_ghosts()
+            && ends(row, rows).any(|row| {
+                ends(column, columns).any(|column| self.marks.is_ghost(row * columns + column))
+            })
+    }
 }
 
 /// The index of a triangle in its cell, and two of the cell's corners.
@@ -156,7 +167,7 @@ impl<N: Real> HeightField<N, 3> {
         (*front != Vector::<N, 3>::zeros()).then_some(own)
     }
 
-    /// The triangles, without holes, of some cells given by their rows and columns plus one.
+    /// The triangles, ghosts and no holes, of some cells given by their rows and columns plus one.
     fn in_cells(
         &self,
         cells: impl Iterator<Item = GridPoint>,
@@ -367,8 +378,15 @@ impl<N: Real> OwnSurface<N, 2> for HeightField<N, 2> {
     fn sidedness(&self) -> Option<Sidedness> {
         let (is_one_sided, keeps_internal_edges) = (self.is_one_sided, self.keeps_internal_edges);
         let (is_left, follows_front) = (!self.is_mirrored(), true);
-        let joining = Joining::InRow;
+        // Ghosts are not among the segments that a pair caches: the field itself is asked.
+        let joining = if self.marks.has_ghosts() { Joining::Unknown } else { Joining::InRow };
         Some(Sidedness { is_left, is_one_sided, follows_front, keeps_internal_edges, joining })
+    }
+
+    fn is_beside_ghost(&self, part: u32) -> bool {
+        let cell = part as usize;
+        let mut beside = cell.saturating_sub(1)..self.num_cells().min(cell + 2);
+        self.marks.has_ghosts() && beside.any(|cell| self.marks.is_ghost(cell))
     }
 }
 

@@ -4,7 +4,7 @@ use super::entries;
 use smallvec::SmallVec;
 
 use super::grid::{Grid, GridCells, GridExtent, whole};
-use super::marks::{Diagonal, Diagonals, Marks};
+use super::marks::{Diagonal, Diagonals};
 use super::pyramid::{HeightSpan, Pyramid, merged, no_span};
 use super::{HeightField, check_count, check_heights, check_parts, grid};
 use crate::bounding_volume::Aabb;
@@ -52,19 +52,10 @@ impl<N: Real> HeightField<N, 3> {
         Ok(field)
     }
 
-    /// Sets the diagonals of all cells; holes stay.
+    /// Sets the diagonals of all cells; holes and ghosts stay.
     #[must_use]
     pub fn with_diagonals(mut self, diagonals: Diagonals) -> Self {
-        let mut marks = Marks::new(diagonals);
-        for part in 0..2 * self.num_cells() {
-            marks.set_hole(
-                part / 2,
-                part % 2,
-                self.marks.is_hole(part / 2, part % 2),
-                self.num_cells(),
-            );
-        }
-        self.marks = marks;
+        self.marks = self.marks.with_diagonals(diagonals);
         self.rebuild();
         self
     }
@@ -81,6 +72,40 @@ impl<N: Real> HeightField<N, 3> {
         }
         self.rebuild();
         self
+    }
+
+    /// Makes exactly the cells ghosts for which `is_ghost(row, column)` is true; see
+    /// [`Self::set_ghost`].
+    #[must_use]
+    pub fn with_ghosts(mut self, mut is_ghost: impl FnMut(usize, usize) -> bool) -> Self {
+        let [rows, columns] = self.pyramid.cells();
+        for cell in 0..rows * columns {
+            let is_ghost = is_ghost(cell / columns, cell % columns);
+            self.marks.set_ghost(cell, is_ghost, rows * columns);
+        }
+        self.rebuild();
+        self
+    }
+
+    /// Makes the outermost ring of cells ghosts: the outermost heights are samples of the
+    /// neighbouring fields, so that nothing bumps into the seam between two tiles of a terrain.
+    ///
+    /// ```
+    /// use impinge::dim3::math::Vector;
+    /// use impinge::dim3::shape::HeightField;
+    ///
+    /// // A tile of 4 x 4 cells, 8 metres wide, and a ring of cells of its neighbours.
+    /// let tile = HeightField::<f32>::new(7, 7, vec![0.0; 49], Vector::new(12.0, 1.0, 12.0));
+    /// let tile = tile.with_ghost_border();
+    /// assert!(tile.height_at(3.9, 0.0).is_some() && tile.height_at(4.1, 0.0).is_none());
+    /// assert!(tile.is_ghost(0) && !tile.is_hole(0));
+    /// ```
+    #[must_use]
+    pub fn with_ghost_border(self) -> Self {
+        let [last_row, last_column] = self.pyramid.cells().map(|count| count - 1);
+        self.with_ghosts(|row, column| {
+            row == 0 || row == last_row || column == 0 || column == last_column
+        })
     }
 
     /// The field scaled along the axes of its frame, about its origin: its own scale is multiplied.
@@ -149,7 +174,7 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.diagonal([row, column], self.pyramid.cells()[1])
     }
 
-    /// The two triangles of a cell; `None` for one that is a hole.
+    /// The two triangles of a cell; `None` for one that is a hole or a ghost.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -158,7 +183,7 @@ impl<N: Real> HeightField<N, 3> {
         let cell = self.cell(row, column);
         [0, 1].map(|k| {
             let triangle = self.triangle_of(self.corners_in(row, column, k));
-            Some(triangle).filter(|_| !self.marks.is_hole(cell, k))
+            Some(triangle).filter(|_| !self.marks.is_untouched(cell, k))
         })
     }
 
@@ -172,7 +197,17 @@ impl<N: Real> HeightField<N, 3> {
         self.marks.is_hole(cell, k)
     }
 
-    /// The scaled height of the surface at (x, z); `None` beside the field and at a hole.
+    /// Whether the part belongs to a ghost; see [`Self::set_ghost`].
+    ///
+    /// # Panics
+    /// If there is no such part.
+    #[must_use]
+    pub fn is_ghost(&self, part: u32) -> bool {
+        self.marks.is_ghost(self.locate(part).1)
+    }
+
+    /// The scaled height of the surface at (x, z); `None` beside the field, at a hole and at a
+    /// ghost.
     #[must_use]
     pub fn height_at(&self, x: N, z: N) -> Option<N> {
         let over = Vector::<N, 3>::new(x, N::ZERO, z);
@@ -244,6 +279,17 @@ impl<N: Real> HeightField<N, 3> {
     pub fn set_part_hole(&mut self, part: u32, is_hole: bool) {
         let ([row, column], cell, k) = self.locate(part);
         self.marks.set_hole(cell, k, is_hole, self.num_cells());
+        self.refresh(row, column);
+    }
+
+    /// Makes a cell a ghost, or restores its triangles: nothing touches a ghost, and no search
+    /// finds it, but the seams beside it are those of a surface that goes on. Holes in it stay.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn set_ghost(&mut self, row: usize, column: usize, is_ghost: bool) {
+        let (cell, cells) = (self.cell(row, column), self.num_cells());
+        self.marks.set_ghost(cell, is_ghost, cells);
         self.refresh(row, column);
     }
 
@@ -362,11 +408,12 @@ impl<N: Real> GridCells<N> for HeightField<N, 3> {
     }
 
     fn cell_span(&self, row: usize, column: usize) -> HeightSpan<N> {
-        let is_hole = [0, 1].map(|k| self.is_hole_in(row, column, k));
-        if is_hole == [false, false] {
+        let cell = row * self.pyramid.cells()[1] + column;
+        let is_untouched = [0, 1].map(|k| self.marks.is_untouched(cell, k));
+        if is_untouched == [false, false] {
             return square_span(&self.grid, row, column);
         }
-        let rest = [0, 1].into_iter().filter(|&k| !is_hole[k]);
+        let rest = [0, 1].into_iter().filter(|&k| !is_untouched[k]);
         let corners = rest.flat_map(|k| self.corners_in(row, column, k));
         let heights = corners.map(|[row, column]| self.grid.height(row, column));
         heights.map(|height| [height, height]).fold(no_span(), merged)
@@ -376,7 +423,7 @@ impl<N: Real> GridCells<N> for HeightField<N, 3> {
         let cell = row * self.pyramid.cells()[1] + column;
         let mut parts = SmallVec::new();
         for (k, number) in [(0, 0), (1, 1)] {
-            if !self.marks.is_hole(cell, k) {
+            if !self.marks.is_untouched(cell, k) {
                 let corners = self.corners_in(row, column, k);
                 let points = corners.map(|[row, column]| self.grid.at(row, column));
                 let first = u32::try_from(2 * cell).expect("32 bits number the triangles");
@@ -443,6 +490,10 @@ impl<N: Real> CompositeShape<N, 3> for HeightField<N, 3> {
         for [row, column] in self.corners(part) {
             visit((row * self.grid.columns + column) as u64);
         }
+    }
+
+    fn has_ghosts(&self) -> bool {
+        self.marks.has_ghosts()
     }
 
     fn built_in(&self) -> Option<&dyn Shape<N, 3>> {

@@ -21,7 +21,12 @@ const TALL: f64 = 1.0 / 1024.0;
 impl<N: Real, const D: usize> TriMesh<N, D> {
     /// Calls `visit` with each other triangle at a side, and the index of the side within that
     /// triangle.
-    fn each_across(&self, triangle: u32, side: usize, mut visit: impl FnMut(u32, usize)) {
+    pub(super) fn each_across(
+        &self,
+        triangle: u32,
+        side: usize,
+        mut visit: impl FnMut(u32, usize),
+    ) {
         let ends = self.joint_ends(triangle, side);
         let mut found = |other: u32| {
             if let Some(side) = self.side_between(other, ends) {

@@ -36,18 +36,67 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
         vertices: Vec<Point<N, D>>,
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
-        entries::build_mesh(vertices, triangles)
+        entries::build_mesh(vertices, triangles, 0)
     }
 
-    /// See [`Self::try_new`].
+    /// The mesh with these ghosts; see [`Self::try_with_ghosts`].
+    ///
+    /// # Panics
+    /// Where [`Self::try_with_ghosts`] returns an error.
+    #[must_use]
+    #[track_caller]
+    pub fn with_ghosts(self, ghosts: &[[u32; 3]]) -> Self {
+        or_panic(self.try_with_ghosts(ghosts))
+    }
+
+    /// The mesh with these ghosts, in place of those it had: triangles of the surface around it.
+    /// Nothing touches a ghost, no query finds it, and it is no part, but the seams beside it are
+    /// those of a surface that goes on. So nothing bumps into the seam between two tiles of a
+    /// terrain, each of which knows the triangles of the other at its border.
+    ///
+    /// Ghosts refer to the vertices of the mesh, and have the winding of its triangles. All
+    /// neighbours that share a corner with the border are needed, not only those that share a side.
+    /// Ghosts do not close a mesh: [`Self::neighbor`] is a border beside one.
+    ///
+    /// Costs as much as making the mesh.
+    ///
+    /// # Errors
+    /// If a ghost refers to a vertex that does not exist, its number counted after the triangles,
+    /// or 32 bits cannot number the corners.
+    ///
+    /// ```
+    /// use impinge::dim3::math::Point;
+    /// use impinge::dim3::shape::{EdgeNeighbor, TriMesh};
+    ///
+    /// // A triangle, and the one that its neighbour has beyond the side of corners 1 and 2.
+    /// let corners = [[0.0_f32, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
+    /// let vertices = corners.map(|[x, z]| Point::new(x, 0.0, z)).to_vec();
+    /// let tile = TriMesh::new(vertices, vec![[0, 1, 2]]).with_ghosts(&[[2, 1, 3]]);
+    /// assert_eq!((tile.num_triangles(), tile.ghosts()), (1, &[[2, 1, 3]][..]));
+    /// assert_eq!(tile.neighbor(0, 1), EdgeNeighbor::Border);
+    /// ```
+    pub fn try_with_ghosts(self, ghosts: &[[u32; 3]]) -> Result<Self, MeshError> {
+        let triangles = [self.triangles(), ghosts].concat();
+        let made = entries::build_mesh(self.vertices, triangles, ghosts.len())?;
+        let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = self;
+        Ok(Self { is_one_sided, is_solid, keeps_internal_edges, ..made })
+    }
+
+    /// See [`Self::try_new`]; the last `ghosts` triangles are ghosts.
     pub(super) fn build(
         vertices: Vec<Point<N, D>>,
         triangles: Vec<[u32; 3]>,
+        ghosts: usize,
     ) -> Result<Self, MeshError> {
+        let own = &triangles[..triangles.len() - ghosts];
         check_vertices(&vertices)?;
+        check_parts(own, vertices.len())?;
         check_parts(&triangles, vertices.len())?;
-        let topology = Topology::new(&vertices, &triangles);
-        let boxes = boxes_of(&vertices, &triangles);
+        let mut topology = Topology::new(&vertices, &triangles);
+        if ghosts > 0 {
+            topology.is_cycle = Topology::new(&vertices, own).is_cycle;
+        }
+        let boxes = boxes_of(&vertices, own);
         let mut tree = BoxTree::try_from_vec(boxes).map_err(refused)?;
         let normals = normals_of(&vertices, &triangles);
         tree.add_slabs(&normals, |index| corners_of(&vertices, &triangles[index as usize]));
@@ -57,6 +106,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
             packed: <N::Algorithms>::mesh_packed(&tree, &vertices, &triangles),
             vertices,
             triangles,
+            ghosts,
             topology,
             normals,
             tree,
@@ -115,7 +165,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
 
     /// The mesh of vertices and triangles that are known to be valid, with the options of this one.
     fn with(&self, vertices: Vec<Point<N, D>>, triangles: Vec<[u32; 3]>) -> Self {
-        let made = Self::new(vertices, triangles);
+        let made = or_panic(entries::build_mesh(vertices, triangles, self.ghosts));
         let Self { is_one_sided, is_solid, keeps_internal_edges, .. } = *self;
         Self { is_one_sided, is_solid, keeps_internal_edges, ..made }
     }
@@ -145,7 +195,7 @@ impl<N: Space<D>, const D: usize> TriMesh<N, D> {
     /// See [`Self::try_set_vertices`].
     pub(super) fn move_vertices(&mut self, vertices: &[Point<N, D>]) -> Result<(), MeshError> {
         check_moved(vertices, self.vertices.len())?;
-        let boxes = boxes_of(vertices, &self.triangles);
+        let boxes = boxes_of(vertices, self.triangles());
         self.tree.try_refit(&boxes).map_err(refused)?;
         self.vertices.copy_from_slice(vertices);
         self.normals = normals_of(vertices, &self.triangles);

@@ -15,7 +15,7 @@ use crate::shape::{
 
 impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
     fn num_parts(&self) -> u32 {
-        u32::try_from(self.triangles.len()).expect("32 bits number the triangles")
+        u32::try_from(self.num_triangles()).expect("32 bits number the triangles")
     }
 
     fn part(&self, part: u32) -> Part<'_, N, D> {
@@ -70,6 +70,10 @@ impl<N: Space<D>, const D: usize> CompositeShape<N, D> for TriMesh<N, D> {
 
     fn has_bodies(&self) -> bool {
         self.is_solid()
+    }
+
+    fn has_ghosts(&self) -> bool {
+        self.ghosts > 0
     }
 
     fn winds_around(&self, point: &Point<N, D>) -> bool {
@@ -128,6 +132,13 @@ impl<N: Space<D>, const D: usize> OwnSurface<N, D> for TriMesh<N, D> {
         self.is_solid()
     }
 
+    fn is_beside_ghost(&self, part: u32) -> bool {
+        let is_ghost = |other: &u32| *other as usize >= self.num_triangles();
+        let joints = &self.topology.joints;
+        self.ghosts > 0
+            && (0..3).any(|at| joints.parts(self.joint_at(part, at)).iter().any(is_ghost))
+    }
+
     fn has_regular_seams(&self) -> bool {
         !(self.keeps_internal_edges || self.topology.is_moved)
     }
@@ -146,12 +157,12 @@ impl<N: Space<D>, const D: usize> Shape<N, D> for TriMesh<N, D> {
     /// The smallest box, up to rounding. O(log n) for a convex-looking mesh, up to O(n) for one
     /// whose parts extend almost equally far.
     fn aabb(&self, pose: &Pose<N, D>) -> Aabb<N, D> {
-        aabb_at(pose, &self.triangles, &self.vertices, &self.tree)
+        aabb_at(pose, self.triangles(), &self.vertices, &self.tree)
     }
 
     /// The sphere about the centre of the box through the farthest vertex: O(n).
     fn local_bounding_sphere(&self) -> BoundingSphere<N, D> {
-        sphere_around(&self.local_aabb(), self.triangles.as_flattened().iter(), &self.vertices)
+        sphere_around(&self.local_aabb(), self.triangles().as_flattened().iter(), &self.vertices)
     }
 
     fn scaled(&self, scale: &Vector<N, D>) -> Result<ShapeHandle<N, D>, ScaleError> {

@@ -14,6 +14,7 @@ compiled! {
     fn build_mesh(
         vertices: Vec<Point<N, D>>,
         triangles: Vec<[u32; 3]>,
+        ghosts: usize,
     ) -> Result<TriMesh<N, D>, MeshError> = TriMesh::build;
 
     fn move_vertices(

@@ -70,7 +70,11 @@ use crate::shape::{Revision, Triangle};
 #[derive(Clone)]
 pub struct TriMesh<N: Real, const D: usize> {
     vertices: Vec<Point<N, D>>,
+    /// The triangles, then the ghosts: those belong to the topology and to the normals, and are no
+    /// parts.
     triangles: Vec<[u32; 3]>,
+    /// The number of ghosts.
+    ghosts: usize,
     topology: Topology,
     /// The unit normal on the front of each triangle; zero without area. Empty in 2D.
     normals: Vec<Vector<N, D>>,
@@ -101,13 +105,19 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     /// The three vertices of each triangle.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        &self.triangles[..self.num_triangles()]
+    }
+
+    /// The three vertices of each ghost; see [`Self::try_with_ghosts`].
+    #[must_use]
+    pub fn ghosts(&self) -> &[[u32; 3]] {
+        &self.triangles[self.num_triangles()..]
     }
 
     /// The number of triangles.
     #[must_use]
     pub const fn num_triangles(&self) -> usize {
-        self.triangles.len()
+        self.triangles.len() - self.ghosts
     }
 
     /// One triangle.
@@ -119,7 +129,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
         Triangle::of_finite(self.corners(index))
     }
 
-    /// Returns the neighbour across side 0 to 2 of a triangle. O(1).
+    /// Returns the neighbour across side 0 to 2 of a triangle; ghosts are none. O(1).
     ///
     /// # Panics
     /// If there is no such triangle or side.
@@ -130,16 +140,17 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
 
     /// [`Self::neighbor`], with a flip if both triangles traverse the side in the same direction.
     fn across(&self, triangle: u32, side: usize) -> EdgeNeighbor {
-        if self.topology.has_several_across(triangle, side) {
-            return EdgeNeighbor::Several;
-        }
-        let Some(index) = self.topology.single_across(triangle, side) else {
-            return EdgeNeighbor::Border;
-        };
         let ends = self.joint_ends(triangle, side);
-        let other = self.side_between(index, ends);
-        let is_flipped = other.is_some_and(|other| self.joint_ends(index, other) == ends);
-        EdgeNeighbor::Triangle { index, is_flipped }
+        let mut found = EdgeNeighbor::Border;
+        self.each_across(triangle, side, |index, entered| {
+            let is_flipped = self.joint_ends(index, entered) == ends;
+            found = match found {
+                _ if index as usize >= self.num_triangles() => found,
+                EdgeNeighbor::Border => EdgeNeighbor::Triangle { index, is_flipped },
+                _ => EdgeNeighbor::Several,
+            };
+        });
+        found
     }
 
     /// Whether every side with a length has a neighbour, so that a surface in 3D has no border.
@@ -148,7 +159,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     pub fn is_closed(&self) -> bool {
         self.each_side().all(|(triangle, side)| {
             let [from, to] = self.joint_ends(triangle, side);
-            from == to || !self.topology.is_border(triangle, side)
+            from == to || self.across(triangle, side) != EdgeNeighbor::Border
         })
     }
 
@@ -212,7 +223,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
     }
 
     fn each_side(&self) -> impl Iterator<Item = (u32, usize)> + '_ {
-        (0..).take(self.triangles.len()).flat_map(|index| (0..3).map(move |side| (index, side)))
+        (0..).take(self.num_triangles()).flat_map(|index| (0..3).map(move |side| (index, side)))
     }
 }
 

@@ -21,7 +21,7 @@ impl<N: Real, const D: usize> TriMesh<N, D> {
             let joints = &self.topology.joints;
             let are_together = !self.topology.is_moved || joints.are_together(&self.vertices);
             let number = |vertex| if are_together { joints.of(vertex) } else { vertex };
-            pieces(&self.triangles, self.vertices.len(), number)
+            pieces(self.triangles(), self.vertices.len(), number)
         })
     }
 }
@@ -108,7 +108,7 @@ impl<N: Real> TriMesh<N, 3> {
 
     /// The error for the first edge that is not traversed equally often in both directions.
     fn opening(&self) -> MeshError {
-        let joints = Joints::new(&self.vertices, &self.triangles);
+        let joints = Joints::new(&self.vertices, self.triangles());
         let ends = |part: u32, side: usize| {
             let corners = self.triangles[part as usize];
             [corners[side], corners[(side + 1) % 3]]
