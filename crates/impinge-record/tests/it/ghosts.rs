@@ -26,7 +26,8 @@ fn tiles_have_their_ghosts() {
     assert_eq!(validate::<f32, 3, u32>(&bytes, &registry), Ok(None));
     let mut replay = Replay::<f32, 3, u32>::open(bytes, &registry).expect("a recording");
     replay.seek(1).expect("an update");
-    let shapes: Vec<_> = replay.world().collision_objects().map(|object| object.shape().clone()).collect();
+    let shapes: Vec<_> =
+        replay.world().collision_objects().map(|object| object.shape().clone()).collect();
     let mesh = shapes.iter().find_map(|shape| shape.as_shape::<TriMesh<f32, 3>>());
     let mesh = mesh.expect("the mesh");
     assert_eq!((mesh.triangles(), mesh.ghosts()), (&[[0, 1, 2]][..], &[[2, 1, 3]][..]));
@@ -54,7 +55,8 @@ fn a_line_has_its_ghosts_and_a_polyline_none() {
     let (bytes, registry) = (recorder.finish().bytes, Registry::new());
     let mut replay = Replay::<f32, 2, u32>::open(bytes, &registry).expect("a recording");
     replay.seek(1).expect("an update");
-    let shapes: Vec<_> = replay.world().collision_objects().map(|object| object.shape().clone()).collect();
+    let shapes: Vec<_> =
+        replay.world().collision_objects().map(|object| object.shape().clone()).collect();
     let field = shapes.iter().find_map(|shape| shape.as_shape::<HeightField<f32, 2>>());
     let field = field.expect("the field");
     assert_eq!([0, 1, 2].map(|part| field.is_ghost(part)), [true, false, true]);

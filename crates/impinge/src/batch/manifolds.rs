@@ -2,7 +2,7 @@
 //!
 //! A chunk is computed in three steps. Its pairs are placed, and certainly distant ones rejected.
 //! The manifolds of the others are computed: pairs of boxes, balls, segments and capsules are
-//! sorted by kinds and computed eight at a time in SIMD lanes. The points are written in the order
+//! sorted by kinds and computed 8 at a time in SIMD lanes. The points are written in the order
 //! of the pairs.
 
 use crate::math::order::sort_few;

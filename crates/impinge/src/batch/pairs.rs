@@ -176,7 +176,7 @@ impl<'a, N: Space<D>, const D: usize> PairBatch<'a, N, D> {
     ///
     /// `prediction` limits distances and rotations as there. Manifolds have at most `max_points`
     /// points, but at least one; by default (`None`) two in 2D and four in 3D. The content of `out`
-    /// is replaced and its memory reused. Boxes, balls, segments and capsules are computed eight
+    /// is replaced and its memory reused. Boxes, balls, segments and capsules are computed 8
     /// pairs at a time.
     ///
     /// # Errors

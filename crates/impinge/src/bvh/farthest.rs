@@ -35,7 +35,7 @@ impl<const D: usize> Tree<D> {
         search.best + tolerance
     }
 
-    /// Searches a block. The recursion depth is the number of layers, at most eight.
+    /// Searches a block. The recursion depth is the number of layers, at most 8.
     fn open<N: Real>(&self, layer: usize, block: usize, search: &mut ExtentSearch<'_, N, D>) {
         let lanes = &self.layers[layer].blocks[block];
         let mut farthest: [(N, usize); LANES] = filled(|lane| {

@@ -13,7 +13,7 @@ use super::tree::small;
 use super::triangles::{ShearedLine, TriangleAt, Triangles};
 use super::{Block, Bounds, LANES, Lanes, NONE, Tree};
 
-/// Greatest number of layers: 2^32 objects need eight.
+/// Greatest number of layers: 2^32 objects need 8.
 pub(super) const LAYERS: usize = 8;
 
 /// Greatest number of objects passed on at once: their data are scattered in memory, and loads for several objects

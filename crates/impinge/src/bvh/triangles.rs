@@ -65,7 +65,7 @@ pub(crate) struct TriangleAt<'a> {
 const NEAR: f32 = 256.0;
 
 /// Error bound in `f32` rounding units of the largest coordinate: 8 for the conversion from `f64`,
-/// and 40 because a ray that starts within eight units of a triangle starts on it.
+/// and 40 because a ray that starts within 8 units of a triangle starts on it.
 const FAR: f32 = 64.0;
 
 /// A line, sheared so that it runs along the third of its axes.

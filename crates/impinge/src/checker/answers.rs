@@ -17,7 +17,7 @@ use crate::math::{Real, Space, max};
 const NEAR_ANGLE: f64 = 4.0;
 const FAR_ANGLE: f64 = 1e8;
 
-/// Processes configurations in packets of eight.
+/// Processes configurations in packets of 8.
 struct EightByEight<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],
@@ -41,7 +41,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
         }
     }
 
-    /// Calls `finish` with each packet of up to eight configurations, after the scan.
+    /// Calls `finish` with each packet of up to 8 configurations, after the scan.
     fn each(
         &mut self,
         range: Range<usize>,
@@ -50,18 +50,18 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
     ) {
         let mut start = range.start;
         while start < range.end {
-            let eight = start..range.end.min(start + LANES);
-            self.scan(&eight, limit);
-            self.exact.begin(eight.clone());
-            start = eight.end;
-            finish(self, eight);
+            let packet = start..range.end.min(start + LANES);
+            self.scan(&packet, limit);
+            self.exact.begin(packet.clone());
+            start = packet.end;
+            finish(self, packet);
         }
     }
 
     /// Scans a packet: reads its numbers in `f32` and collects candidate pairs up to `limit`.
-    fn scan(&mut self, eight: &Range<usize>, limit: N) {
-        let slides = self.read_numbers(eight);
-        let lanes = u8::MAX >> (LANES - eight.len());
+    fn scan(&mut self, packet: &Range<usize>, limit: N) {
+        let slides = self.read_numbers(packet);
+        let lanes = u8::MAX >> (LANES - packet.len());
         let robot = &self.checker.robot;
         self.search.begin(lanes, limit.as_f32(), (&slides, robot.slide_margin()));
         let (scratch, search) = (&mut self.scratch, &mut self.search);
@@ -69,7 +69,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
     }
 
     /// Reads the numbers of the nodes in `f32`; returns the total slide of all joints in each lane.
-    fn read_numbers(&mut self, eight: &Range<usize>) -> LaneRow<f32> {
+    fn read_numbers(&mut self, packet: &Range<usize>) -> LaneRow<f32> {
         let tree = &self.checker.tree;
         let (width, mut slides) = (tree.columns(), [0.0; LANES]);
         for (index, joint) in tree.joints.iter().enumerate() {
@@ -77,7 +77,7 @@ impl<'a, N: Space<D>, const D: usize> EightByEight<'a, N, D> {
             let row = &mut self.scratch.numbers[index];
             let slides_here = tree.nodes[index].slides();
             for lane in 0..LANES {
-                let configuration = (eight.start + lane).min(eight.end - 1);
+                let configuration = (packet.start + lane).min(packet.end - 1);
                 let given = self.configurations[configuration * width + column];
                 let value = joint.value_at(given);
                 if slides_here {
@@ -136,9 +136,9 @@ pub(super) fn are_free<N: Space<D>, const D: usize>(
     Progress::new(control).run(out.len(), out, |range, out: &mut [bool]| {
         let mut sweep = EightByEight::new(checker, configurations, SearchMode::Any);
         let first = range.start;
-        sweep.each(range, clearance, |sweep, eight| {
+        sweep.each(range, clearance, |sweep, packet| {
             let hits = sweep.hits(clearance);
-            for (lane, index) in eight.enumerate() {
+            for (lane, index) in packet.enumerate() {
                 out[index - first] = hits >> lane & 1 == 0;
             }
         });
@@ -206,8 +206,8 @@ pub(super) fn first_pairs<N: Space<D>, const D: usize>(
     Progress::new(control).run(out.len(), out, |range, out: &mut [[u32; 2]]| {
         let mut sweep = EightByEight::new(checker, configurations, SearchMode::All);
         let first = range.start;
-        sweep.each(range, clearance, |sweep, eight| {
-            for (lane, index) in eight.enumerate() {
+        sweep.each(range, clearance, |sweep, packet| {
+            for (lane, index) in packet.enumerate() {
                 let is_blind = sweep.search.blind >> lane & 1 == 1;
                 let is_nowhere = is_blind && !sweep.exact.is_finite(lane);
                 let pair = if is_nowhere { None } else { sweep.first(lane, clearance) };
@@ -228,8 +228,8 @@ pub(super) fn nearest<N: Space<D>, const D: usize>(
     Progress::new(control).run(count, out, |range, mut out: NearestColumns<'_, N>| {
         let mut sweep = EightByEight::new(checker, configurations, SearchMode::Nearest);
         let first = range.start;
-        sweep.each(range, limit, |sweep, eight| {
-            for (lane, index) in eight.enumerate() {
+        sweep.each(range, limit, |sweep, packet| {
+            for (lane, index) in packet.enumerate() {
                 let is_blind = sweep.search.blind >> lane & 1 == 1;
                 if is_blind && !sweep.exact.is_finite(lane) {
                     out.put(index - first, N::lit(f64::NAN), NO_PAIR);
@@ -311,8 +311,8 @@ mod tests {
     fn searches(checker: &Checker<f64, 3>, rows: &[f64]) -> (u64, Vec<u32>) {
         let mut sweep = EightByEight::new(checker, rows, SearchMode::Any);
         let mut all = 0;
-        sweep.each(0..rows.len(), 0.0, |sweep, eight| {
-            all |= u64::from(sweep.hits(0.0)) << eight.start;
+        sweep.each(0..rows.len(), 0.0, |sweep, packet| {
+            all |= u64::from(sweep.hits(0.0)) << packet.start;
         });
         let pairs = checker.pairs().iter().map(|&[one, other]| (one, Other::Body(other)));
         (all, pairs.map(|pair| sweep.odds.searches(pair)).collect())

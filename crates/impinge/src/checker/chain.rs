@@ -1,4 +1,4 @@
-//! Forward kinematics of eight configurations at a time.
+//! Forward kinematics of 8 configurations at a time.
 //!
 //! ```text
 //!   frames   world ── a (fixed) ── b (turns) ── c (fixed) ── d (slides)
@@ -18,10 +18,10 @@ use crate::math::{Matrix, Pose, Real, Vector, Wide, filled};
 /// Configurations that are computed at once.
 pub(super) const LANES: usize = 8;
 
-/// A number for each of eight configurations.
+/// A number for each of 8 configurations.
 pub(super) type LaneRow<N> = [N; LANES];
 
-/// Poses in eight lanes.
+/// Poses in 8 lanes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PoseRows<N, const D: usize> {
     /// By columns of the matrix.
@@ -168,7 +168,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
         plus(&self.vector(simd, local), &load(simd, &self.translation))
     }
 
-    /// Transforms eight local points by the pose in one lane to the outer frame.
+    /// Transforms 8 local points by the pose in one lane to the outer frame.
     #[inline(always)]
     pub(super) fn points_in<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -201,7 +201,7 @@ impl<N: Real, const D: usize> PoseRows<N, D> {
     }
 }
 
-/// Computes the poses of all nodes for eight configurations. `numbers` has one row for each node;
+/// Computes the poses of all nodes for 8 configurations. `numbers` has one row for each node;
 /// `rows` has the world's block and one for each node.
 #[inline(always)]
 pub(super) fn forward<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(

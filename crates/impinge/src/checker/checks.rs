@@ -196,7 +196,7 @@ impl<N: Space<D>, const D: usize> Checker<N, D> {
     /// `configurations` has a number for each column of the tree, row by row. A `clearance` that is
     /// negative or NaN counts as zero.
     ///
-    /// Cost: some microseconds for eight configurations of a robot of some fifty balls among ten
+    /// Cost: some microseconds for 8 configurations of a robot of some fifty balls among ten
     /// obstacles. Some tens of microseconds for each configuration of a robot of meshes, most of it
     /// for pairs whose convex hulls touch. The hull of a mesh is computed once, in O(n log n) for n
     /// vertices, after it was needed for some configurations.

@@ -9,7 +9,7 @@ use crate::collide::Placed;
 use crate::math::Space;
 use crate::query::distance_within;
 
-/// The poses of up to eight configurations in the user's scalar, computed on first use.
+/// The poses of up to 8 configurations in the user's scalar, computed on first use.
 pub(super) struct Exact<'a, N: Space<D>, const D: usize> {
     checker: &'a Checker<N, D>,
     configurations: &'a [N],

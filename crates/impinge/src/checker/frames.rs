@@ -171,7 +171,7 @@ impl<N: Space<D>, const D: usize> FrameTree<N, D> {
         }
     }
 
-    /// Reads the numbers of all nodes for up to eight configurations; the last one fills the rest.
+    /// Reads the numbers of all nodes for up to 8 configurations; the last one fills the rest.
     pub(super) fn numbers(
         &self,
         configurations: &[N],
@@ -207,8 +207,8 @@ pub(super) fn place<N: Space<D>, const D: usize>(
         let mut rows = vec![PoseRows::identity(); tree.nodes.len() + 1];
         for (batch, slots) in poses.into_slice().chunks_mut(LANES * width).enumerate() {
             let start = range.start + batch * LANES;
-            let eight = start..range.end.min(start + LANES);
-            tree.numbers(configurations, &eight, &mut numbers);
+            let packet = start..range.end.min(start + LANES);
+            tree.numbers(configurations, &packet, &mut numbers);
             tree.forward(&numbers, &mut rows);
             for (index, slot) in slots.iter_mut().enumerate() {
                 *slot = placed[index % width].at(&rows, index / width);

@@ -6,7 +6,7 @@
 //! - [`pair`] puts two shapes in canonical order, and one in the frame of the other;
 //! - [`separation`] computes the signed distance, normal and nearest points of two solids;
 //! - [`manifold`] computes contact points from them: supporting features, clipping, reduction, ids;
-//! - [`batch`] does both for eight pairs at a time, of the kinds that are most frequent in worlds;
+//! - [`batch`] does both for 8 pairs at a time, of the kinds that are most frequent in worlds;
 //! - [`parts`] finds the pairs of parts of two composites that matter, and their separation;
 //! - [`mesh`] builds manifolds of a composite: parts are gathered, culled in packets ([`packet`]),
 //!   separated, their normals filtered by the surface, and their points merged into patches.

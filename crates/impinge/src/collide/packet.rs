@@ -1,4 +1,4 @@
-//! Parts of a surface side by side, for computing with eight at a time.
+//! Parts of a surface side by side, for computing with 8 at a time.
 //!
 //! ```text
 //!   corners[c][axis][lane]     c: corner 0, 1, 2 of the part; a segment has its second end twice
@@ -6,14 +6,14 @@
 //! ```
 //!
 //! `mesh/part_cache.rs` keeps lists of them, called tiles. `mesh/cull.rs`, `separation/triangles`,
-//! `separation/chain` and `manifold/face_lanes` read them eight lanes at a time.
+//! `separation/chain` and `manifold/face_lanes` read them 8 lanes at a time.
 
 use crate::math::{Point, Real};
 
 /// Parts in one packet.
 pub(crate) const LANES: usize = 8;
 
-/// Corners of eight parts in the frame of their composite. A segment has its second end twice; if
+/// Corners of 8 parts in the frame of their composite. A segment has its second end twice; if
 /// there are fewer parts, the last one fills the rest.
 #[derive(Clone, Debug)]
 pub(crate) struct PartPacket<N, const D: usize> {

@@ -1,4 +1,4 @@
-//! SIMD vectors emulated by arrays of eight numbers, for targets without SIMD.
+//! SIMD vectors emulated by arrays of 8 numbers, for targets without SIMD.
 //!
 //! Each operation is a function that is not inlined. If it were, a kernel of a thousand operations
 //! would become functions with thousands of loops, which takes compilers too long.

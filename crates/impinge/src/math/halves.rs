@@ -1,4 +1,4 @@
-//! Vectors of eight numbers on narrower registers: two vectors side by side, each of which may be
+//! Vectors of 8 numbers on narrower registers: two vectors side by side, each of which may be
 //! two again.
 //!
 //! `fearless_simd` has such vectors too, as arrays of registers that each operation takes apart and

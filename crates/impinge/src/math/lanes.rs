@@ -80,7 +80,7 @@ pub(crate) fn lit<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S, value: f64)
     V::all(simd, N::lit(value))
 }
 
-/// The greatest of eight lanes.
+/// The greatest of 8 lanes.
 #[inline(always)]
 pub(crate) fn highest_lane<S: Simd, N: Real, V: Wide<S, Scalar = N>>(numbers: V) -> N {
     let mut lanes = [N::ZERO; 8];
@@ -230,7 +230,7 @@ pub(crate) fn either_mask<S: Simd, M: SimdMask<S>>(is: M, one: M, other: M) -> M
     (is & one) | (!is & other)
 }
 
-/// A bit for each of eight lanes.
+/// A bit for each of 8 lanes.
 #[inline(always)]
 pub(crate) fn bits<S: Simd, M: SimdMask<S>>(mask: M) -> u8 {
     let [low, ..] = mask.to_bitmask().to_le_bytes();

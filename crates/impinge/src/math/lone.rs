@@ -1,4 +1,4 @@
-//! A vector of one number: a kernel compiled for it computes one of eight lanes, with the bits of
+//! A vector of one number: a kernel compiled for it computes one of 8 lanes, with the bits of
 //! that lane.
 
 use core::ops::{
@@ -9,7 +9,7 @@ use super::na::{ComplexField, RealField};
 use super::simd::{Simd, SimdMask, Wide};
 use super::{Vector, filled};
 
-/// The lane to compute: loads read this one of eight numbers, stores write it to all eight.
+/// The lane to compute: loads read this one of 8 numbers, stores write it to all 8.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OneLane(pub(crate) usize);
 
@@ -43,7 +43,7 @@ impl<N: RealField + Copy> Lone<N> {
     }
 }
 
-/// One truth value as a mask; its bitmask repeats it for all eight lanes.
+/// One truth value as a mask; its bitmask repeats it for all 8 lanes.
 #[derive(Clone, Copy, Debug)]
 #[allow(unnameable_types, unreachable_pub, reason = "in the interface of `Eight`")]
 pub struct LoneMask(pub(crate) bool);

@@ -46,7 +46,7 @@ pub(crate) fn product_within<N: Real>(a: N, b: N) -> [N; 2] {
 }
 
 /// A bound of the error of a few sums and products of lengths up to `size`, as for the coordinates
-/// of a rotated point: eight units of rounding plus eight times the smallest number.
+/// of a rotated point: 8 units of rounding plus 8 times the smallest number.
 #[inline(always)]
 pub(crate) fn slack_of<N: Real>(size: N) -> N {
     N::lit(8.0) * (N::EPSILON * size + smallest::<N>())

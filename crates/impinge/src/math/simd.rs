@@ -1,4 +1,4 @@
-//! SIMD vectors of eight numbers, and the instruction sets of each target.
+//! SIMD vectors of 8 numbers, and the instruction sets of each target.
 //!
 //! A kernel is one source over [`Simd`] and [`Wide`]. All operations are those of IEEE 754, so that
 //! each lane has the same bits as a scalar. There are two kinds of kernels:
@@ -29,7 +29,7 @@ use super::halves::Halves;
 /// The instruction set to use. No result depends on it.
 ///
 /// On x86 it is AVX2, and the baseline SSE2 for some kernels: sets between them bring little, and
-/// eight lanes gain nothing from wider registers, whereas each set adds one more copy of all
+/// 8 lanes gain nothing from wider registers, whereas each set adds one more copy of all
 /// kernels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Level {
@@ -149,10 +149,10 @@ impl Run {
     }
 }
 
-/// A scalar with vectors of eight.
+/// A scalar with vectors of 8.
 #[expect(unnameable_types, reason = "for this crate alone")]
 pub trait Eight: Sized {
-    /// A vector of eight.
+    /// A vector of 8.
     type Lanes<S: Simd>: Wide<S, Scalar = Self>;
 }
 

@@ -1,4 +1,4 @@
-//! Sine and cosine in eight lanes: the same bits on every platform.
+//! Sine and cosine in 8 lanes: the same bits on every platform.
 //!
 //! An angle is reduced to at most 45° by the three parts of π/2 (Cody and Waite); the rest is two
 //! polynomials that interpolate at Chebyshev points. The error is at most 2 ε for angles up to

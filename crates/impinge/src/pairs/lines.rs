@@ -4,7 +4,7 @@
 //! ```text
 //! object   owned ──> head (64 bytes): link 0 … link 6 | start | count and class
 //!                                                        │
-//! pool     line, line, ... <─── run of 2^class lines, eight links each
+//! pool     line, line, ... <─── run of 2^class lines, 8 links each
 //! places   (object, partner) -> place of the link, for heavy objects (class >= 5)
 //! ```
 

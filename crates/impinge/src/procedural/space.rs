@@ -176,7 +176,7 @@ pub fn cone<N: Real>(cone: &Cone<N>, subdivisions: u32) -> TriangleSurface<N> {
     revolve(&RevolutionFrame::around(up()), parts_of_turn(subdivisions), &profile)
 }
 
-/// Returns twelve triangles between the eight vertices of a box.
+/// Returns twelve triangles between the 8 vertices of a box.
 ///
 /// Vertex `i` is the box's `Vertex(i)`; the triangles `2 i` and `2 i + 1` are its `Face(i)`.
 ///

@@ -77,7 +77,7 @@ fn extents<N: Real, const D: usize>(
     with_lanes!(level, simd => extents_in_lanes::<_, N, N::Lanes<_>, D>(simd, blocks, rotation))
 }
 
-/// Returns the componentwise minimum and maximum of the rotated vertices, a packet of eight at a
+/// Returns the componentwise minimum and maximum of the rotated vertices, a packet of 8 at a
 /// time. `None` if a coordinate is NaN.
 #[inline(always)]
 fn extents_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(

@@ -55,10 +55,10 @@ pub trait ByDimension<N: Real, const D: usize>:
         arena: &mut Arena<N, D>,
     ) -> bool;
 
-    /// Computes a lower bound of the distance of each of eight parts from the solid in the slabs.
+    /// Computes a lower bound of the distance of each of 8 parts from the solid in the slabs.
     fn part_gaps(slabs: &AxisSlabs<N, D>, tiles: &PartPacket<N, D>, limit: N) -> [N; LANES];
 
-    /// Classifies eight pairs of parts: beyond a limit, or within it.
+    /// Classifies 8 pairs of parts: beyond a limit, or within it.
     fn part_pairs(pairs: &PartPairs<N, D>, limit: N) -> PairMasks;
 
     /// Updates the contacts of a convex solid and a chain of segments (2D), or of a ball and a surface (3D); `false` if

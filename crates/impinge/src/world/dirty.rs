@@ -218,7 +218,7 @@ mod tests {
 
     fn change_one(world: &mut World, state: &mut u64) {
         let ball = ShapeHandle::new(Ball::new(0.5));
-        let ground = ShapeHandle::new(HalfSpace::new(Vector::y_axis()));
+        let floor = ShapeHandle::new(HalfSpace::new(Vector::y_axis()));
         let handles: Vec<_> = world.objects.iter().map(CollisionObject::handle).collect();
         let handle = handles[usize::from(below(state, 30_000)) % handles.len()];
         let position = Isometry::from(place(state, 30));
@@ -226,7 +226,7 @@ mod tests {
             0 => world.update(),
             1..20 => world.remove(&[handle]),
             20..39 => add(world, &ball, position),
-            39..42 => world.set_shape(handle, ground),
+            39..42 => world.set_shape(handle, floor),
             42..52 => world.set_shape(handle, ball),
             52..56 => world.set_collision_groups(handle, CollisionGroups::new()),
             _ => world.set_position(handle, position),

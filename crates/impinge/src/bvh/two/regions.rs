@@ -142,7 +142,7 @@ impl<const D: usize> RotatedBox<D> {
         held
     }
 
-    /// Tests eight boxes of a block. Empty lanes are infinitely far.
+    /// Tests 8 boxes of a block. Empty lanes are infinitely far.
     #[inline(always)]
     fn held_half<S: Simd>(&self, simd: S, block: &Block<D>, first: usize, gaps: &mut [f32]) -> u8 {
         let (lanes, zero) = (first..first + HALF, S::F32x8::all(simd, 0.0));
@@ -186,7 +186,7 @@ impl<const D: usize> Extent<D> {
         Self { middle, points: SmallVec::from_slice(&points), wider: SmallVec::new(), margin }
     }
 
-    /// The gaps to eight boxes of a block along the line from `middle` to the centre of each.
+    /// The gaps to 8 boxes of a block along the line from `middle` to the centre of each.
     #[inline(always)]
     fn gaps<S: Simd>(&self, simd: S, [lo, hi]: &[[S::F32x8; D]; 2]) -> S::F32x8 {
         let (half, zero) = (S::F32x8::all(simd, 0.5), S::F32x8::all(simd, 0.0));

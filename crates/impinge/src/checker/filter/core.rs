@@ -1,4 +1,4 @@
-//! Distances of points from an obstacle, eight points at a time.
+//! Distances of points from an obstacle, 8 points at a time.
 
 use crate::math::lanes::{dot, lit, minus, norm, rotated_into, times};
 use crate::math::simd::Simd;
@@ -116,7 +116,7 @@ fn columns<N: Real, const D: usize>(matrix: &Matrix<N, D>) -> [[f32; D]; D] {
 }
 
 impl<const D: usize> Core<D> {
-    /// The squared distances of eight points from the core, zero inside; all numbers must be below
+    /// The squared distances of 8 points from the core, zero inside; all numbers must be below
     /// 10¹⁵.
     #[inline(always)]
     pub(super) fn squared<S: Simd, V: Wide<S, Scalar = f32>>(&self, simd: S, points: &[V; D]) -> V {

@@ -2,7 +2,7 @@
 //! `f32` and in lanes.
 //!
 //! ```text
-//!   group     a ball around up to eight balls of one node     eight configurations at once, and where it is near
+//!   group     a ball around up to 8 balls of one node         8 configurations at once, and where it is near
 //!     balls     a body, or a row of balls that hold it          its balls at once, in one configuration
 //! ```
 //!

@@ -21,7 +21,7 @@ pub(in crate::checker) struct RobotFilter<const D: usize> {
     slide_margin: f32,
 }
 
-/// Up to eight neighbouring balls on one node: one body, or several.
+/// Up to 8 neighbouring balls on one node: one body, or several.
 #[derive(Clone, Debug)]
 pub(super) struct BallGroup<const D: usize> {
     pub(super) node: usize,

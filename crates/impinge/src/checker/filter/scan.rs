@@ -1,4 +1,4 @@
-//! The scan: eight configurations against all pairs.
+//! The scan: 8 configurations against all pairs.
 //!
 //! ```text
 //! group     [ c0 c1 c2 c3 c4 c5 c6 c7 ]   lane = configuration; a bit for each where it is near
@@ -14,7 +14,7 @@ use crate::math::lanes::{dot, load, minus, with_lanes};
 use crate::math::simd::{Eight, Level, Simd};
 use crate::math::{Wide, filled};
 
-/// The positions of all groups in eight configurations.
+/// The positions of all groups in 8 configurations.
 #[derive(Debug)]
 pub(in crate::checker) struct ScanScratch<const D: usize> {
     /// The number of each node.
@@ -49,7 +49,7 @@ struct Scan<'a, const D: usize> {
     around: &'a Surroundings<D>,
 }
 
-/// Finds the candidate pairs of eight configurations from the numbers in `scratch`.
+/// Finds the candidate pairs of 8 configurations from the numbers in `scratch`.
 pub(in crate::checker) fn scan_at<const D: usize>(
     level: Level,
     robot: &RobotFilter<D>,
@@ -62,7 +62,7 @@ pub(in crate::checker) fn scan_at<const D: usize>(
     search.tidy();
 }
 
-/// Runs [`Scan::run`] with vectors of eight.
+/// Runs [`Scan::run`] with vectors of 8.
 #[inline(always)]
 fn run<S: Simd, const D: usize>(
     simd: S,

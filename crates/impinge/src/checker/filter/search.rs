@@ -6,7 +6,7 @@ use crate::math::order::sort_few;
 use crate::math::simd::Simd;
 use crate::math::{Wide, max, min};
 
-/// The query of eight configurations.
+/// The query of 8 configurations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::checker) enum SearchMode {
     /// Whether there is any pair: a lane ends at its first certain pair.
@@ -55,7 +55,7 @@ pub(in crate::checker) enum Other {
     Obstacle(u32),
 }
 
-/// A search in eight configurations.
+/// A search in 8 configurations.
 #[derive(Debug)]
 pub(in crate::checker) struct CollisionSearch {
     mode: SearchMode,
@@ -78,7 +78,7 @@ pub(in crate::checker) struct CollisionSearch {
     pub(in crate::checker) candidates: Vec<CandidatePair>,
 }
 
-/// The distances of up to eight balls of a group from one ball or obstacle.
+/// The distances of up to 8 balls of a group from one ball or obstacle.
 #[derive(Clone, Copy)]
 pub(super) struct Distances<V> {
     /// The squared distances of the centers from its center, or from its core.

@@ -1,4 +1,4 @@
-//! Distances and separations of many pairs of convex solids, eight at a time for kinds with a
+//! Distances and separations of many pairs of convex solids, 8 at a time for kinds with a
 //! kernel.
 //!
 //! ```text
@@ -101,7 +101,7 @@ pub(crate) fn separations3<N: Real>(
     });
 }
 
-/// Calls `work` with up to eight pairs of the same kinds at a time.
+/// Calls `work` with up to 8 pairs of the same kinds at a time.
 fn each_packet<'a, N: Real>(
     pairs: &mut [ConvexPair<'a, N, 3>],
     mut work: impl FnMut(&[ConvexPair<'a, N, 3>]),
@@ -142,7 +142,7 @@ fn fill<'a, N: Real, T>(
     }
 }
 
-/// Up to eight pairs of segments or capsules.
+/// Up to 8 pairs of segments or capsules.
 struct SegmentPacket<N: Real> {
     /// Ends of the cores of each lane, in the frame of its first solid.
     ends: [[[Point<N, 3>; 2]; 2]; LANES],

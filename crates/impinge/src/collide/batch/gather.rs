@@ -1,4 +1,4 @@
-//! Inputs of the kernels: eight pairs side by side, or one.
+//! Inputs of the kernels: 8 pairs side by side, or one.
 //!
 //! ```text
 //!                  lane 0   lane 1   ...        a row for each number, a column for each pair

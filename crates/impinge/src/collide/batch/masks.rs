@@ -1,16 +1,16 @@
-//! Bits of eight pairs side by side.
+//! Bits of 8 pairs side by side.
 //!
 //! ```text
 //!   row r, bit lane   --per_pair-->   byte lane, bit r
 //! ```
 
-/// Transposes eight masks, a bit for each pair, into a byte for each pair.
+/// Transposes 8 masks, a bit for each pair, into a byte for each pair.
 #[inline(always)]
 pub(super) const fn per_pair(rows: [u8; 8]) -> [u8; 8] {
     transposed(u64::from_le_bytes(rows)).to_le_bytes()
 }
 
-/// Transposes a matrix of eight by eight bits (H. S. Warren, "Hacker's Delight", 7-3): swaps bits
+/// Transposes a matrix of 8 by 8 bits (H. S. Warren, "Hacker's Delight", 7-3): swaps bits
 /// in blocks of 2 by 2, then these blocks in 4 by 4, then those in 8 by 8.
 #[inline(always)]
 const fn transposed(mut x: u64) -> u64 {

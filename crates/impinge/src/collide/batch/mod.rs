@@ -1,4 +1,4 @@
-//! Pairs of boxes, balls, segments and capsules, eight at a time; a lone pair is a batch of one.
+//! Pairs of boxes, balls, segments and capsules, 8 at a time; a lone pair is a batch of one.
 //!
 //! ```text
 //!   kept pairs i .. i + L      gather      find (kernel)      settle, lane by lane
@@ -17,12 +17,12 @@
 //! Each lane of a vector is another pair and never depends on its neighbours, so the bits of a pair
 //! do not depend on the batch. The numbers of `L` pairs are gathered ([`gather`]), a kernel
 //! computes all that needs no branches ([`Batch`]), then manifold after manifold is replaced. `L`
-//! is eight where the machine has vectors that pay, else one, computed by [`OneLane`]. A pair asked
+//! is 8 where the machine has vectors that pay, else one, computed by [`OneLane`]. A pair asked
 //! about alone is a batch of one lane on every machine. Degenerate pairs fall back to the builder
 //! for one pair: a centre in a box, cores that cross, sizes whose squares underflow or overflow,
 //! NaN.
 //!
-//! Masks are bytes: bit `lane` of each. [`masks`] transposes eight of them into a byte for each
+//! Masks are bytes: bit `lane` of each. [`masks`] transposes 8 of them into a byte for each
 //! pair. The slots of box pairs and the codes that name them are in `boxes/`.
 //!
 //! The idea of lanes across pairs is that of bepuphysics (R. Nordby).

@@ -1,4 +1,4 @@
-//! Compares eight pairs at a time with one by one, on every instruction set: bit for bit.
+//! Compares 8 pairs at a time with one by one, on every instruction set: bit for bit.
 
 use super::{
     BallBall, BallCuboid, BallSegment, Batch, Boxes2, Boxes3, ClosedForm, KeptPairs, Many,

@@ -110,7 +110,7 @@ fn project_in_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     }
 }
 
-/// A point measured against up to eight sides of a ring: signed distances, positive inside, and
+/// A point measured against up to 8 sides of a ring: signed distances, positive inside, and
 /// masks.
 #[derive(Clone, Copy)]
 struct SideRow<N: Real> {
@@ -180,7 +180,7 @@ impl<N: Real> Insides<N> {
     }
 }
 
-/// Returns a mask of the lowest `count` bits, eight at most.
+/// Returns a mask of the lowest `count` bits, 8 at most.
 const fn first_bits(count: usize) -> u8 {
     if count < LANES { (1 << count) - 1 } else { u8::MAX }
 }

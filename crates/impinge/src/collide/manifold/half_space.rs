@@ -89,7 +89,7 @@ impl<N: Real, const D: usize> Above<'_, N, D> {
         }
     }
 
-    /// Adds the vertices of a hull: eight at a time, those that may be near are tested again.
+    /// Adds the vertices of a hull: 8 at a time, those that may be near are tested again.
     #[inline(always)]
     fn vertices_in_lanes<S: Simd, V: Wide<S, Scalar = N>>(
         &self,

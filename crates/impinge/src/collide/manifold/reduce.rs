@@ -15,7 +15,7 @@
 //!
 //! Old points, those of the previous manifold, are kept while they span [`ENOUGH`] of the best
 //! choice and include a deepest one; otherwise each counts slightly more than a new one. So solids
-//! at rest keep their points, also where many choices are equal, as among the eight corners of two
+//! at rest keep their points, also where many choices are equal, as among the 8 corners of two
 //! squares at 45°.
 
 use core::cmp::Ordering;

@@ -38,7 +38,7 @@ pub(super) struct RingCorner<N: Real> {
     pub(super) side: FeatureId,
 }
 
-/// Up to eight corners by coordinate; lanes after the last corner are unspecified.
+/// Up to 8 corners by coordinate; lanes after the last corner are unspecified.
 pub(super) struct RingBlock<N: Real> {
     /// Corners in the frame of the first solid, and their coordinates in the tangents.
     points: [[N; LANES]; 3],

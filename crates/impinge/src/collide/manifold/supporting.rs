@@ -1,7 +1,7 @@
 //! Supporting features of the kinds in 3D as rings of corners, in the frames of their solids.
 //!
 //! They equal those of [`SupportMap::core_feature`], which serves all other kinds. A ring is one
-//! `FaceRing` for up to eight corners; a round cap may fill two.
+//! `FaceRing` for up to 8 corners; a round cap may fill two.
 
 use smallvec::SmallVec;
 
@@ -14,7 +14,7 @@ use crate::shape::{
     SupportMap, Triangle,
 };
 
-/// Corners of a feature, eight per ring; id and normal of the feature are those of the first ring.
+/// Corners of a feature, 8 per ring; id and normal of the feature are those of the first ring.
 pub(super) type FaceBlocks<N> = SmallVec<[FaceRing<N>; 2]>;
 
 /// Fills a blank ring with the supporting feature of a solid's core, and returns the radius.
@@ -82,7 +82,7 @@ pub(super) fn supporting_part<N: Real>(
     }
 }
 
-/// Fills a blank ring with a part of a box or hull; `false` for a face with more than eight
+/// Fills a blank ring with a part of a box or hull; `false` for a face with more than 8
 /// corners.
 pub(super) fn fill_part<N: Real>(
     kind: Kind<'_, N, 3>,

@@ -121,7 +121,7 @@ fn follow<N: Space<3>>(
     random: &mut Random,
     round: usize,
 ) -> (usize, usize) {
-    let ground = ground_of::<N>(random, round);
+    let terrain = ground_of::<N>(random, round);
     let far = N::lit([0.0, 40.0][random.pick(2)]);
     let under = Pose { translation: Vector::<N, 3>::repeat(far), ..random.turn::<N>() };
     let mut position = random.vector::<N>() * N::lit(1.8);
@@ -142,14 +142,14 @@ fn follow<N: Space<3>>(
     for step in 0..STEPS {
         let pose = under.compose(&Pose { translation: position, ..tilt });
         let placed1 = Placed::of_pose(&pose, solid.geometry());
-        let placed2 = Placed::of_pose(&under, ground.geometry());
+        let placed2 = Placed::of_pose(&under, terrain.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
         let is_done = update_on_surface(&mut quick, &between, &request);
         if !is_done {
             quick.update_in_general(&between, false, &request);
         }
         slow.update_in_general(&between, false, &request);
-        let what = || format!("{solid:?} on {ground:?} at {pose:?}, step {step}");
+        let what = || format!("{solid:?} on {terrain:?} at {pose:?}, step {step}");
         assert_same(&quick, &slow, what);
         assert_one_contact([&placed1, &placed2], request.prediction, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());

@@ -133,7 +133,7 @@ pub(super) fn assert_one_contact<N: Space<D>, const D: usize>(
 /// Compares both paths for one moving solid. Returns the number of updates by the quick path, and
 /// of contact points.
 fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
-    let (solid, ground) = (solid_of::<N>(random), ground_of::<N>(random, round));
+    let (solid, terrain) = (solid_of::<N>(random), ground_of::<N>(random, round));
     let far = N::lit([0.0, 40.0][random.pick(2)]);
     let under = pose_of(Vector::<N, 2>::repeat(far), random.vector::<N>().x);
     let mut position = Vector::<N, 2>::new(random.vector::<N>().x * N::TWO, random.vector::<N>().y);
@@ -148,14 +148,14 @@ fn follow<N: Space<2>>(random: &mut Random, round: usize) -> (usize, usize) {
     for step in 0..STEPS {
         let pose = under.compose(&pose_of(position, angle));
         let placed1 = Placed::of_pose(&pose, solid.geometry());
-        let placed2 = Placed::of_pose(&under, ground.geometry());
+        let placed2 = Placed::of_pose(&under, terrain.geometry());
         let between = Between::of_ordered(&Ordered::new(&placed1, &placed2));
         let is_done = update_chain(&mut quick, &between, &request);
         if !is_done {
             quick.update_in_general(&between, false, &request);
         }
         slow.update_in_general(&between, false, &request);
-        let what = || format!("{solid:?} on {ground:?} at {pose:?}, step {step}");
+        let what = || format!("{solid:?} on {terrain:?} at {pose:?}, step {step}");
         assert_same(&quick, &slow, what);
         assert_one_contact([&placed1, &placed2], request.prediction, what);
         (done, points) = (done + usize::from(is_done), points + quick.len());

@@ -1,4 +1,4 @@
-//! Lower bounds of the distances from a convex solid to eight parts of a surface at a time.
+//! Lower bounds of the distances from a convex solid to 8 parts of a surface at a time.
 //!
 //! Most parts with boxes near the solid are not near themselves. A plane across the shortest way
 //! from the part to the solid's centre rejects them for a few products. Every plane gives a lower
@@ -59,7 +59,7 @@ pub(super) struct LowerBoundQuery<N: Real, const D: usize> {
     pub(super) size: N,
 }
 
-/// Lower bounds for eight parts.
+/// Lower bounds for 8 parts.
 pub(super) struct LowerBounds<N> {
     /// A bit for each part that may be within reach.
     pub(super) mask: u8,
@@ -97,7 +97,7 @@ impl<N: Space<D>, const D: usize> LowerBoundQuery<N, D> {
         Point::from(self.center)
     }
 
-    /// Computes the bounds for eight parts.
+    /// Computes the bounds for 8 parts.
     pub(super) fn bounds(&self, tiles: &PartPacket<N, D>) -> LowerBounds<N> {
         at(Level::new(), tiles, self)
     }

@@ -3,7 +3,7 @@
 //! ```text
 //!   near triangles ──> separating axes ──> normal filter ───────> points along the normal
 //!                      `gaps3`,            one by one, from the   `FaceClip::each_clip`,
-//!                      eight lanes         cached `FaceSeams`     eight lanes
+//!                      8 lanes             cached `FaceSeams`     8 lanes
 //! ```
 //!
 //! A triangle whose gap is not plain, or that a kernel leaves undecided, falls back to
@@ -211,7 +211,7 @@ pub(super) const fn has_faces<N: Real, const D: usize>(solid: Kind<'_, N, D>) ->
     matches!(solid, Kind::Cuboid(_) | Kind::Polytope(_))
 }
 
-/// Triangles waiting for the clip, up to eight, each with the index of its contact and its index in
+/// Triangles waiting for the clip, up to 8, each with the index of its contact and its index in
 /// the cache.
 struct PendingClips<N: Real> {
     triangles: PartPacket<N, 3>,

@@ -17,7 +17,7 @@ use crate::shape::{CompositeShape, Part};
 /// Pairs of part indices; 0 stands for a convex shape.
 pub(super) type PartPairs = SmallVec<[[u32; 2]; 24]>;
 
-/// For each tile a byte with a bit for each of its eight parts.
+/// For each tile a byte with a bit for each of its 8 parts.
 pub(super) type CandidateMasks = SmallVec<[u8; 8]>;
 
 /// The pairs of parts that may be within a distance.

@@ -9,7 +9,7 @@
 //! 4. [`inside`] adds the contacts of pieces that lie wholly inside a body and touch no part.
 //! 5. [`patch`] merges the rest into flat patches.
 //!
-//! Boxes and hulls take step 2 in [`faces`], eight triangles of a surface at a time. [`chain`] does
+//! Boxes and hulls take step 2 in [`faces`], 8 triangles of a surface at a time. [`chain`] does
 //! all steps for a chain in 2D, [`ball`] for a ball in 3D.
 //!
 //! The classes of normals at a seam are those of Catto's chain shapes (Box2D, 2023), whose edges

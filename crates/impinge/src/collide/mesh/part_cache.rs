@@ -4,7 +4,7 @@
 //!
 //! ```text
 //!  parts   p0 p1 p2 … p10                       ascending indices of parts
-//!  tiles   [p0 … p7] [p8 p9 p10 p10 … p10]      corners of eight parts, the last one repeated
+//!  tiles   [p0 … p7] [p8 p9 p10 p10 … p10]      corners of 8 parts, the last one repeated
 //!  seams   one per part                         filled when a solid is near
 //! ```
 
@@ -52,7 +52,7 @@ enum KeptSeams<N: Real> {
 /// The parts around a convex solid, found for a larger box than it needs. They serve as long as the
 /// solid stays in that box.
 ///
-/// Corners of triangles and segments in the frame of the composite are copied, eight parts side by
+/// Corners of triangles and segments in the frame of the composite are copied, 8 parts side by
 /// side, in one block of memory; in the composite they lie wherever its vertices are. That takes 36
 /// bytes for each triangle around the solid with `f32`.
 /// each triangle around the solid with `f32`.
@@ -191,7 +191,7 @@ impl<N: Space<D>, const D: usize> PartCache<N, D> {
         &self.parts
     }
 
-    /// The corners of all parts in packets of eight; empty if some part has none.
+    /// The corners of all parts in packets of 8; empty if some part has none.
     pub(super) fn tiles(&self) -> &[PartPacket<N, D>] {
         &self.tiles
     }

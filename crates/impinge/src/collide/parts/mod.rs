@@ -3,7 +3,7 @@
 //! Nested composites are flattened: their parts are numbered consecutively, on one level. The
 //! result for a part is that of the convex algorithm. [`between`] makes a pair of two parts,
 //! [`bounds`] makes boxes that include rounding errors, [`solid_bounds`] bounds the distance from a
-//! convex solid to a part, [`slab_lanes`] from one part to eight, and [`inside`] finds pieces
+//! convex solid to a part, [`slab_lanes`] from one part to 8, and [`inside`] finds pieces
 //! inside closed surfaces that bound bodies. The part that is returned does not depend on the order
 //! of a search: the lowest indices win a tie.
 

@@ -27,7 +27,7 @@ const MIN_SINE: f64 = 1.0 / 64.0;
 /// Rounding errors by which a pair must be inside the limit to be called within.
 const CERTAIN: f64 = 4.0;
 
-/// Up to eight pairs of parts, both of each in one frame.
+/// Up to 8 pairs of parts, both of each in one frame.
 pub(crate) struct PartPairs<N, const D: usize> {
     pub(crate) ones: PartPacket<N, D>,
     pub(crate) others: PartPacket<N, D>,
@@ -38,7 +38,7 @@ pub(crate) struct PartPairs<N, const D: usize> {
     pub(crate) scale: N,
 }
 
-/// Results for eight pairs, as bits; neither bit of a pair is set if the test is undecided.
+/// Results for 8 pairs, as bits; neither bit of a pair is set if the test is undecided.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct PairMasks {
     /// The pair is farther apart than the limit; the distance of an overlap is negative.

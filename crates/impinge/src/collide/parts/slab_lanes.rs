@@ -1,4 +1,4 @@
-//! Lower bounds of the distances from one part to eight others at a time, by the slabs around the
+//! Lower bounds of the distances from one part to 8 others at a time, by the slabs around the
 //! one and the axes of the others.
 //!
 //! Two triangles in 3D overlap iff neither normal and no direction perpendicular to a side of each
@@ -14,7 +14,7 @@ use crate::math::{Real, Vector, Wide};
 /// The corners of parts relative to the origin of the slabs, by corner and axis.
 type Corners<V, const D: usize> = [[V; D]; 3];
 
-/// Returns lower bounds of the distances of eight parts in 2D from the content of the slabs;
+/// Returns lower bounds of the distances of 8 parts in 2D from the content of the slabs;
 /// negative for overlaps. If the slabs alone put a whole SIMD run beyond `limit`, the other axes
 /// are skipped, so that bounds beyond it may differ by SIMD level.
 pub(crate) fn part_gaps2<N: Real>(
@@ -95,7 +95,7 @@ fn in_lanes_3d<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     gaps.certain(slabs)
 }
 
-/// The largest gaps of eight parts so far.
+/// The largest gaps of 8 parts so far.
 struct SlabGaps<S, V, const D: usize> {
     simd: S,
     corners: Corners<V, D>,
@@ -159,7 +159,7 @@ impl<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize> SlabGaps<S, V, D>
     }
 }
 
-/// Translates the corners of eight parts to the origin of the slabs.
+/// Translates the corners of 8 parts to the origin of the slabs.
 #[inline(always)]
 fn translated_corners<S: Simd, N: Real, V: Wide<S, Scalar = N>, const D: usize>(
     simd: S,

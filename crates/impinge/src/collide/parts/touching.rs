@@ -82,7 +82,7 @@ pub(crate) fn each_touching<N: Space<D>, const D: usize>(
     true
 }
 
-/// A search of two trees for pairs of parts, with up to eight pairs waiting for the lanes.
+/// A search of two trees for pairs of parts, with up to 8 pairs waiting for the lanes.
 struct TouchingSearch<'a, 'q, N: Real, const D: usize> {
     between: &'a Between<'a, N, D>,
     parts: [&'a dyn CompositeShape<N, D>; 2],

@@ -15,9 +15,9 @@
 //! - [`balls`], [`segments`], [`boxes`] and [`polygons`] hold closed forms and separating axis
 //!   tests;
 //! - [`apart`] searches the nearest points of triangles, boxes and hulls in 3D that are well apart,
-//!   for one pair or for eight;
+//!   for one pair or for 8;
 //! - [`hulls`] is the separating axis test of triangles, boxes and hulls in 3D; `triangles` and
-//!   `chain` test eight parts of a surface at a time;
+//!   `chain` test 8 parts of a surface at a time;
 //! - `revolved` serves cylinders and cones by the signed distance of a point, `ridges` their deep
 //!   overlaps, and `revolved::coaxial` pairs with a common axis;
 //! - `shared_corner` sets the distance to zero for solids that share a corner up to rounding;

@@ -203,12 +203,12 @@ fn capsules_segments_and_cylinders() {
         matches!((a, b), (Edge(_), Edge(_)))
     });
     let lying = at(0.0, 0.74, 0.0, [0.0, 0.0, std::f64::consts::FRAC_PI_2]);
-    let ground = Cuboid::new(Vector::<f64, 3>::new(2.0, 0.5, 2.0));
+    let floor = Cuboid::new(Vector::<f64, 3>::new(2.0, 0.5, 2.0));
     let below = Pose::relative(&lying, &at(0.2, 0.0, 0.2, [0.0; 3]));
-    follow([&capsule, &ground], below, |a, b| matches!((a, b), (Vertex(_), Face(_))));
+    follow([&capsule, &floor], below, |a, b| matches!((a, b), (Vertex(_), Face(_))));
     let cylinder = Cylinder::new(0.3_f64, 0.25);
     // The rim is round: the place on it is of first order only.
-    let (solids, pose12) = ([&ground as &dyn Shape<f64, 3>, &cylinder], below.inverse());
+    let (solids, pose12) = ([&floor as &dyn Shape<f64, 3>, &cylinder], below.inverse());
     let followed = first_features(solids, pose12, |a, _| matches!(a, Face(_)));
     assert!(matches!(followed[1], Edge(_)), "a rim: {followed:?}");
     Case { solids, pose12, followed, position_weight: 0.0 }.check();

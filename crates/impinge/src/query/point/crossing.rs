@@ -109,7 +109,7 @@ mod tests {
         })
     }
 
-    /// All eight points of a grid of three by three around the middle one, as an outline.
+    /// All 8 points of a grid of three by three around the middle one, as an outline.
     #[test]
     fn an_outline_along_the_ray() {
         let ring = [[0, 0], [1, 0], [2, 0], [2, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
@@ -131,7 +131,7 @@ mod tests {
         }
     }
 
-    /// The eight corners, the edge midpoints and the face centres of a cube, as a surface.
+    /// The 8 corners, the edge midpoints and the face centres of a cube, as a surface.
     #[test]
     fn a_surface_along_the_ray() {
         let mut triangles = Vec::new();

@@ -168,7 +168,7 @@ impl<'a, N: Space<3>> MeshCast<'a, N> {
 
     /// A sufficient test for [`Self::enters_box`] without a division: at the time of the hit the
     /// ray is inside the box, or beside it by less than half of the margin in `around`. That is
-    /// eight rounding units of the coordinates; the position is off by at most three, and the times
+    /// 8 rounding units of the coordinates; the position is off by at most three, and the times
     /// in [`Self::enters_box`] by two.
     #[inline(always)]
     fn is_surely_within(&self, corners: &[Point<N, 3>; 3], toi: N) -> bool {

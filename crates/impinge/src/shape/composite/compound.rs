@@ -115,7 +115,7 @@ impl<N: Space<D>, const D: usize> Compound<N, D> {
         let has_surface = children.iter().any(|(_, shape)| surface_of(shape).is_some());
         let has_bodies = children.iter().any(|(_, shape)| bodies_of(shape).is_some());
         let has_ghosts = children.iter().any(|(_, shape)| {
-            shape.geometry().as_composite().is_some_and(|composite| composite.has_ghosts())
+            shape.geometry().as_composite().is_some_and(CompositeShape::has_ghosts)
         });
         let sphere = sphere_around(&aabb, &children, &poses);
         let revision = Revision::new();

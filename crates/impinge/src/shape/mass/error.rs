@@ -12,8 +12,8 @@ use core::fmt;
 /// use impinge::dim3::query::{MassError, mass_properties};
 /// use impinge::dim3::shape::{Cuboid, HalfSpace};
 ///
-/// let ground = HalfSpace::<f64>::new(Vector::y_axis());
-/// let refused = mass_properties(&ground, 1.0).expect_err("it has no end");
+/// let floor = HalfSpace::<f64>::new(Vector::y_axis());
+/// let refused = mass_properties(&floor, 1.0).expect_err("it has no end");
 /// assert_eq!(refused, MassError::Unbounded { part: 0 });
 /// let refused = mass_properties(&Cuboid::new(Vector::new(1.0_f64, 1.0, 1.0)), -2.0).expect_err("no density");
 /// assert_eq!(refused.to_string(), "the density is -2, below zero");

@@ -194,7 +194,7 @@ impl<N: Real> Polytope<N, 2> {
         SideOrVertex::vertex(FeatureId::Vertex(count32(vertex)), self.vertices[vertex])
     }
 
-    /// [`Self::supporting`] for up to eight vertices, from the rows of the vertices and of the sides'
+    /// [`Self::supporting`] for up to 8 vertices, from the rows of the vertices and of the sides'
     /// normals: the rule of [`Self::part_toward`] without access to the lists of sides.
     fn supporting_of_few(
         &self,

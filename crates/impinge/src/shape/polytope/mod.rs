@@ -58,9 +58,9 @@ pub struct Polytope<N: Real, const D: usize> {
     /// The radius of a ball about `center` that no face cuts.
     pub(in crate::shape) inner_radius: N,
     pub(in crate::shape) vertices: Vec<Point<N, D>>,
-    /// The vertices in packets of eight, coordinate by coordinate; the last vertex fills the rest.
+    /// The vertices in packets of 8, coordinate by coordinate; the last vertex fills the rest.
     pub(in crate::shape) blocks: Blocks<N, D>,
-    /// The planes of the faces in packets of eight; the last face fills the rest.
+    /// The planes of the faces in packets of 8; the last face fills the rest.
     pub(in crate::shape) planes: SmallVec<[Planes<N, D>; 1]>,
     /// The vertices in packets of four, for code without SIMD.
     pub(in crate::shape) quartets: Quartets<N, D>,
@@ -98,12 +98,12 @@ pub(in crate::shape) const LANES: usize = 8;
 /// Vertices in a packet for code without SIMD: they fit in one register on every target.
 pub(in crate::shape) const QUARTET: usize = 4;
 
-/// Vertices in packets of eight; one packet is stored inline.
+/// Vertices in packets of 8; one packet is stored inline.
 type Blocks<N, const D: usize> = SmallVec<[[[N; LANES]; D]; 1]>;
 /// Vertices in packets of four; two packets are stored inline.
 type Quartets<N, const D: usize> = SmallVec<[[[N; QUARTET]; D]; 2]>;
 
-/// The planes of eight faces, coordinate by coordinate.
+/// The planes of 8 faces, coordinate by coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Planes<N: Real, const D: usize> {
     pub(crate) normals: [[N; LANES]; D],
@@ -194,12 +194,12 @@ impl<N: Real, const D: usize> Polytope<N, D> {
         &self.loop_sides[first..first + face.len as usize]
     }
 
-    /// The vertices in packets of eight, coordinate by coordinate; the last vertex fills the rest.
+    /// The vertices in packets of 8, coordinate by coordinate; the last vertex fills the rest.
     pub(crate) fn blocks(&self) -> &[[[N; LANES]; D]] {
         &self.blocks
     }
 
-    /// The planes of the faces in packets of eight; the last face fills the rest.
+    /// The planes of the faces in packets of 8; the last face fills the rest.
     pub(crate) fn planes(&self) -> &[Planes<N, D>] {
         &self.planes
     }

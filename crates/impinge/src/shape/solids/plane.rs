@@ -34,10 +34,10 @@ pub struct Plane<N: Real, const D: usize> {
 /// ```
 /// use impinge::dim2::prelude::*;
 ///
-/// let ground = HalfSpace::new(Unit::new_normalize(Vector::new(0.0_f64, 3.0)));
+/// let floor = HalfSpace::new(Unit::new_normalize(Vector::new(0.0_f64, 3.0)));
 /// let (here, ball) = (Isometry::identity(), Ball::new(1.0));
-/// assert_eq!(distance(&here, &ground, &Isometry::translation(7.0, 5.0), &ball), 4.0);
-/// assert_eq!(distance(&here, &ground, &Isometry::translation(7.0, -5.0), &ball), 0.0, "inside");
+/// assert_eq!(distance(&here, &floor, &Isometry::translation(7.0, 5.0), &ball), 4.0);
+/// assert_eq!(distance(&here, &floor, &Isometry::translation(7.0, -5.0), &ball), 0.0, "inside");
 /// ```
 #[doc(alias = "Halfplane")]
 pub type HalfSpace<N, const D: usize> = Plane<N, D>;

@@ -90,7 +90,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// Marks the present state, so that [`Self::rewind`] can restore it: before a step whose inputs
     /// are guessed, in a game over a network.
     ///
-    /// The eight latest marks are kept, or as many as [`Self::keep_marks`] says; a surplus ends the
+    /// The 8 latest marks are kept, or as many as [`Self::keep_marks`] says; a surplus ends the
     /// oldest. All marks end when another broad or narrow phase takes over, and a clone has none.
     ///
     /// While there are marks, the world notes old state before each change: each object once
@@ -98,7 +98,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// and, if the world has custom phases, of these. With 100 of 10 000 objects moving and a mark
     /// before each update, updates that compute the contacts of a dense pile take up to 8 % longer.
     /// Updates that find nothing to compute take half as long again (9 µs and 13 µs), and the notes
-    /// of eight marks take 0.4 to 8 MB.
+    /// of 8 marks take 0.4 to 8 MB.
     ///
     /// ```
     /// use impinge::dim2::math::Isometry;
@@ -158,7 +158,7 @@ impl<N: Space<D>, const D: usize, T> CollisionWorld<N, D, T> {
     /// contacts return what they did, in the same order.
     ///
     /// The mark stays, so that the world can return to it again; later marks end. The cost is
-    /// proportional to the changes since: eight updates are undone in the time of two to four.
+    /// proportional to the changes since: 8 updates are undone in the time of two to four.
     /// Manifolds of [`Self::contact_manifolds`] that changed are built again on first access.
     ///
     /// # Panics

@@ -1,4 +1,4 @@
-//! Measures what a solid and eight triangles show along the normals: the distances of the corners
+//! Measures what a solid and 8 triangles show along the normals: the distances of the corners
 //! of each outline from the sides of the other, and the distances between both along the normal.
 //!
 //! ```text
@@ -82,7 +82,7 @@ impl<N: Real, const CORNERS: usize, const SIDES: usize> SideHeights<N, CORNERS, 
     }
 }
 
-/// A face and eight triangles, measured along the normals. Of an edge or corner of the solid, the
+/// A face and 8 triangles, measured along the normals. Of an edge or corner of the solid, the
 /// ring holds two points or one.
 pub(in crate::collide) struct FaceClip<N: Real> {
     pub(super) ring: FaceRing<N>,

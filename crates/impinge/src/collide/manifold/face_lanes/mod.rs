@@ -1,4 +1,4 @@
-//! Contacts of a face, an edge or a corner of one solid with up to eight triangles, each along a
+//! Contacts of a face, an edge or a corner of one solid with up to 8 triangles, each along a
 //! normal of its own.
 //!
 //! ```text
@@ -68,7 +68,7 @@ pub(in crate::collide) struct FaceSolid<'a, N: Real> {
 }
 
 impl<N: Real> FaceSolid<'_, N> {
-    /// Appends the points of each of up to eight triangles, given in their own frame. Calls `visit`
+    /// Appends the points of each of up to 8 triangles, given in their own frame. Calls `visit`
     /// with the lane and the least distance of its points, infinite without points, or with `None`
     /// if the clip of the pair has to decide. The order of lanes is by the feature that the solid
     /// shows.

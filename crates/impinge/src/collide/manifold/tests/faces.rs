@@ -1,4 +1,4 @@
-//! Contacts of faces with triangles, eight at a time, against the exact overlap of both outlines.
+//! Contacts of faces with triangles, 8 at a time, against the exact overlap of both outlines.
 
 use super::clip::{Outline, common, prism, regular};
 use crate::collide::manifold::face_lanes::{ClipRequest, FaceClip, FaceSolid};

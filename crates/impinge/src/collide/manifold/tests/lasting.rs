@@ -16,7 +16,7 @@ fn ids_by_features<N: Scene<D>, const D: usize>(raw: &RawManifold<N, D>) -> IdsB
 /// Moves a box on a half-space or box for a thousand steps. An id stays with its features; if it
 /// goes to others, it was near these a step before; an ended id never returns. Returns the number
 /// of ids given.
-fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usize {
+fn slide<N: Scene<D>, const D: usize>(terrain: &dyn Shape<N, D>, top: f64) -> usize {
     let solid = Cuboid::new(Vector::<N, D>::repeat(N::HALF));
     let (mut raw, mut old) = (RawManifold::default(), IdsByFeatures::new());
     let mut last_given = None;
@@ -31,7 +31,7 @@ fn slide<N: Scene<D>, const D: usize>(ground: &dyn Shape<N, D>, top: f64) -> usi
         let mut below = Vector::<N, D>::zeros();
         below[1] = N::lit(-top);
         let pose12 = Pose::relative(&pose1, &N::pose(below, [0.0; 3]));
-        let pair = Pair { first: solid.geometry().0, second: ground.geometry().0, pose12 };
+        let pair = Pair { first: solid.geometry().0, second: terrain.geometry().0, pose12 };
         N::build(&pair, &fact(&pair), &request(0.02, 0.0), &mut raw);
         let new = ids_by_features(&raw);
         assert_eq!(new.len(), raw.points.len(), "no two points share their features");

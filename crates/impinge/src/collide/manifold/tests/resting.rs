@@ -27,14 +27,14 @@ where
 
     fn on(
         &self,
-        ground: &dyn Shape<f32, D>,
+        terrain: &dyn Shape<f32, D>,
         top: f32,
         wish: &ManifoldRequest<f32>,
     ) -> RawManifold<f32, D> {
         let pose1 = f32::pose(Self::up() * self.height, self.turn);
         let pose2 = f32::pose(Self::up() * -top, [0.0; 3]);
         let pose12 = crate::math::Pose::relative(&pose1, &pose2);
-        let pair = Pair { first: self.solid.geometry().0, second: ground.geometry().0, pose12 };
+        let pair = Pair { first: self.solid.geometry().0, second: terrain.geometry().0, pose12 };
         manifold(&pair, wish).1
     }
 
@@ -67,7 +67,7 @@ where
         }
     }
     let spun = Rest { solid: &solid, height: 0.26, turn: [0.0, 0.7 * f64::from(D == 3), 0.0] };
-    assert_eq!(spun.counts(&request(0.02, 0.0)), [expected; 2], "above the ground, spun");
+    assert_eq!(spun.counts(&request(0.02, 0.0)), [expected; 2], "above the terrain, spun");
     assert_eq!(spun.counts(&request(0.005, 0.0)), [0; 2], "out of reach");
 }
 

@@ -1,5 +1,5 @@
 //! Nearest points of triangles, boxes and hulls in 3D that are well apart, for one pair or for
-//! eight pairs at a time. Both run the same source and so give the same bits.
+//! 8 pairs at a time. Both run the same source and so give the same bits.
 //!
 //! The search is that of E. Gilbert, D. Johnson and S. Keerthi ("A Fast Procedure for Computing the
 //! Distance Between Complex Objects in Three-Dimensional Space", 1988), without branches: each step

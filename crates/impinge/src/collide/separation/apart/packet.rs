@@ -24,7 +24,7 @@ use crate::math::{Point, Real, Vector, Wide, filled};
 /// One vector per lane, stored by coordinate.
 type LaneVectors<N> = [[N; LANES]; 3];
 
-/// Input of up to eight pairs of the same kinds. Lanes without a pair stay zero.
+/// Input of up to 8 pairs of the same kinds. Lanes without a pair stay zero.
 struct Packet<'a, N: Real> {
     /// Both solids of each pair; `None` for lanes without a pair.
     pairs: [Option<FlatPair<'a, N>>; LANES],
@@ -55,7 +55,7 @@ struct PacketGap<N: Real> {
     is_overlap: u64,
 }
 
-/// Computes the results of up to eight pairs of the same kinds, with the bits of [`super::result`].
+/// Computes the results of up to 8 pairs of the same kinds, with the bits of [`super::result`].
 /// They do not depend on the instruction set. `None` if the pairs do not share the vertices of
 /// their hulls.
 pub(super) fn results<'p, 'a: 'p, N: Real>(

@@ -9,7 +9,7 @@
 //!   Edges(i, j)    axis i of box 1 x axis j of box 2  9; nearly parallel axes are skipped
 //! ```
 //!
-//! The eight-pair form of this test is in `collide/batch/boxes/`.
+//! The 8-pair form of this test is in `collide/batch/boxes/`.
 
 use crate::math::{Matrix, Pose, Real, Vector, cross, max, min};
 

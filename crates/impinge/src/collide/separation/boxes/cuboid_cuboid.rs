@@ -202,7 +202,7 @@ impl<N: Real> BoxReferenceFace<N> {
     }
 }
 
-/// Corners of a convex polygon; clipping a face with four planes gives at most eight.
+/// Corners of a convex polygon; clipping a face with four planes gives at most 8.
 type Polygon<N> = SmallVec<[Point<N, 3>; 8]>;
 
 /// Returns the corners, in order, of the face of a box whose normal is most aligned with a

@@ -54,8 +54,8 @@ fn beyond<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     question: &ChainQuestion<'_, N>,
     radius: N,
 ) -> Option<(u8, N)> {
-    let eight = EightSegments::<V>::of(simd, tiles, question)?;
-    let distance = eight.from_middle.sqrt() - V::all(simd, radius);
+    let packet = EightSegments::<V>::of(simd, tiles, question)?;
+    let distance = packet.from_middle.sqrt() - V::all(simd, radius);
     let beyond = distance.simd_gt(V::all(simd, question.limit));
-    Some((bits(beyond), eight.least()))
+    Some((bits(beyond), packet.least()))
 }

@@ -1,4 +1,4 @@
-//! Segments of a chain in 2D against one solid, eight at a time.
+//! Segments of a chain in 2D against one solid, 8 at a time.
 //!
 //! The kernels run the algorithms of [`polygon_polygon`](super::polygons::polygon_polygon),
 //! [`segment_lanes`](super::segments::segment_lanes) and
@@ -32,7 +32,7 @@ use crate::shape::Kind;
 
 /// Segments of a chain, and a solid near them.
 pub(crate) struct ChainQuestion<'a, N: Real> {
-    /// Corners of the segments, eight per packet, in the frame of the chain.
+    /// Corners of the segments, 8 per packet, in the frame of the chain.
     pub(crate) tiles: &'a [PartPacket<N, 2>],
     /// Number of segments; the rest of the last tile is ignored.
     pub(crate) count: usize,

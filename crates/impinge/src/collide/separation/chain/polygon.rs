@@ -1,4 +1,4 @@
-//! Eight segments against a polygon of up to eight vertices, with or without a radius.
+//! Eight segments against a polygon of up to 8 vertices, with or without a radius.
 
 use super::super::polygons::outline::{PolygonOutline, Row};
 use super::super::polygons::polygon_polygon::{Axis, of_axis};
@@ -18,7 +18,7 @@ pub(super) fn links<N: Real>(
     with_lanes!(level, simd => search::<_, N, N::Lanes<_>>(simd, question, links))
 }
 
-/// Culls eight segments at a time by their best axis, then computes the rest one by one along it.
+/// Culls 8 segments at a time by their best axis, then computes the rest one by one along it.
 #[inline(always)]
 fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -30,9 +30,9 @@ fn search<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     let solid = solid.placed::<S, V>(simd, &question.pose12);
     let solid = PolygonExtents::new::<S, V>(simd, solid);
     for (block, tiles) in question.tiles.iter().enumerate() {
-        let eight = EightSegments::<V>::of(simd, tiles, question)?;
-        links.from_middle = min(links.from_middle, eight.least());
-        let axes = SegmentAxes::of(simd, &eight, &solid, question.limit);
+        let packet = EightSegments::<V>::of(simd, tiles, question)?;
+        links.from_middle = min(links.from_middle, packet.least());
+        let axes = SegmentAxes::of(simd, &packet, &solid, question.limit);
         let mut within = !axes.beyond & question.lanes_of(block);
         while within != 0 {
             let lane = (within.trailing_zeros() as usize).min(LANES - 1);
@@ -87,7 +87,7 @@ impl<N: Real> PolygonExtents<N> {
     }
 }
 
-/// Best directions from eight segments to a polygon.
+/// Best directions from 8 segments to a polygon.
 struct SegmentAxes<N> {
     /// Signed distance along the best direction of each segment.
     gaps: Row<N>,
@@ -123,12 +123,12 @@ impl<N: Real> SegmentAxes<N> {
     #[inline(always)]
     fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
-        eight: &EightSegments<V>,
+        packet: &EightSegments<V>,
         solid: &PolygonExtents<N>,
         limit: N,
     ) -> Self {
-        let [a, b] = &eight.ends;
-        let mut best = of_segments(simd, [a, b], &eight.side, eight.squared, &solid.outline);
+        let [a, b] = &packet.ends;
+        let mut best = of_segments(simd, [a, b], &packet.side, packet.squared, &solid.outline);
         add_polygon(simd, [a, b], solid, &mut best);
         let rounding = solid.outline.rounding;
         let sizes = [a[0].abs() + a[1].abs(), b[0].abs() + b[1].abs()];

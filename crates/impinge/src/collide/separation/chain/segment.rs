@@ -54,7 +54,7 @@ fn alone<N: Real>(
     polygon_polygon::separation_of_outlines(&pair, question.limit)
 }
 
-/// Separations of eight segments from another, by rows.
+/// Separations of 8 segments from another, by rows.
 struct SegmentGaps<N> {
     /// Signed distances of the cores.
     gaps: [N; LANES],
@@ -77,16 +77,16 @@ impl<N: Real> SegmentGaps<N> {
         question: &ChainQuestion<'_, N>,
         core: &Segment<N, 2>,
     ) -> Option<Self> {
-        let eight = EightSegments::<V>::of(simd, tiles, question)?;
+        let packet = EightSegments::<V>::of(simd, tiles, question)?;
         let own: [Point<N, 2>; 2] = [*core.a(), *core.b()];
         let found = if let Kind::Segment(_) = question.solid {
             let own: [[V; 2]; 2] = own.map(|end| spread(simd, &end.coords));
             let pose12 = LanePose::of(simd, &question.pose12);
-            let chain = [pose12.point(&eight.ends[0]), pose12.point(&eight.ends[1])];
+            let chain = [pose12.point(&packet.ends[0]), pose12.point(&packet.ends[1])];
             SegmentGap::of(simd, [&own, &chain])
         } else {
             let own = own.map(|end| spread(simd, &question.pose12.point(&end).coords));
-            SegmentGap::of(simd, [&eight.ends, &own])
+            SegmentGap::of(simd, [&packet.ends, &own])
         };
         let row = [N::ZERO; LANES];
         let mut gaps = Self {
@@ -94,7 +94,7 @@ impl<N: Real> SegmentGaps<N> {
             normals: [row; 2],
             points: [[row; 2]; 2],
             known: bits(found.is_known),
-            least: eight.least(),
+            least: packet.least(),
         };
         found.gap.store(&mut gaps.gaps);
         for axis in 0..2 {

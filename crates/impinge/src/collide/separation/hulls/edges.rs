@@ -43,7 +43,7 @@ pub(super) struct EdgeBlock<N: Real> {
 }
 
 impl<N: Real> EdgeBlock<N> {
-    /// Gathers up to eight edges of a solid; spare lanes are copies of the first.
+    /// Gathers up to 8 edges of a solid; spare lanes are copies of the first.
     #[inline(always)]
     pub(super) fn of<S: Simd, V: Wide<S, Scalar = N>>(
         simd: S,
@@ -181,8 +181,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
         let [candidates1, candidates2] = self.candidates::<S, V>(simd, max_distance);
         let (mut best, mut largest): (Option<EdgeQuery<N>>, N) =
             (None, self.separation() + N::TWO * rounding_error());
-        for eight in candidates2.indices().chunks(LANES) {
-            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
+        for packet in candidates2.indices().chunks(LANES) {
+            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, packet);
             let normals2 = self.normals_beside_block::<S, V>(simd, &edges2);
             for &index in candidates1.indices() {
                 let edge1 = self.edge(index);
@@ -230,8 +230,8 @@ impl<N: Real> ReferenceFace<'_, '_, N> {
     ) -> Option<Separation<N, 3>> {
         let [candidates1, candidates2] = self.candidates::<S, V>(simd, max_distance);
         let (mut nearest, mut least): (Option<[usize; 2]>, N) = (None, N::INFINITY);
-        for eight in candidates2.indices().chunks(LANES) {
-            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, eight);
+        for packet in candidates2.indices().chunks(LANES) {
+            let edges2 = EdgeBlock::of::<S, V>(simd, self.other.solid, self.other.vertices, packet);
             for &index in candidates1.indices() {
                 let edge1 = self.edge(index);
                 let squares = squared_distances::<S, N, V>(simd, &edge1, &edges2);
@@ -314,7 +314,7 @@ pub(super) fn proved<N: Real>(
     is_proved.then_some(Separation { distance, normal: *normal, point1, point2 })
 }
 
-/// Returns the separations of the solids along the common perpendiculars of eight pairs of edges,
+/// Returns the separations of the solids along the common perpendiculars of 8 pairs of edges,
 /// and minus infinity for pairs that are no face of the Minkowski difference. `None` if no pair is
 /// one.
 #[inline(always)]
@@ -351,7 +351,7 @@ fn separations<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     Some((is_face & is_crossing).select(outward, V::all(simd, -N::INFINITY)))
 }
 
-/// Returns the squared distances of eight pairs of edges: C. Ericson, "Real-Time Collision
+/// Returns the squared distances of 8 pairs of edges: C. Ericson, "Real-Time Collision
 /// Detection" (2005), 5.1.9. An edge without length counts as its first end.
 #[inline(always)]
 pub(super) fn squared_distances<S: Simd, N: Real, V: Wide<S, Scalar = N>>(

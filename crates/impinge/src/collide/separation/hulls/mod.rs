@@ -2,7 +2,7 @@
 //! [`segment`] tests segments against triangles and hulls.
 //!
 //! The test is that of D. Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC
-//! 2013), with vertices, planes and edges in lanes of eight:
+//! 2013), with vertices, planes and edges in lanes of 8:
 //!
 //! 1. The faces of both solids are queried for the reference face: the face that the other solid
 //!    lies farthest above, or least deep below ([`vertices`]).
@@ -66,7 +66,7 @@ pub(super) const PLANE_BLOCKS: usize = 8;
 ///
 /// Ties: faces of the first solid come before faces of the second, each in order, and faces before
 /// edges; of pairs of edges the one with the lower indices. Cost: the product of the numbers of
-/// vertices and faces, in blocks of eight. Thin triangles, flat boxes and larger hulls fall back to
+/// vertices and faces, in blocks of 8. Thin triangles, flat boxes and larger hulls fall back to
 /// the general algorithm.
 pub(super) fn separation<N: Real>(pair: &Pair<'_, N, 3>, limit: N) -> Option<Separation<N, 3>> {
     match result(Level::new(), pair, limit) {

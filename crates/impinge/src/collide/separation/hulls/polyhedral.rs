@@ -17,11 +17,11 @@ use crate::shape::{Cuboid, Kind, Planes, Polytope, PolytopeEdge, SupportMap, Tri
 
 /// A convex polyhedron in its own frame and in units of the shape.
 pub(in crate::collide::separation) struct Polyhedral<'a, N: Real> {
-    /// Vertices in blocks of eight; the last vertex fills the rest.
+    /// Vertices in blocks of 8; the last vertex fills the rest.
     pub(in crate::collide::separation) blocks: &'a [[[N; LANES]; 3]],
     /// Number of vertices.
     pub(in crate::collide::separation) vertices: usize,
-    /// Planes of the faces in blocks of eight; the last plane fills the rest.
+    /// Planes of the faces in blocks of 8; the last plane fills the rest.
     pub(in crate::collide::separation) planes: &'a [Planes<N, 3>],
     pub(in crate::collide::separation) edges: &'a [PolytopeEdge],
     rings: Rings<'a, N>,

@@ -36,7 +36,7 @@ use crate::math::{
 
 /// Returns the separation of a segment or capsule from a triangle or a convex hull.
 ///
-/// Cost: linear in the numbers of faces and edges, in blocks of eight. Thin triangles, large hulls
+/// Cost: linear in the numbers of faces and edges, in blocks of 8. Thin triangles, large hulls
 /// and unproved answers fall back to the general algorithm.
 pub(in crate::collide::separation) fn separation<N: Real>(
     pair: &Pair<'_, N, 3>,
@@ -248,8 +248,8 @@ impl<N: Real> SegmentQuery<'_, N> {
             (spread(simd, &self.along), spread(simd, &self.ends[0]));
         let tiny = V::all(simd, rounding_error::<N>() * rounding_error());
         let (mut best, mut largest) = (None, faces.separation + N::TWO * rounding_error());
-        for eight in candidates.indices().chunks(LANES) {
-            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
+        for packet in candidates.indices().chunks(LANES) {
+            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, packet);
             let outward = block.indices.mapped(|index| self.outward(usize::from(index), climbed));
             let across = lanes::cross(&load(simd, &block.along), &along);
             let squared = dot(&across, &across);
@@ -310,8 +310,8 @@ impl<N: Real> SegmentQuery<'_, N> {
         let (from, along) = (self.ends[0], self.along);
         let segment = ReferenceEdge { index: 0, from, along, squared: along.norm_squared() };
         let (mut nearest, mut least) = (None, N::INFINITY);
-        for eight in candidates.indices().chunks(LANES) {
-            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, eight);
+        for packet in candidates.indices().chunks(LANES) {
+            let block = EdgeBlock::of::<S, V>(simd, self.solid, vertices, packet);
             let squares = squared_distances::<S, N, V>(simd, &segment, &block);
             let lowest = -highest_lane(-squares);
             if lowest < least {

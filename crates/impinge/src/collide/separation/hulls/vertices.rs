@@ -166,7 +166,7 @@ impl<N: Real> Vertices<N> {
         FaceQuery { index, separation }
     }
 
-    /// Lowest height of the vertices along each of eight vectors.
+    /// Lowest height of the vertices along each of 8 vectors.
     #[inline(always)]
     fn lowest_along<S: Simd, V: Wide<S, Scalar = N>>(&self, simd: S, along: &[V; 3]) -> V {
         let mut low = V::all(simd, N::INFINITY);

@@ -22,7 +22,7 @@ pub(in crate::collide::separation) const LANES: usize = 8;
 /// Outlines with more blocks of vertices go to the general algorithm.
 const MAX_BLOCKS: usize = 4;
 
-/// A number for each of eight vertices.
+/// A number for each of 8 vertices.
 pub(in crate::collide::separation) type Row<N> = [N; LANES];
 
 /// A convex polygon with a radius, in some frame.
@@ -234,7 +234,7 @@ impl<N: Real> PolygonOutline<N> {
         (most, vertex)
     }
 
-    /// Returns the largest coordinate of the vertices along each of eight directions.
+    /// Returns the largest coordinate of the vertices along each of 8 directions.
     #[inline(always)]
     pub(in crate::collide::separation) fn extent<S: Simd, V: Wide<S, Scalar = N>>(
         &self,
@@ -257,7 +257,7 @@ impl<N: Real> PolygonOutline<N> {
         most
     }
 
-    /// All vertices with the normals of the sides that start there, eight per block.
+    /// All vertices with the normals of the sides that start there, 8 per block.
     #[inline(always)]
     pub(in crate::collide::separation) fn blocks(&self) -> &[OutlineBlock<N>] {
         &self.blocks
@@ -307,7 +307,7 @@ fn later_lanes<S: Simd, N: Real, V: Wide<S, Scalar = N>>(simd: S) -> [V::Mask; 2
     ]
 }
 
-/// Returns the largest of eight numbers, and the first lane that has it.
+/// Returns the largest of 8 numbers, and the first lane that has it.
 #[inline(always)]
 pub(in crate::collide::separation) fn highest<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,

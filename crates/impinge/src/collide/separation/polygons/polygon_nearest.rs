@@ -1,6 +1,6 @@
 //! Nearest points of two polygons, from their best axis: mostly a corner above a side, or two
 //! corners. Otherwise each end of the sides at one top is compared with each side at the other,
-//! eight at a time.
+//! 8 at a time.
 
 use super::outline::{PolygonOutline, highest, lane};
 use super::polygon_polygon::{Axis, in_middle};

@@ -252,7 +252,7 @@ impl<N: Real> DepthSearch<'_, N> {
     }
 
     /// Returns the vertices of the flat solid that may touch: both ends of an edge, else at most
-    /// eight.
+    /// 8.
     fn touched(&self) -> SmallVec<[usize; 8]> {
         if let DepthFeature::Edge(edge) = self.at {
             return self.flat.edges[edge].vertices.iter().map(|&vertex| vertex as usize).collect();

@@ -1,4 +1,4 @@
-//! Separating axes of eight triangles and one convex polyhedron.
+//! Separating axes of 8 triangles and one convex polyhedron.
 //!
 //! Two polyhedra overlap iff no normal of a face and no direction perpendicular to an edge of each
 //! separates them; if they do overlap, the one of these with the least overlap is the shortest way
@@ -32,7 +32,7 @@ const PARALLEL: f64 = 16.0;
 /// Most faces of a [`Polyhedral`], set by its blocks of planes.
 const MAX_FACES: usize = PLANE_BLOCKS * LANES;
 
-/// For each of eight triangles the direction that leaves the largest gap to the solid.
+/// For each of 8 triangles the direction that leaves the largest gap to the solid.
 pub(super) struct TriangleAxes<N> {
     /// Bit of each triangle that is beyond the limit by more than rounding.
     pub(super) beyond: u8,

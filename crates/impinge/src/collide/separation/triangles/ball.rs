@@ -1,4 +1,4 @@
-//! Triangles against a ball: finds the near ones of eight at a time, and those hidden by a
+//! Triangles against a ball: finds the near ones of 8 at a time, and those hidden by a
 //! neighbour.
 //!
 //! A contact at a corner or edge belongs to the whole surface only if no triangle there extends
@@ -99,8 +99,8 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
         if within == 0 {
             continue;
         }
-        let eight = TrianglePacket::<V>::of(simd, question, tiles);
-        let (mut own, least) = eight.nearest_features(simd, question, block, within, has_seams);
+        let packet = TrianglePacket::<V>::of(simd, question, tiles);
+        let (mut own, least) = packet.nearest_features(simd, question, block, within, has_seams);
         candidates.from_middle = min(candidates.from_middle, least);
         if own.mask != 0 {
             own.sides &= own.mask;
@@ -124,7 +124,7 @@ fn look<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     candidates
 }
 
-/// Returns which of eight triangles have boxes that overlap the box of the question.
+/// Returns which of 8 triangles have boxes that overlap the box of the question.
 #[inline(always)]
 fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     simd: S,
@@ -144,7 +144,7 @@ fn are_within<S: Simd, N: Real, V: Wide<S, Scalar = N>>(
     within
 }
 
-/// Nearest features of eight triangles.
+/// Nearest features of 8 triangles.
 struct NearestFeatures<N> {
     /// Index of the packet.
     block: usize,

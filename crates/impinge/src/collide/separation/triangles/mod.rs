@@ -1,4 +1,4 @@
-//! Triangles of a surface against one solid, eight at a time: boxes and hulls ([`axes`]), and balls
+//! Triangles of a surface against one solid, 8 at a time: boxes and hulls ([`axes`]), and balls
 //! ([`ball`]). And two triangles ([`pair`]).
 //!
 //! For most triangles a surface needs only the touched side or corner; contacts along a face are
@@ -11,7 +11,7 @@
 //! ```text
 //!   tiles   [. x . x x . . .] [x . . x . . . .] ...    `masks`: bits of the selected ones
 //!              |   | |         |     |
-//!   packet  [0 1 2 3 4 ...]                            up to eight of them, packed without gaps;
+//!   packet  [0 1 2 3 4 ...]                            up to 8 of them, packed without gaps;
 //!                                                      the visitor counts on over all packets
 //! ```
 //!
@@ -112,7 +112,7 @@ struct TriangleQuery<'a, N: Real> {
 }
 
 impl<N: Real> TriangleQuery<'_, N> {
-    /// Packs the selected triangles, eight at a time, and visits those within the limit.
+    /// Packs the selected triangles, 8 at a time, and visits those within the limit.
     fn each(&self, visit: GapVisitor<'_, N>) {
         let (mut slots, mut first) = (self.parts.slots(), 0);
         loop {

@@ -183,7 +183,7 @@ impl<N: Real> HeightField<N, 3> {
     }
 
     /// Calls `visit` with the two other corners of each triangle around a point of the grid,
-    /// counter-clockwise seen from the front, until a call returns true: at most eight triangles.
+    /// counter-clockwise seen from the front, until a call returns true: at most 8 triangles.
     fn each_around(&self, at: GridPoint, mut visit: impl FnMut([GridPoint; 2]) -> bool) {
         let [rows, columns] = self.pyramid.cells();
         // The four cells around the point, and the number of the point among the corners of each.

@@ -23,7 +23,7 @@ use crate::math::lanes::bits;
 use crate::math::simd::{Simd, SimdMask};
 use crate::math::{Real, Wide};
 
-/// The first eight slots are corners; their features depend on what they lie above or below.
+/// The first 8 slots are corners; their features depend on what they lie above or below.
 pub(super) const CORNERS: usize = 8;
 
 /// Signs of the two coordinates of a corner, in the order of the slots.
@@ -235,7 +235,7 @@ where
         let leaves = before.simd_gt(tolerance) & after.simd_lt(-tolerance);
         let enters = before.simd_lt(-tolerance) & after.simd_gt(tolerance);
         if M::LEN == 1 && !(leaves | enters).any_true() {
-            // Most sides of a lone pair do not cross; among eight pairs some do.
+            // Most sides of a lone pair do not cross; among 8 pairs some do.
             (self.slots.valid[slot], self.slots.level[slot]) = (0, 0);
             return;
         }

@@ -281,8 +281,8 @@ impl<V, M> FacesInLanes<V, M> {
         let mut w = self.is_upward.select(level, -level);
         if is_partial {
             let (is_tilted, toward) = (self.is_tilted, &self.toward);
-            let ground = self.is_upward.select(self.half, -self.half);
-            w = is_tilted.select(ground + toward[0] * height, w);
+            let base = self.is_upward.select(self.half, -self.half);
+            w = is_tilted.select(base + toward[0] * height, w);
             u = is_tilted.select(u + toward[1] * height, u);
             v = is_tilted.select(v + toward[2] * height, v);
         }

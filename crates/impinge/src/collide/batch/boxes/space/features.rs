@@ -278,7 +278,7 @@ pub(super) struct FaceSide {
     pub(super) is_positive: bool,
 }
 
-/// Returns the part of the other face that each of eight corners lies on, a byte for each: from the
+/// Returns the part of the other face that each of 8 corners lies on, a byte for each: from the
 /// bits of one lane in `at_end` and `beyond`.
 #[inline(always)]
 pub(super) fn parts_at(

@@ -268,7 +268,7 @@ impl Columns {
     }
 }
 
-/// Returns eight bytes in a row.
+/// Returns 8 bytes in a row.
 #[inline(always)]
 fn part(bytes: &[u8; SLOTS], first: usize) -> [u8; 8] {
     filled(
