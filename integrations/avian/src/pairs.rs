@@ -1,0 +1,151 @@
+//! What is kept of each pair of colliders between two steps.
+
+use core::fmt;
+use core::hash::{BuildHasher, BuildHasherDefault, Hasher};
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use bevy_ecs::prelude::{Entity, Resource};
+use impinge::narrow_phase::{IdAllocator, PairManifoldGenerator};
+
+use crate::scaling::Dimension;
+
+/// Locks beside each other: threads that work on different pairs seldom wait for one another.
+const SHARDS: usize = 64;
+/// Pairs that may be kept for nothing before ended ones are looked for.
+const SPARE: usize = 64;
+
+/// The two entities of a pair, in the order of Avian's graph of contacts.
+type Key = (Entity, Entity);
+type Shard<const D: usize> =
+    HashMap<Key, Option<Box<PairState<D>>>, BuildHasherDefault<PairHasher>>;
+
+/// What impinge knows of each pair of colliders: a resource that the plugin adds.
+///
+/// By it contact points keep their names from step to step. An app that goes back in time, for
+/// rollback, keeps a clone of it beside Avian's `ContactGraph`, or [clears](Self::clear) it: then points get new names, and
+/// the solver starts those contacts from zero.
+#[derive(Resource)]
+pub struct PairContacts<const D: usize>
+where
+    f32: Dimension<D>,
+{
+    shards: Box<[Mutex<Shard<D>>]>,
+}
+
+/// The contacts of one pair.
+#[derive(Clone, Default)]
+pub(crate) struct PairState<const D: usize>
+where
+    f32: Dimension<D>,
+{
+    pub(crate) generator: PairManifoldGenerator<f32, D>,
+    /// Of the pair alone: names need to differ within a pair.
+    pub(crate) ids: IdAllocator,
+}
+
+/// Entities are small numbers: Fibonacci hashing of both (Knuth, volume 3, section 6.4).
+#[derive(Clone, Default)]
+struct PairHasher(u64);
+
+impl Hasher for PairHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_u64(u64::from(byte)));
+    }
+
+    fn write_u64(&mut self, bits: u64) {
+        self.0 = (self.0.rotate_left(26) ^ bits).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0 ^ (self.0 >> 32)
+    }
+}
+
+fn shard_of(key: Key) -> usize {
+    let hash = BuildHasherDefault::<PairHasher>::default().hash_one(key);
+    // Other bits than those that choose the place within the map of a shard.
+    (hash >> 40) as usize % SHARDS
+}
+
+/// A thread that panicked left a map that is whole.
+fn locked<T>(shard: &Mutex<T>) -> MutexGuard<'_, T> {
+    shard.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn shards<const D: usize>(shard: impl Fn(usize) -> Shard<D>) -> Box<[Mutex<Shard<D>>]>
+where
+    f32: Dimension<D>,
+{
+    (0..SHARDS).map(|index| Mutex::new(shard(index))).collect()
+}
+
+impl<const D: usize> PairContacts<D>
+where
+    f32: Dimension<D>,
+{
+    /// How many pairs are kept, those that ended lately included.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.shards.iter().map(|shard| locked(shard).len()).sum()
+    }
+
+    /// No pair is kept.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Forgets all pairs.
+    pub fn clear(&mut self) {
+        self.shards = shards(|_| Shard::default());
+    }
+
+    /// Calls `update` with what is kept of a pair. No lock is held meanwhile: nobody else asks for the same pair.
+    pub(crate) fn with<R>(&self, key: Key, update: impl FnOnce(&mut PairState<D>) -> R) -> R {
+        let shard = &self.shards[shard_of(key)];
+        let kept = locked(shard).entry(key).or_default().take();
+        let mut state = kept.unwrap_or_default();
+        let answer = update(&mut state);
+        locked(shard).insert(key, Some(state));
+        answer
+    }
+
+    /// Forgets the pairs that do not live, if they are many among `count` that do.
+    pub(crate) fn sweep(&mut self, count: usize, mut lives: impl FnMut(Key) -> bool) {
+        if self.len() <= 2 * count + SPARE {
+            return;
+        }
+        for shard in &mut self.shards {
+            // In any order: each is kept or not by itself.
+            shard.get_mut().unwrap_or_else(PoisonError::into_inner).retain(|&key, _| lives(key));
+        }
+    }
+}
+
+impl<const D: usize> Default for PairContacts<D>
+where
+    f32: Dimension<D>,
+{
+    fn default() -> Self {
+        Self { shards: shards(|_| Shard::default()) }
+    }
+}
+
+impl<const D: usize> Clone for PairContacts<D>
+where
+    f32: Dimension<D>,
+{
+    fn clone(&self) -> Self {
+        Self { shards: shards(|index| locked(&self.shards[index]).clone()) }
+    }
+}
+
+impl<const D: usize> fmt::Debug for PairContacts<D>
+where
+    f32: Dimension<D>,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PairContacts").field("len", &self.len()).finish_non_exhaustive()
+    }
+}
