@@ -31,10 +31,11 @@
 //!
 //! # Contacts
 //!
-//! Each pair of colliders keeps what impinge knows of it in the resource [`PairContacts`], so that contact points keep
-//! their names while they move, and Avian's solver starts from the impulses of the last step. The two feature ids of an
-//! Avian contact are that name: they say nothing about vertices, edges or faces. The answers do not depend on
-//! the number of threads.
+//! Two convex shapes are asked anew in each step: their contacts are a function of their poses, and have the names of their
+//! features, by which Avian's solver finds the impulses of the last step. Of a pair with a mesh, a line, a height field or a
+//! compound the resource [`PairContacts`] keeps what is known: there the two feature ids of an Avian contact are a
+//! name that the point keeps while it moves from part to part, and say nothing about vertices, edges or faces.
+//! The answers do not depend on the number of threads.
 //!
 //! # Errors
 //!

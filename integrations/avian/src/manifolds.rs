@@ -7,7 +7,8 @@ use impinge::math::{Point, Space, Vector};
 use impinge::narrow_phase::{
     ContactManifoldGenerator, ContactPrediction, DefaultContactDispatcher,
 };
-use impinge::query::{ContactId, ContactManifold, TrackedContact};
+use impinge::query::{Contact, ContactId, ContactManifold, TrackedContact};
+use impinge::shape::{FeatureId, Shape};
 
 use crate::Collider;
 use crate::collider::{Isometry, Vec_};
@@ -20,11 +21,11 @@ pub(crate) struct Meeting<'a, const D: usize>
 where
     f32: Dimension<D>,
 {
-    pub(crate) colliders: [&'a Collider<D>; 2],
+    /// `None` if either is in error.
+    shapes: Option<[&'a dyn Shape<f32, D>; 2]>,
     /// Both rotations, with the place of the second beside the first.
-    pub(crate) poses: [Isometry<D>; 2],
-    /// Contacts up to this distance are wanted.
-    pub(crate) prediction: f32,
+    poses: [Isometry<D>; 2],
+    has_parts: bool,
 }
 
 /// A point of contact as Avian has it.
@@ -36,31 +37,56 @@ where
     pub(crate) anchors: [Vec_<D>; 2],
     /// Positive if they overlap.
     pub(crate) penetration: f32,
-    /// The name of the contact, in two numbers of 30 bits; neither is zero.
+    /// Avian's feature ids, by which it finds a point of the last step; neither is zero.
     pub(crate) name: [u32; 2],
 }
 
-impl<const D: usize> Meeting<'_, D>
+impl<'a, const D: usize> Meeting<'a, D>
 where
     f32: Dimension<D>,
 {
-    /// Brings the contacts of the pair up to date and calls `read` with its manifolds, none of which is empty.
+    pub(crate) fn new(colliders: [&'a Collider<D>; 2], poses: [Isometry<D>; 2]) -> Self {
+        let shapes = match colliders.map(Collider::shape_scaled) {
+            [Ok(shape1), Ok(shape2)] => Some([&**shape1, &**shape2]),
+            _ => None,
+        };
+        let is_composite = |shape: &&dyn Shape<f32, D>| shape.geometry().as_composite().is_some();
+        let has_parts = shapes.is_some_and(|shapes| shapes.iter().any(is_composite));
+        Self { shapes, poses, has_parts }
+    }
+
+    /// Either shape is a composite: contacts wander from part to part.
+    pub(crate) fn has_parts(&self) -> bool {
+        self.has_parts
+    }
+
+    /// Calls `read` with the manifolds of the pair up to a distance; none of them is empty.
+    pub(crate) fn contacts(&self, prediction: f32, read: impl FnOnce(&[&ContactManifold<f32, D>])) {
+        let Some(shapes) = self.shapes else { return read(&[]) };
+        let found = f32::contacts(&self.poses, shapes, &ahead(prediction));
+        match &found[..] {
+            // Two convex shapes have one at most.
+            [one] => read(&[one]),
+            found => read(&found.iter().collect::<Vec<_>>()),
+        }
+    }
+
+    /// The same, with what is known of the pair, which is brought up to date.
     pub(crate) fn update(
         &self,
         state: &mut PairState<D>,
+        prediction: f32,
         read: impl FnOnce(&[&ContactManifold<f32, D>]),
     ) {
-        let [Ok(shape1), Ok(shape2)] = self.colliders.map(Collider::shape_scaled) else {
-            return read(&[]);
-        };
-        // A margin that is NaN or negative asks for what touches.
-        let prediction = ContactPrediction::new(self.prediction.max(0.0), 0.0, 0.0);
-        let [pose1, pose2] = &self.poses;
+        let Some([shape1, shape2]) = self.shapes else { return read(&[]) };
+        let ([pose1, pose2], prediction) = (&self.poses, ahead(prediction));
         let dispatcher = DefaultContactDispatcher::<D>::new();
         let PairState { generator, ids } = state;
-        generator.update(&dispatcher, pose1, &**shape1, pose2, &**shape2, &prediction, ids);
+        generator.update(&dispatcher, pose1, shape1, pose2, shape2, &prediction, ids);
         let mut manifolds = Vec::new();
-        generator.contacts(&mut manifolds);
+        if generator.num_contacts() > 0 {
+            generator.contacts(&mut manifolds);
+        }
         read(&manifolds);
     }
 
@@ -75,28 +101,58 @@ where
         manifold: &ContactManifold<f32, D>,
     ) -> impl Iterator<Item = Touch<D>> {
         let between: Vector<f32, D> = f32::translation(&self.poses[1]);
-        manifold.contacts().iter().map(move |tracked| touch(tracked, &between))
+        let contacts = manifold.contacts();
+        contacts.iter().enumerate().map(move |(index, tracked)| {
+            let name =
+                if self.has_parts { own_name(tracked.id) } else { feature_names(contacts, index) };
+            touch(&tracked.contact, &between, name)
+        })
     }
 }
 
+/// A margin that is negative or NaN asks for what touches.
+fn ahead(prediction: f32) -> ContactPrediction<f32> {
+    ContactPrediction::new(prediction.max(0.0), 0.0, 0.0)
+}
+
 /// `between` is the way from the first origin to the second.
-fn touch<const D: usize>(tracked: &TrackedContact<f32, D>, between: &Vector<f32, D>) -> Touch<D>
+fn touch<const D: usize>(
+    contact: &Contact<f32, D>,
+    between: &Vector<f32, D>,
+    name: [u32; 2],
+) -> Touch<D>
 where
     f32: Dimension<D>,
 {
-    let contact = &tracked.contact;
-    let middle: Point<f32, D> = impinge::dim3::na::center(&contact.world1, &contact.world2);
+    let middle: Point<f32, D> = impinge::math::na::center(&contact.world1, &contact.world2);
     let anchors = [middle.coords, middle.coords - between].map(|anchor| f32::vec(&anchor));
-    Touch { anchors, penetration: contact.depth, name: name(tracked.id) }
+    Touch { anchors, penetration: contact.depth, name }
+}
+
+/// The features of two convex shapes, in Avian's code: the kind in the two upper bits. Points on the same features, such
+/// as those of a round cap, are told apart by their order, in the four bits below.
+fn feature_names<const D: usize>(contacts: &[TrackedContact<f32, D>], index: usize) -> [u32; 2] {
+    let features = |tracked: &TrackedContact<f32, D>| {
+        [tracked.kinematic.feature1(), tracked.kinematic.feature2()]
+    };
+    let own = features(&contacts[index]);
+    let before = contacts[..index].iter().filter(|other| features(other) == own).count();
+    let code =
+        |kind: u32, number: u32| kind << 30 | (before as u32 & 0xF) << 26 | number & 0x3FF_FFFF;
+    own.map(|feature| match feature {
+        FeatureId::Vertex(number) => code(1, number),
+        FeatureId::Edge(number) => code(2, number),
+        FeatureId::Face(number) => code(3, number),
+    })
 }
 
 /// The name of a contact within its pair, spread over two numbers. Avian takes points for the same if both of their
 /// features are, in either order, so both numbers are taken from a hash.
-fn name(id: ContactId) -> [u32; 2] {
+fn own_name(id: ContactId) -> [u32; 2] {
     let mut hasher = Fnv(0xCBF2_9CE4_8422_2325);
     id.hash(&mut hasher);
     let hash = hasher.finish();
-    // The two upper bits are Avian's kinds of features, all of them zero: none. Zero in all is `UNKNOWN`.
+    // The two upper bits are Avian's kinds of features, here zero: none. Zero in all is `UNKNOWN`.
     [hash, hash >> 32].map(|half| (half as u32 & 0x3FFF_FFFF).max(1))
 }
 

@@ -1,4 +1,4 @@
-//! What is kept of each pair of colliders between two steps.
+//! What is kept of pairs with a composite between two steps.
 
 use core::fmt;
 use core::hash::{BuildHasher, BuildHasherDefault, Hasher};
@@ -11,30 +11,32 @@ use impinge::narrow_phase::{IdAllocator, PairManifoldGenerator};
 use crate::scaling::Dimension;
 
 /// Locks beside each other: threads that work on different pairs seldom wait for one another.
-const SHARDS: usize = 64;
+const SHARDS: usize = 256;
 /// Pairs that may be kept for nothing before ended ones are looked for.
 const SPARE: usize = 64;
 
 /// The two entities of a pair, in the order of Avian's graph of contacts.
 type Key = (Entity, Entity);
-type Shard<const D: usize> =
-    HashMap<Key, Option<Box<PairState<D>>>, BuildHasherDefault<PairHasher>>;
+type Shard<const D: usize> = HashMap<Key, Box<PairState<D>>, BuildHasherDefault<PairHasher>>;
 
-/// What impinge knows of each pair of colliders: a resource that the plugin adds.
+/// What is known of the pairs in which a mesh, a line, a height field or a compound meets something: a resource that the
+/// plugin adds, unless there is one.
 ///
-/// By it contact points keep their names from step to step. An app that goes back in time, for
-/// rollback, keeps a clone of it beside Avian's `ContactGraph`, or [clears](Self::clear) it: then points get new names, and
-/// the solver starts those contacts from zero.
+/// By it contact points keep their names while they move over the parts, and contacts are kept while neither collider
+/// moves much beside the other. Two convex shapes are asked anew in each step. An app that goes back in time, for
+/// rollback, keeps a clone of it beside Avian's `ContactGraph`, or [clears](Self::clear) it: then points get new names, and the
+/// solver starts those contacts from zero.
 #[derive(Resource)]
 pub struct PairContacts<const D: usize>
 where
     f32: Dimension<D>,
 {
     shards: Box<[Mutex<Shard<D>>]>,
+    tolerance: f32,
 }
 
 /// The contacts of one pair.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub(crate) struct PairState<const D: usize>
 where
     f32: Dimension<D>,
@@ -42,6 +44,18 @@ where
     pub(crate) generator: PairManifoldGenerator<f32, D>,
     /// Of the pair alone: names need to differ within a pair.
     pub(crate) ids: IdAllocator,
+}
+
+impl<const D: usize> PairState<D>
+where
+    f32: Dimension<D>,
+{
+    pub(crate) fn new(tolerance: f32) -> Self {
+        let generator = PairManifoldGenerator::default();
+        let reuses = tolerance > 0.0;
+        let generator = if reuses { generator.reusing(tolerance) } else { generator };
+        Self { generator, ids: IdAllocator::new() }
+    }
 }
 
 /// Entities are small numbers: Fibonacci hashing of both (Knuth, volume 3, section 6.4).
@@ -84,6 +98,17 @@ impl<const D: usize> PairContacts<D>
 where
     f32: Dimension<D>,
 {
+    /// The tolerance of `default()`: a tenth of Avian's own for contacts, in Avian's unit of length.
+    pub const TOLERANCE: f32 = 5e-4;
+
+    /// No pair yet. Contacts are kept, and only their depths measured anew, while no point of the smaller collider has moved
+    /// farther than the tolerance beside the other. Zero, and what is negative or no number, computes them each time.
+    #[must_use]
+    pub fn reusing(tolerance: f32) -> Self {
+        let tolerance = if tolerance.is_finite() { tolerance.max(0.0) } else { 0.0 };
+        Self { shards: shards(|_| Shard::default()), tolerance }
+    }
+
     /// How many pairs are kept, those that ended lately included.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -101,14 +126,10 @@ where
         self.shards = shards(|_| Shard::default());
     }
 
-    /// Calls `update` with what is kept of a pair. No lock is held meanwhile: nobody else asks for the same pair.
+    /// Calls `update` with what is kept of a pair.
     pub(crate) fn with<R>(&self, key: Key, update: impl FnOnce(&mut PairState<D>) -> R) -> R {
-        let shard = &self.shards[shard_of(key)];
-        let kept = locked(shard).entry(key).or_default().take();
-        let mut state = kept.unwrap_or_default();
-        let answer = update(&mut state);
-        locked(shard).insert(key, Some(state));
-        answer
+        let begin = || Box::new(PairState::new(self.tolerance));
+        update(locked(&self.shards[shard_of(key)]).entry(key).or_insert_with(begin))
     }
 
     /// Forgets the pairs that do not live, if they are many among `count` that do.
@@ -128,7 +149,7 @@ where
     f32: Dimension<D>,
 {
     fn default() -> Self {
-        Self { shards: shards(|_| Shard::default()) }
+        Self::reusing(Self::TOLERANCE)
     }
 }
 
@@ -137,7 +158,8 @@ where
     f32: Dimension<D>,
 {
     fn clone(&self) -> Self {
-        Self { shards: shards(|index| locked(&self.shards[index]).clone()) }
+        let shards = shards(|index| locked(&self.shards[index]).clone());
+        Self { shards, tolerance: self.tolerance }
     }
 }
 

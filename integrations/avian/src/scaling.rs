@@ -2,7 +2,9 @@
 
 use bevy_impinge::{ColliderError, Glam};
 use impinge::math::{Point, Vector};
-use impinge::shape::{ScaleError, ShapeHandle};
+use impinge::narrow_phase::ContactPrediction;
+use impinge::query::ContactManifold;
+use impinge::shape::{ScaleError, Shape, ShapeHandle};
 
 /// The number of subdivisions that is enough for anybody: a hull of some ten thousand points.
 const MAX_DETAIL: u32 = 64;
@@ -12,6 +14,14 @@ pub trait Dimension<const D: usize>: Glam<D> {
     /// Unit vectors all around, the denser the larger `detail` is.
     #[doc(hidden)]
     fn directions(detail: u32) -> Vec<Vector<f32, D>>;
+
+    /// The contacts of two placed shapes, without memory.
+    #[doc(hidden)]
+    fn contacts(
+        poses: &[Self::Isometry; 2],
+        shapes: [&dyn Shape<f32, D>; 2],
+        prediction: &ContactPrediction<f32>,
+    ) -> Vec<ContactManifold<f32, D>>;
 
     /// The convex hull of points.
     #[doc(hidden)]

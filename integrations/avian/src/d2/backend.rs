@@ -1,17 +1,19 @@
 //! The traits of `avian2d` that a collider implements.
 
+use avian2d::collision::contact_types::PackedFeatureId;
 use avian2d::prelude::{
     AabbContext, AnyCollider, ColliderAabb, ComputeMassProperties2d, ContactManifold,
-    ContactManifoldContext, ContactPoint, MassProperties2d, Rotation, ScalableCollider,
+    ContactManifoldContext, ContactPoint, MassProperties2d, NarrowPhaseConfig, Rotation,
+    ScalableCollider,
 };
 use bevy_ecs::system::lifetimeless::SRes;
 use bevy_impinge::Glam;
 use bevy_math::{Isometry2d, Rot2, Vec2};
 use impinge::dim2::math::Isometry;
+use impinge::dim2::query::ContactManifold as Found;
 
 use super::{Collider, PairContacts};
 use crate::manifolds::{Meeting, Touch};
-use crate::pairs::PairState;
 
 pub(super) fn isometry(position: Vec2, rotation: Rotation) -> Isometry<f32> {
     <f32 as Glam<2>>::isometry_of(&Isometry2d::new(
@@ -45,15 +47,16 @@ impl Collider {
         prediction_distance: f32,
     ) -> Vec<ContactManifold> {
         let poses = beside([position1, position2], [rotation1, rotation2]);
-        let meeting = Meeting { colliders: [self, other], poses, prediction: prediction_distance };
-        let (mut state, mut manifolds) = (PairState::default(), Vec::new());
-        rewrite(&meeting, &mut state, position1, &mut manifolds);
+        let (meeting, mut manifolds) = (Meeting::new([self, other], poses), Vec::new());
+        meeting.contacts(prediction_distance, |found| {
+            rewrite(&meeting, found, position1, &mut manifolds);
+        });
         manifolds
     }
 }
 
 impl AnyCollider for Collider {
-    type Context = SRes<PairContacts>;
+    type Context = (SRes<PairContacts>, SRes<NarrowPhaseConfig>);
 
     fn aabb_with_context(
         &self,
@@ -76,27 +79,62 @@ impl AnyCollider for Collider {
         context: ContactManifoldContext<'_, '_, '_, Self::Context>,
     ) {
         let poses = beside([position1, position2], [rotation1.into(), rotation2.into()]);
-        let meeting = Meeting { colliders: [self, other], poses, prediction: prediction_distance };
-        let pair = (context.entity1, context.entity2);
-        context.with(pair, |state| rewrite(&meeting, state, position1, manifolds));
+        let (meeting, margin) = (Meeting::new([self, other], poses), prediction_distance);
+        if !meeting.has_parts() {
+            return meeting
+                .contacts(margin, |found| rewrite(&meeting, found, position1, manifolds));
+        }
+        let old = warmth(manifolds);
+        context.0.with((context.entity1, context.entity2), |state| {
+            meeting.update(state, margin, |found| rewrite(&meeting, found, position1, manifolds));
+        });
+        if context.1.match_contacts && manifolds.len() > MATCHED {
+            warm(manifolds, &old);
+        }
     }
 }
 
-/// Brings a pair up to date, and writes its contacts over those of the last step.
+/// Avian itself carries impulses over from one step to the next for pairs of so many manifolds.
+const MATCHED: usize = 4;
+
+/// The name of a point, and the impulses that the solver starts from.
+type Warmth = ([PackedFeatureId; 2], f32, f32);
+
+/// Of the points of a pair, if they may be needed: it has as many manifolds, and may have more in a moment.
+fn warmth(manifolds: &[ContactManifold]) -> Vec<Warmth> {
+    let many = if manifolds.len() >= MATCHED { manifolds } else { &[] };
+    let points = many.iter().flat_map(|manifold| &manifold.points);
+    let of = |point: &ContactPoint| {
+        let name = [point.feature_id1, point.feature_id2];
+        (name, point.warm_start_normal_impulse, point.warm_start_tangent_impulse)
+    };
+    points.map(of).collect()
+}
+
+/// Gives points the impulses that they had by the same names.
+fn warm(manifolds: &mut [ContactManifold], old: &[Warmth]) {
+    for point in manifolds.iter_mut().flat_map(|manifold| &mut manifold.points) {
+        let name = [point.feature_id1, point.feature_id2];
+        if let Some((_, normal, tangent)) = old.iter().find(|old| old.0 == name) {
+            (point.warm_start_normal_impulse, point.warm_start_tangent_impulse) =
+                (*normal, *tangent);
+        }
+    }
+}
+
+/// Writes the contacts of a pair over those of the last step.
 fn rewrite(
     meeting: &Meeting<'_, 2>,
-    state: &mut PairState<2>,
+    found: &[&Found<f32>],
     position1: Vec2,
     manifolds: &mut Vec<ContactManifold>,
 ) {
-    meeting.update(state, |found| {
-        manifolds.resize_with(found.len(), || ContactManifold::new([], Vec2::ZERO));
-        for (manifold, found) in manifolds.iter_mut().zip(found) {
-            manifold.normal = Meeting::normal(found).unwrap_or_default();
-            manifold.points.clear();
-            manifold.points.extend(meeting.touches(found).map(|touch| point(&touch, position1)));
-        }
-    });
+    manifolds.resize_with(found.len(), || ContactManifold::new([], Vec2::ZERO));
+    for (manifold, found) in manifolds.iter_mut().zip(found) {
+        manifold.normal = Meeting::normal(found).unwrap_or_default();
+        manifold.points.clear();
+        manifold.points.extend(meeting.touches(found).map(|touch| point(&touch, position1)));
+    }
 }
 
 fn point(touch: &Touch<2>, position1: Vec2) -> ContactPoint {

@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 
 use avian2d::prelude::{
     ColliderBackendPlugin, ColliderTreePlugin, CollisionHooks, ContactGraph, NarrowPhasePlugin,
-    NarrowPhaseSystems, PhysicsSchedule,
+    NarrowPhaseSystems, PhysicsLengthUnit, PhysicsSchedule,
 };
 use bevy_app::prelude::*;
 use bevy_ecs::intern::Interned;
@@ -59,7 +59,10 @@ where
     for<'w, 's> SystemParamItem<'w, 's, H>: CollisionHooks,
 {
     fn build(&self, app: &mut App) {
-        app.init_resource::<PairContacts>();
+        let unit = app.world().get_resource::<PhysicsLengthUnit>().map_or(1.0, |unit| unit.0);
+        if !app.world().contains_resource::<PairContacts>() {
+            app.insert_resource(PairContacts::reusing(unit * PairContacts::TOLERANCE));
+        }
         app.add_plugins((
             ColliderBackendPlugin::<Collider>::new(self.schedule),
             ColliderTreePlugin::<Collider>::default(),

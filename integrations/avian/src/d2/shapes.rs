@@ -4,8 +4,9 @@ use avian2d::prelude::{Position, Rotation};
 use bevy_impinge::ColliderError;
 use bevy_math::Vec2;
 use bevy_math::primitives::RegularPolygon;
-use impinge::dim2::math::{Point, Vector};
-use impinge::dim2::shape::ShapeHandle;
+use impinge::dim2::math::{Isometry, Point, Vector};
+use impinge::dim2::query::{ContactManifold, ContactPrediction, contact_manifolds};
+use impinge::dim2::shape::{Shape, ShapeHandle};
 use impinge::dim2::transformation::convex_shape;
 
 use super::Collider;
@@ -22,6 +23,14 @@ impl Dimension<2> for f32 {
             Vector::new(x, y)
         };
         (0..around).map(direction).collect()
+    }
+
+    fn contacts(
+        [pose1, pose2]: &[Isometry<f32>; 2],
+        [shape1, shape2]: [&dyn Shape<f32, 2>; 2],
+        prediction: &ContactPrediction<f32>,
+    ) -> Vec<ContactManifold<f32>> {
+        contact_manifolds(pose1, shape1, pose2, shape2, prediction, None)
     }
 
     fn hull(points: &[Point<f32>]) -> Result<ShapeHandle<f32>, ColliderError> {

@@ -3,8 +3,9 @@
 use avian3d::prelude::{Position, Rotation};
 use bevy_impinge::ColliderError;
 use bevy_math::Vec3;
-use impinge::dim3::math::{Point, Vector};
-use impinge::dim3::shape::{HeightField, ShapeHandle};
+use impinge::dim3::math::{Isometry, Point, Vector};
+use impinge::dim3::query::{ContactManifold, ContactPrediction, contact_manifolds};
+use impinge::dim3::shape::{HeightField, Shape, ShapeHandle};
 use impinge::dim3::transformation::convex_shape;
 
 use super::Collider;
@@ -27,6 +28,14 @@ impl Dimension<3> for f32 {
         };
         let poles = [Vector::y(), -Vector::y()];
         (1..rings).flat_map(ring).chain(poles).collect()
+    }
+
+    fn contacts(
+        [pose1, pose2]: &[Isometry<f32>; 2],
+        [shape1, shape2]: [&dyn Shape<f32, 3>; 2],
+        prediction: &ContactPrediction<f32>,
+    ) -> Vec<ContactManifold<f32>> {
+        contact_manifolds(pose1, shape1, pose2, shape2, prediction, None)
     }
 
     fn hull(points: &[Point<f32>]) -> Result<ShapeHandle<f32>, ColliderError> {

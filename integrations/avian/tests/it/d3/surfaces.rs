@@ -128,3 +128,29 @@ fn a_kinematic_body_pushes_a_box() {
     assert!((pusher.x - 3.0).abs() < 0.05, "{pusher}");
     assert!(parcel.x > 3.4 && (parcel.y - 0.25).abs() < 0.02, "{parcel}");
 }
+
+/// Three balls as one body, each in a groove of its own slope: six normals. Avian matches the points of four manifolds at
+/// most, the back end those of more.
+#[test]
+fn many_manifolds_start_from_their_impulses() {
+    let slopes = [0.5_f32, 0.8, 1.2];
+    let ground = |_: f32, z: f32| {
+        let groove = (((z + 3.0) / 2.0).floor() as usize).min(2);
+        let (slope, middle) = (slopes[groove], 2.0 * groove as f32 - 2.0);
+        1.0 - 0.5 * (1.0 + slope * slope).sqrt() + slope * (z - middle).abs()
+    };
+    let mut app = app::<Impinge>();
+    fixed::<Impinge>(&mut app, sheet::<Impinge>(24, 0.25, ground), Vec3::ZERO);
+    let at = |z: f32| (Vec3::Z * z, Quat::IDENTITY, d3::Collider::sphere(0.5));
+    let body = d3::Collider::compound([-2.0, 0.0, 2.0].map(at).to_vec());
+    let body = dynamic::<Impinge>(&mut app, body, Vec3::Y);
+    steps(&mut app, 120);
+    let aside = (place(&app, body) - Vec3::Y).length();
+    assert!(aside < 0.02 && velocity(&app, body).length() < 0.01, "{aside}");
+    let graph = app.world().resource::<ContactGraph>();
+    let pair = graph.iter_active_touching().next().expect("it lies there");
+    assert!(pair.manifolds.len() > 4, "{}", pair.manifolds.len());
+    for point in pair.manifolds.iter().flat_map(|manifold| &manifold.points) {
+        assert!(point.warm_start_normal_impulse > 0.0, "{point:?}");
+    }
+}
