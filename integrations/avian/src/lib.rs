@@ -64,7 +64,8 @@ pub use scaling::Dimension;
 /// The collision library itself: shapes, queries.
 pub use impinge;
 
-/// The page of the crate, run as tests.
-#[cfg(all(doctest, feature = "2d", feature = "3d"))]
+/// The page of the crate and the chapter of the guide, run as tests; they are about apps without parry.
+#[cfg(all(doctest, feature = "2d", feature = "3d", not(feature = "parry")))]
 #[doc = include_str!("../README.md")]
+#[doc = include_str!("../../../guide/avian.md")]
 mod pages {}

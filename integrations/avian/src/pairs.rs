@@ -1,8 +1,7 @@
 //! What is kept of pairs with a composite between two steps.
 
 use core::fmt;
-use core::hash::{BuildHasher, BuildHasherDefault, Hasher};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bevy_ecs::prelude::{Entity, Resource};
@@ -17,7 +16,7 @@ const SPARE: usize = 64;
 
 /// The two entities of a pair, in the order of Avian's graph of contacts.
 type Key = (Entity, Entity);
-type Shard<const D: usize> = HashMap<Key, Box<PairState<D>>, BuildHasherDefault<PairHasher>>;
+type Shard<const D: usize> = BTreeMap<Key, Box<PairState<D>>>;
 
 /// What is known of the pairs in which a mesh, a line, a height field or a compound meets something: a resource that the
 /// plugin adds, unless there is one.
@@ -59,27 +58,10 @@ where
 }
 
 /// Entities are small numbers: Fibonacci hashing of both (Knuth, volume 3, section 6.4).
-#[derive(Clone, Default)]
-struct PairHasher(u64);
-
-impl Hasher for PairHasher {
-    fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|&byte| self.write_u64(u64::from(byte)));
-    }
-
-    fn write_u64(&mut self, bits: u64) {
-        self.0 = (self.0.rotate_left(26) ^ bits).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    }
-
-    fn finish(&self) -> u64 {
-        self.0 ^ (self.0 >> 32)
-    }
-}
-
-fn shard_of(key: Key) -> usize {
-    let hash = BuildHasherDefault::<PairHasher>::default().hash_one(key);
-    // Other bits than those that choose the place within the map of a shard.
-    (hash >> 40) as usize % SHARDS
+fn shard_of((one, other): Key) -> usize {
+    let mixed =
+        (one.to_bits().rotate_left(26) ^ other.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    (mixed >> 40) as usize % SHARDS
 }
 
 /// A thread that panicked left a map that is whole.
@@ -138,7 +120,6 @@ where
             return;
         }
         for shard in &mut self.shards {
-            // In any order: each is kept or not by itself.
             shard.get_mut().unwrap_or_else(PoisonError::into_inner).retain(|&key, _| lives(key));
         }
     }

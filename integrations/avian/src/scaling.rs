@@ -6,15 +6,11 @@ use impinge::narrow_phase::ContactPrediction;
 use impinge::query::ContactManifold;
 use impinge::shape::{ScaleError, Shape, ShapeHandle};
 
-/// The number of subdivisions that is enough for anybody: a hull of some ten thousand points.
+/// The number of subdivisions that is enough for anybody: a hull of some six thousand points in 3D.
 const MAX_DETAIL: u32 = 64;
 
 /// What the two dimensions do differently: implemented for `f32` with `D` = 2 and `D` = 3.
 pub trait Dimension<const D: usize>: Glam<D> {
-    /// Unit vectors all around, the denser the larger `detail` is.
-    #[doc(hidden)]
-    fn directions(detail: u32) -> Vec<Vector<f32, D>>;
-
     /// The contacts of two placed shapes, without memory.
     #[doc(hidden)]
     fn contacts(
@@ -54,7 +50,19 @@ where
         let point = map.core_support(direction) + direction * map.rounding();
         Point::from(point.coords.component_mul(scale))
     };
-    let directions = <f32 as Dimension<D>>::directions(detail.clamp(1, MAX_DETAIL));
-    let points: Vec<_> = directions.iter().map(support).collect();
+    let points: Vec<_> = directions::<D>(detail).map(|direction| support(&direction)).collect();
     f32::hull(&points)
+}
+
+/// Unit vectors all around, those along the axes among them: to the points of a grid on a square or cube. For ten
+/// subdivisions they are 40 in 2D and 218 in 3D. Without trigonometry, so that each processor has the same.
+fn directions<const D: usize>(detail: u32) -> impl Iterator<Item = Vector<f32, D>> {
+    let half = detail.clamp(1, MAX_DETAIL).div_ceil(2 * (D as u32 - 1));
+    let width = 2 * half + 1;
+    let corner = move |index: u32| {
+        let digit = |axis: usize| index / width.pow(axis as u32) % width;
+        Vector::<f32, D>::from_fn(|axis, _| digit(axis) as f32 - half as f32)
+    };
+    let is_outside = move |corner: &Vector<f32, D>| corner.amax() == half as f32;
+    (0..width.pow(D as u32)).map(corner).filter(is_outside).map(|corner| corner.normalize())
 }

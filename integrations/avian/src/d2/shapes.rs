@@ -4,7 +4,7 @@ use avian2d::prelude::{Position, Rotation};
 use bevy_impinge::ColliderError;
 use bevy_math::Vec2;
 use bevy_math::primitives::RegularPolygon;
-use impinge::dim2::math::{Isometry, Point, Vector};
+use impinge::dim2::math::{Isometry, Point};
 use impinge::dim2::query::{ContactManifold, ContactPrediction, contact_manifolds};
 use impinge::dim2::shape::{Shape, ShapeHandle};
 use impinge::dim2::transformation::convex_shape;
@@ -15,25 +15,15 @@ use crate::collider::points;
 use crate::scaling::Dimension;
 
 impl Dimension<2> for f32 {
-    fn directions(detail: u32) -> Vec<Vector<f32>> {
-        let around = 4 * detail;
-        let step = core::f32::consts::TAU / around as f32;
-        let direction = |k| {
-            let (y, x) = (k as f32 * step).sin_cos();
-            Vector::new(x, y)
-        };
-        (0..around).map(direction).collect()
-    }
-
     fn contacts(
-        [pose1, pose2]: &[Isometry<f32>; 2],
-        [shape1, shape2]: [&dyn Shape<f32, 2>; 2],
-        prediction: &ContactPrediction<f32>,
-    ) -> Vec<ContactManifold<f32>> {
+        [pose1, pose2]: &[Isometry<Self>; 2],
+        [shape1, shape2]: [&dyn Shape<Self, 2>; 2],
+        prediction: &ContactPrediction<Self>,
+    ) -> Vec<ContactManifold<Self>> {
         contact_manifolds(pose1, shape1, pose2, shape2, prediction, None)
     }
 
-    fn hull(points: &[Point<f32>]) -> Result<ShapeHandle<f32>, ColliderError> {
+    fn hull(points: &[Point<Self>]) -> Result<ShapeHandle<Self>, ColliderError> {
         Ok(convex_shape(points)?)
     }
 }

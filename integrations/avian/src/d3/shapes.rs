@@ -14,31 +14,15 @@ use crate::collider::points;
 use crate::scaling::Dimension;
 
 impl Dimension<3> for f32 {
-    /// Rings of equal height from pole to pole, turned by half a step from one to the next.
-    fn directions(detail: u32) -> Vec<Vector<f32>> {
-        let (rings, around) = (2 * detail, 4 * detail);
-        let step = core::f32::consts::TAU / around as f32;
-        let ring = |ring: u32| {
-            let (sine, y) = (core::f32::consts::PI * ring as f32 / rings as f32).sin_cos();
-            let turn = 0.5 * (ring % 2) as f32;
-            (0..around).map(move |k| {
-                let (z, x) = ((k as f32 + turn) * step).sin_cos();
-                Vector::new(x * sine, y, z * sine)
-            })
-        };
-        let poles = [Vector::y(), -Vector::y()];
-        (1..rings).flat_map(ring).chain(poles).collect()
-    }
-
     fn contacts(
-        [pose1, pose2]: &[Isometry<f32>; 2],
-        [shape1, shape2]: [&dyn Shape<f32, 3>; 2],
-        prediction: &ContactPrediction<f32>,
-    ) -> Vec<ContactManifold<f32>> {
+        [pose1, pose2]: &[Isometry<Self>; 2],
+        [shape1, shape2]: [&dyn Shape<Self, 3>; 2],
+        prediction: &ContactPrediction<Self>,
+    ) -> Vec<ContactManifold<Self>> {
         contact_manifolds(pose1, shape1, pose2, shape2, prediction, None)
     }
 
-    fn hull(points: &[Point<f32>]) -> Result<ShapeHandle<f32>, ColliderError> {
+    fn hull(points: &[Point<Self>]) -> Result<ShapeHandle<Self>, ColliderError> {
         Ok(convex_shape(points)?)
     }
 }

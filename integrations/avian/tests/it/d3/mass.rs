@@ -81,6 +81,6 @@ fn scaled_shapes_weigh_as_such() {
     capsule.set_scale(Vec3::new(2.0, 1.0, 1.0), 20);
     let whole = 2.0 * (PI * 2.0 + 4.0 / 3.0 * PI);
     let found = capsule.mass(1.0);
-    assert!(found < whole && found > 0.98 * whole, "{found} of {whole}");
+    assert!(found < whole && found > 0.96 * whole, "{found} of {whole}");
     assert_eq!(Collider::scale(&capsule), Vec3::new(2.0, 1.0, 1.0));
 }
