@@ -109,7 +109,7 @@ impl Backend for Parry {
     }
 
     fn trimesh(vertices: Vec<Vec2>, indices: Vec<[u32; 3]>) -> Collider {
-        Collider::trimesh(vertices, indices)
+        Collider::trimesh_with_config(vertices, indices, TrimeshFlags::FIX_INTERNAL_EDGES)
     }
 }
 

@@ -192,12 +192,11 @@ pub(crate) fn chain<B: Backend>(app: &mut App, at: Vec3, count: usize) -> Vec<En
     links
 }
 
+/// Vertices and triangles of a surface.
+pub(crate) type Surface = (Vec<Vec3>, Vec<[u32; 3]>);
+
 /// A grid of `cells` by `cells` squares of two triangles, with the height given over x and z.
-pub(crate) fn sheet<B: Backend>(
-    cells: u32,
-    side: f32,
-    height: impl Fn(f32, f32) -> f32,
-) -> B::Collider {
+pub(crate) fn grid(cells: u32, side: f32, height: impl Fn(f32, f32) -> f32) -> Surface {
     let half = side * cells as f32 / 2.0;
     let at = |index: u32| index as f32 * side - half;
     let vertex = |i: u32, j: u32| Vec3::new(at(i), height(at(i), at(j)), at(j));
@@ -205,12 +204,22 @@ pub(crate) fn sheet<B: Backend>(
     let vertices = vertices.map(|(i, j)| vertex(i, j)).collect();
     let index = |i: u32, j: u32| i * (cells + 1) + j;
     let cell = |i: u32, j: u32| {
-        let [a, b, c, d] =
-            [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)].map(|(i, j)| index(i, j));
+        let corners = [(i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)];
+        let [a, b, c, d] = corners.map(|(i, j)| index(i, j));
         [[a, b, c], [a, c, d]]
     };
     let squares = (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j)));
-    B::trimesh(vertices, squares.flat_map(|(i, j)| cell(i, j)).collect())
+    (vertices, squares.flat_map(|(i, j)| cell(i, j)).collect())
+}
+
+/// A mesh of that.
+pub(crate) fn sheet<B: Backend>(
+    cells: u32,
+    side: f32,
+    height: impl Fn(f32, f32) -> f32,
+) -> B::Collider {
+    let (vertices, triangles) = grid(cells, side, height);
+    B::trimesh(vertices, triangles)
 }
 
 /// Solids of five kinds above each other in columns.

@@ -1,4 +1,4 @@
-//! [impinge](bevy_impinge::impinge) as the collision back end of [Avian](https://docs.rs/avian3d/0.7), the physics
+//! [impinge] as the collision back end of [Avian](https://docs.rs/avian3d/0.7), the physics
 //! engine for Bevy: Avian moves the bodies, the shapes and contacts are impinge's.
 //!
 //! [`d2`] is for `avian2d`, [`d3`] for `avian3d`. An app gains one plugin beside Avian's, and takes `Collider` from here;

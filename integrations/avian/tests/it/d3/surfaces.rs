@@ -32,12 +32,15 @@ fn bump<B: Backend>(floor: B::Collider, body: B::Collider, height: f32, friction
     [fastest, farthest, velocity(&app, body).x]
 }
 
-/// On a mesh and on a half-space: a ball and a box.
+/// A ball and a box.
+fn bumps_on<B: Backend>(floor: B::Collider) -> [[f32; 3]; 2] {
+    let ball = bump::<B>(floor.clone(), B::sphere(0.5), 0.5, 0.5);
+    [ball, bump::<B>(floor, B::cuboid(1.0, 0.6, 0.8), 0.3, 0.0)]
+}
+
+/// On a mesh and on a half-space.
 fn bumps<B: Backend>() -> [[[f32; 3]; 2]; 2] {
-    [sheet::<B>(40, 0.5, |_, _| 0.0), B::half_space()].map(|floor| {
-        let ball = bump::<B>(floor.clone(), B::sphere(0.5), 0.5, 0.5);
-        [ball, bump::<B>(floor, B::cuboid(1.0, 0.6, 0.8), 0.3, 0.0)]
-    })
+    [sheet::<B>(40, 0.5, |_, _| 0.0), B::half_space()].map(bumps_on::<B>)
 }
 
 #[test]
@@ -57,9 +60,14 @@ fn bodies_roll_and_slide_without_bumps() {
 #[cfg(feature = "parry")]
 #[test]
 fn beside_parry() {
-    let found = bumps::<crate::scenes3::Parry>();
-    println!("parry: {found:?}");
-    assert!(found.as_flattened().as_flattened().iter().all(|x| x.is_finite()));
+    use crate::scenes3::{Parry, grid};
+
+    let found = bumps::<Parry>();
+    let (vertices, triangles) = grid(40, 0.5, |_, _| 0.0);
+    let plain = bumps_on::<Parry>(Collider::trimesh(vertices, triangles));
+    println!("parry: {found:?}, without a flag {plain:?}");
+    let all = [found[0], found[1], plain];
+    assert!(all.as_flattened().as_flattened().iter().all(|x| x.is_finite()));
 }
 
 /// A slope of one in four from x = 0 on, and waves across.
