@@ -228,3 +228,17 @@ fn nothing_panics() {
     steps(&mut app, 60);
     assert!((place(&app, body).y - 0.5).abs() < 0.02, "on the floor");
 }
+
+/// What the page of the crate says of Avian's own colliders beside these; the day this no longer panics it may say less.
+#[cfg(feature = "parry")]
+#[test]
+#[should_panic(expected = "indeterminate execution order")]
+fn two_back_ends_are_no_schedule() {
+    let mut app = App::new();
+    app.add_plugins((TaskPoolPlugin::default(), TransformPlugin, TimePlugin));
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    app.add_plugins((PhysicsPlugins::default(), d3::ImpingeColliderPlugin::default()));
+    app.finish();
+    app.cleanup();
+    steps(&mut app, 2);
+}
